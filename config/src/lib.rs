@@ -1,0 +1,18 @@
+//! What can be set, checked once: after loading, every number is finite, in its range and fits the others.
+//!
+//! - [`robot::Robot`]: `robots/NAME/robot.toml` and the URDF beside it.
+//! - [`gait::Gait`]: `gaits/NAME.toml`: how the robot walks and how it is stabilized.
+//! - [`scene::Scene`]: `scenes/NAME.toml`: what is simulated.
+//! - [`system::System`]: `system.toml`: processes, cores, priorities, deadlines, limits of the run-time system.
+//!
+//! Only this crate names TOML.
+
+pub mod gait;
+pub mod robot;
+pub mod scene;
+pub mod system;
+
+pub use gait::Gait;
+pub use robot::Robot;
+pub use scene::Scene;
+pub use system::System;

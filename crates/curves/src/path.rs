@@ -1,0 +1,113 @@
+//! A piecewise quintic in `D` dimensions with room for `N` pieces (thesis eq. (4.22)).
+
+/// Position, velocity and acceleration of a `D`-dimensional curve at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<const D: usize> {
+    /// Value, in the unit of the curve.
+    pub position: [f64; D],
+    /// First derivative, per second.
+    pub velocity: [f64; D],
+    /// Second derivative, per second squared.
+    pub acceleration: [f64; D],
+}
+
+impl<const D: usize> Sample<D> {
+    /// A point at rest.
+    pub const fn rest(position: [f64; D]) -> Self {
+        Self { position, velocity: [0.0; D], acceleration: [0.0; D] }
+    }
+}
+
+/// A piecewise quintic polynomial: piece `i` covers `[knots[i], knots[i + 1])` in local time `t - knots[i]`.
+///
+/// Outside of its knots a path rests at its first or last position: a path that ends at rest can be held for ever.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Path<const D: usize, const N: usize> {
+    /// Number of pieces in use; 0 until the first [`Path::push`].
+    pub pieces: u64,
+    /// Start of the first piece \[s\].
+    pub start: f64,
+    /// Where the path rests before its first piece.
+    pub origin: [f64; D],
+    /// End of each piece \[s\], ascending.
+    pub ends: [f64; N],
+    /// Coefficients of each piece, one row per dimension, constant term first (4.22).
+    pub coefficients: [[[f64; 6]; D]; N],
+}
+
+impl<const D: usize, const N: usize> Path<D, N> {
+    /// A path without pieces: rests at `position` at all times.
+    pub const fn resting(start: f64, position: [f64; D]) -> Self {
+        Self { pieces: 0, start, origin: position, ends: [0.0; N], coefficients: [[[0.0; 6]; D]; N] }
+    }
+
+    /// End of the last piece \[s\].
+    pub fn end(&self) -> f64 {
+        if self.pieces == 0 { self.start } else { self.ends[self.pieces as usize - 1] }
+    }
+
+    /// Appends the quintic that meets both ends, (4.23)-(4.28) with the corrections of errata 2.5; `false` if the
+    /// path is full or `end` does not lie after the present end.
+    pub fn push(&mut self, from: &Sample<D>, to: &Sample<D>, end: f64) -> bool {
+        let i = self.pieces as usize;
+        let h = end - self.end();
+        if i >= N || !(h > 0.0) {
+            return false;
+        }
+        for d in 0..D {
+            self.coefficients[i][d] = quintic(
+                (from.position[d], from.velocity[d], from.acceleration[d]),
+                (to.position[d], to.velocity[d], to.acceleration[d]),
+                h,
+            );
+        }
+        if i == 0 {
+            self.origin = from.position;
+        }
+        self.ends[i] = end;
+        self.pieces += 1;
+        true
+    }
+
+    /// Value and derivatives at `t` \[s\].
+    pub fn sample(&self, t: f64) -> Sample<D> {
+        let n = self.pieces as usize;
+        if n == 0 || t < self.start {
+            return Sample::rest(self.origin);
+        }
+        // Few pieces and mostly the first ones: a scan beats a bisection.
+        let i = self.ends[..n].iter().position(|&end| t < end).unwrap_or(n - 1);
+        let begin = if i == 0 { self.start } else { self.ends[i - 1] };
+        let beyond = t >= self.ends[n - 1];
+        let tau = t.min(self.ends[n - 1]) - begin;
+        let mut s = Sample::rest([0.0; D]);
+        for d in 0..D {
+            let c = &self.coefficients[i][d];
+            s.position[d] = c[0] + tau * (c[1] + tau * (c[2] + tau * (c[3] + tau * (c[4] + tau * c[5]))));
+            if !beyond {
+                s.velocity[d] =
+                    c[1] + tau * (2.0 * c[2] + tau * (3.0 * c[3] + tau * (4.0 * c[4] + tau * 5.0 * c[5])));
+                s.acceleration[d] = 2.0 * c[2] + tau * (6.0 * c[3] + tau * (12.0 * c[4] + tau * 20.0 * c[5]));
+            }
+        }
+        s
+    }
+}
+
+/// Coefficients of the quintic through (position, velocity, acceleration) at both ends of an interval of
+/// length `h` \[s\] (errata 2.5).
+pub(crate) fn quintic((p0, v0, a0): (f64, f64, f64), (p1, v1, a1): (f64, f64, f64), h: f64) -> [f64; 6] {
+    let dp = p1 - p0 - v0 * h - a0 * h * h / 2.0;
+    let dv = v1 - v0 - a0 * h;
+    let da = a1 - a0;
+    let (h2, h3) = (h * h, h * h * h);
+    [
+        p0,
+        v0,
+        a0 / 2.0,
+        (10.0 * dp - 4.0 * dv * h + da * h2 / 2.0) / h3,
+        (-15.0 * dp + 7.0 * dv * h - da * h2) / (h3 * h),
+        (6.0 * dp - 3.0 * dv * h + da * h2 / 2.0) / (h3 * h2),
+    ]
+}

@@ -1,0 +1,208 @@
+//! What an operator may ask for: messages of the command plane (design: thesis 7.4).
+//!
+//! A message is (domain, id, priority, payload). Local brokers deliver by (domain, id); the global broker forwards
+//! whole domains to the processes that subscribed to them.
+
+use serde::{Deserialize, Serialize};
+
+/// Groups of messages; a process subscribes to whole domains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[repr(u16)]
+pub enum Domain {
+    /// Emergency stop, reset, enable, end.
+    System = 0,
+    /// Walking commands.
+    Walk = 1,
+    /// Parameters of the stabilizer.
+    Stabilize = 2,
+    /// Parameters of the joint loop.
+    Joint = 3,
+    /// Camera head.
+    Head = 4,
+    /// Logging.
+    Log = 5,
+    /// The simulated robot.
+    Sim = 6,
+    /// Vision.
+    Vision = 7,
+}
+
+impl Domain {
+    /// All domains.
+    pub const ALL: [Self; 8] = [
+        Self::System,
+        Self::Walk,
+        Self::Stabilize,
+        Self::Joint,
+        Self::Head,
+        Self::Log,
+        Self::Sim,
+        Self::Vision,
+    ];
+
+    /// The name used in `gangwerk topic`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::System => "system",
+            Self::Walk => "walk",
+            Self::Stabilize => "stabilize",
+            Self::Joint => "joint",
+            Self::Head => "head",
+            Self::Log => "log",
+            Self::Sim => "sim",
+            Self::Vision => "vision",
+        }
+    }
+}
+
+/// How urgent a message is: higher ones pass lower ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[repr(u8)]
+pub enum Priority {
+    /// Emergency stop.
+    High = 0,
+    /// Commands.
+    Normal = 1,
+    /// Everything that can wait.
+    Low = 2,
+}
+
+/// Everything an operator may ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Command {
+    /// `system/emergency_stop`: motor supply off, latched.
+    EmergencyStop,
+    /// `system/reset`: first edge after a power-off: forget the reason.
+    Reset,
+    /// `system/enable`: second edge: motor supply on.
+    Enable,
+    /// `system/end`: stop walking, stand, end all processes.
+    End,
+    /// `walk/stand`: go from any standing pose to the walking pose.
+    Stand,
+    /// `walk/start`: walk with the present step parameters.
+    Start,
+    /// `walk/stop`: stop walking and stand.
+    Stop,
+    /// `walk/step`: step parameters from the next step on.
+    Step(StepCommand),
+    /// `walk/velocity`: walk with this velocity; zero is a stop.
+    Velocity(VelocityCommand),
+    /// `sim/push`: push the simulated robot now.
+    Push(PushCommand),
+}
+
+/// Step parameters (thesis table 4.1).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepCommand {
+    /// \[m\] Step length forward L_x.
+    pub length: f64,
+    /// \[m\] Step length to the left L_y, per step.
+    #[serde(default)]
+    pub side: f64,
+    /// \[rad\] Turn to the left per step.
+    #[serde(default)]
+    pub turn: f64,
+    /// \[s\] Duration of a step.
+    pub duration: f64,
+}
+
+/// A velocity of the robot in its own frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VelocityCommand {
+    /// \[m/s\] forward
+    #[serde(default)]
+    pub forward: f64,
+    /// \[m/s\] to the left
+    #[serde(default)]
+    pub left: f64,
+    /// \[rad/s\] to the left
+    #[serde(default)]
+    pub turn: f64,
+}
+
+/// A push at the torso's centre of gravity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PushCommand {
+    /// \[N\] @world
+    pub force: [f64; 3],
+    /// \[s\]
+    pub duration: f64,
+}
+
+impl Command {
+    /// Domain and id of the message that carries this command.
+    pub const fn address(&self) -> (Domain, u16) {
+        match self {
+            Self::EmergencyStop => (Domain::System, 0),
+            Self::Reset => (Domain::System, 1),
+            Self::Enable => (Domain::System, 2),
+            Self::End => (Domain::System, 3),
+            Self::Stand => (Domain::Walk, 0),
+            Self::Start => (Domain::Walk, 1),
+            Self::Stop => (Domain::Walk, 2),
+            Self::Step(_) => (Domain::Walk, 3),
+            Self::Velocity(_) => (Domain::Walk, 4),
+            Self::Push(_) => (Domain::Sim, 0),
+        }
+    }
+
+    /// How urgent the command is.
+    pub const fn priority(&self) -> Priority {
+        match self {
+            Self::EmergencyStop => Priority::High,
+            _ => Priority::Normal,
+        }
+    }
+
+    /// The name used in `gangwerk topic`, e.g. `walk/velocity`.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::EmergencyStop => "system/emergency_stop",
+            Self::Reset => "system/reset",
+            Self::Enable => "system/enable",
+            Self::End => "system/end",
+            Self::Stand => "walk/stand",
+            Self::Start => "walk/start",
+            Self::Stop => "walk/stop",
+            Self::Step(_) => "walk/step",
+            Self::Velocity(_) => "walk/velocity",
+            Self::Push(_) => "sim/push",
+        }
+    }
+
+    /// The first number of the command that is not finite or out of any use, by field name.
+    pub fn check(&self) -> Result<(), String> {
+        let range = |field: &str, x: f64, lo: f64, hi: f64, unit: &str| {
+            if x >= lo && x <= hi {
+                Ok(())
+            } else {
+                Err(format!("{}: {field} = {x} is outside of [{lo}, {hi}] {unit}", self.name()))
+            }
+        };
+        match *self {
+            Self::Step(s) => {
+                range("length", s.length, -1.0, 1.0, "m")?;
+                range("side", s.side, -0.5, 0.5, "m")?;
+                range("turn", s.turn, -0.7, 0.7, "rad")?;
+                range("duration", s.duration, 0.3, 5.0, "s")
+            }
+            Self::Velocity(v) => {
+                range("forward", v.forward, -2.0, 2.0, "m/s")?;
+                range("left", v.left, -1.0, 1.0, "m/s")?;
+                range("turn", v.turn, -1.0, 1.0, "rad/s")
+            }
+            Self::Push(p) => {
+                for (axis, f) in ["force.x", "force.y", "force.z"].into_iter().zip(p.force) {
+                    range(axis, f, -5000.0, 5000.0, "N")?;
+                }
+                range("duration", p.duration, 0.0, 10.0, "s")
+            }
+            _ => Ok(()),
+        }
+    }
+}

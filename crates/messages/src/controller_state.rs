@@ -1,0 +1,51 @@
+//! `controller_state`: what the stabilizer makes of plan and sensors.
+
+use crate::{Header, Joints, Wrench, record};
+
+record! {
+    /// Desired and measured task space, errors and modified forces. Written by controller.
+    ///
+    /// "Measured" task-space values are direct kinematics of the measured joint angles and the IMU, in the planning
+    /// frame of the active plan, with the more loaded foot as the anchor. Arrays of feet: right, left.
+    record ControllerState {
+        /// Tick of the sensor data used.
+        header: Header,
+        /// \[1\] Id of the plan being executed; 0 before the first one.
+        plan_id: u64,
+        /// \[s\] Time since the start of that plan.
+        plan_time: f64,
+        /// \[1\] A [`GaitState`](crate::GaitState).
+        gait: u64,
+        /// \[m, m, rad\] @I_0 Planning frame of the active plan.
+        origin: [f64; 3],
+        /// \[m\] Desired centre of gravity.
+        com_desired: [f64; 3],
+        /// \[m\] Measured centre of gravity.
+        com: [f64; 3],
+        /// \[m, rad\] Measured sole frames: x, y, z, heading.
+        feet: [[f64; 4]; 2],
+        /// \[m, rad\] Desired sole frames: x, y, z, heading.
+        feet_desired: [[f64; 4]; 2],
+        /// \[rad\] Inclination error Delta phi_x, Delta phi_y: desired minus measured (5.2), (5.3).
+        inclination_error: [f64; 2],
+        /// \[rad/s\] Its rate.
+        inclination_rate_error: [f64; 2],
+        /// \[m\] Planned zero-moment point.
+        zmp_desired: [f64; 2],
+        /// \[m\] Zero-moment point of the measured foot wrenches. @invalid NaN while no foot carries load
+        zmp: [f64; 2],
+        /// \[m\] Distance of the measured zero-moment point to the edge of the support polygon of the loaded feet;
+        /// negative outside. @invalid NaN while no foot carries load
+        zmp_margin: f64,
+        /// \[1\] Load factor of the left foot, planned.
+        load_left: f64,
+        /// \[N, N m\] @sensor frames Desired contact forces after modification lambda_d1 (5.22).
+        wrench_desired: [Wrench; 2],
+        /// \[m, rad, rad\] Trajectory modification Delta x_lambda of each foot: z, s1, s0 (5.33).
+        modification: [[f64; 3]; 2],
+        /// \[rad\] Joint targets of the last cycle minus measured joint angles.
+        tracking_error: Joints,
+        /// \[1\] Times a limit held back the inverse kinematics or a modification.
+        limited: u64,
+    }
+}

@@ -1,0 +1,29 @@
+//! `cycle_stats/PROCESS`: how well a process keeps its cycle.
+
+use crate::{Header, record};
+
+record! {
+    /// Cycle statistics since start. Written by every cyclic process, a few times per second.
+    record CycleStats {
+        /// Tick of the last cycle counted.
+        header: Header,
+        /// \[1\] Cycles since arming.
+        cycles: u64,
+        /// \[1\] Cycles that ended after their deadline.
+        overruns: u64,
+        /// \[1\] Whole periods skipped because of overruns.
+        skipped: u64,
+        /// \[ns\] Wake-up after the planned time: p50, p99, p99.9, max.
+        lateness_ns: [u64; 4],
+        /// \[ns\] Execution time: p50, p99, p99.9, max.
+        execution_ns: [u64; 4],
+        /// \[1\] Minor and major page faults since arming.
+        page_faults: [u64; 2],
+        /// \[1\] Heap allocations and frees on the cycle's thread since arming.
+        allocations: [u64; 2],
+        /// \[1\] Hash of the configuration the process runs with.
+        config_hash: u64,
+        /// \[1\] 1 if real-time scheduling was asked for and not granted.
+        degraded: u64,
+    }
+}

@@ -1,0 +1,104 @@
+//! `events/PROCESS`: what happened, for the log.
+
+use crate::{Header, record};
+
+/// What happened. Numbers are part of the log format: append only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u64)]
+pub enum EventCode {
+    /// Nothing.
+    None = 0,
+    /// A process armed and began its cycles; detail: 0.
+    Started = 1,
+    /// A process ended as asked.
+    Ended = 2,
+    /// Motor supply switched on.
+    PowerOn = 3,
+    /// Motor supply switched off; detail: the code of the reason.
+    PowerOff = 4,
+    /// The joint loop did not reset the watchdog in time; detail: cycles missed.
+    ResetMissed = 5,
+    /// Joint targets are too old; detail: age in cycles.
+    TargetsStale = 6,
+    /// A target was not finite; detail: joint index.
+    TargetNotFinite = 7,
+    /// A target left its range or rate and was held back; detail: joint index.
+    TargetLimited = 8,
+    /// A joint did not follow its target; detail: joint index.
+    FollowingError = 9,
+    /// Bus frames are missing; detail: age in cycles.
+    BusSilent = 10,
+    /// A cycle overran; detail: periods skipped.
+    Overrun = 11,
+    /// Too many overruns: controlled stop.
+    TooManyOverruns = 12,
+    /// The planner fell silent: the running plan is walked to its end.
+    PlannerSilent = 13,
+    /// A plan was refused; detail: the plan's id.
+    PlanRefused = 14,
+    /// A command was refused; detail: its message id.
+    CommandRefused = 15,
+    /// The robot has fallen.
+    Fallen = 16,
+    /// Both feet are off the ground while they should carry.
+    Lifted = 17,
+    /// The operator asked for a stop of the motor supply.
+    EmergencyStop = 18,
+    /// The watchdog's toggle stopped: the supply is off.
+    WatchdogSilent = 19,
+    /// Inverse kinematics or force control met a singularity or limit; detail: which.
+    ControlLimited = 20,
+    /// A controlled stop began; detail: the code of the reason.
+    SafeStop = 21,
+    /// The controller switched to a plan; detail: its id.
+    PlanActive = 22,
+    /// Records were overwritten before the logger read them; detail: how many.
+    LogDropped = 23,
+}
+
+impl EventCode {
+    /// All codes, in order of their numbers.
+    pub const ALL: [Self; 24] = [
+        Self::None,
+        Self::Started,
+        Self::Ended,
+        Self::PowerOn,
+        Self::PowerOff,
+        Self::ResetMissed,
+        Self::TargetsStale,
+        Self::TargetNotFinite,
+        Self::TargetLimited,
+        Self::FollowingError,
+        Self::BusSilent,
+        Self::Overrun,
+        Self::TooManyOverruns,
+        Self::PlannerSilent,
+        Self::PlanRefused,
+        Self::CommandRefused,
+        Self::Fallen,
+        Self::Lifted,
+        Self::EmergencyStop,
+        Self::WatchdogSilent,
+        Self::ControlLimited,
+        Self::SafeStop,
+        Self::PlanActive,
+        Self::LogDropped,
+    ];
+
+    /// The code of a number from a record.
+    pub fn from_number(n: u64) -> Option<Self> {
+        Self::ALL.get(n as usize).copied()
+    }
+}
+
+record! {
+    /// One thing that happened. Written by the process that saw it.
+    record Event {
+        /// When.
+        header: Header,
+        /// \[1\] An [`EventCode`].
+        code: u64,
+        /// \[1\] See the code.
+        detail: u64,
+    }
+}

@@ -1,0 +1,46 @@
+//! What the processes say to each other.
+//!
+//! - [`topics`]: the table of topics: name, type, writer, readers, rate, stale-after, logged.
+//! - One file per record: fixed-size, `#[repr(C)]`, one writer each; they travel through shared memory.
+//! - [`command`]: what an operator may ask for; these travel through the broker, encoded by [`wire`].
+//!
+//! Units are SI. Angles in rad. Arrays of joints follow the order of the robot's joint table and are padded with
+//! zeros up to [`MAX_JOINTS`].
+
+pub mod bus;
+pub mod command;
+pub mod controller_state;
+pub mod cycle_stats;
+pub mod event;
+pub mod joint_targets;
+pub mod plan;
+pub mod power;
+pub mod record;
+pub mod sensors;
+pub mod sim_state;
+pub mod topics;
+pub mod wire;
+
+pub use bus::{BusFrames, Frame};
+pub use command::Command;
+pub use controller_state::ControllerState;
+pub use cycle_stats::CycleStats;
+pub use event::{Event, EventCode};
+pub use joint_targets::{JointMode, JointTargets};
+pub use plan::{GaitState, Plan, Step};
+pub use power::{Power, WatchdogReset};
+pub use record::{Field, Header, Record, Visit, Wrench};
+pub use sensors::{Imu, Sensors};
+pub use sim_state::SimState;
+pub use topics::{Process, TOPICS, Topic};
+
+/// Room for joints in every record.
+pub const MAX_JOINTS: usize = 32;
+
+/// One value per joint, in the order of the robot's joint table.
+pub type Joints = [f64; MAX_JOINTS];
+
+/// Index of the right foot in every `[_; 2]` of feet (thesis table 4.1: i_s = 0, nu_s = +1).
+pub const RIGHT: usize = 0;
+/// Index of the left foot (i_s = 1, nu_s = -1).
+pub const LEFT: usize = 1;

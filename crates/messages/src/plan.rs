@@ -1,0 +1,95 @@
+//! `plan`: where every task-space coordinate goes, from now until the robot stands again.
+//!
+//! A plan, not a sample: the controller samples it each cycle. If the planner falls silent, the controller goes on
+//! with the plan it has, and every plan ends in a state that can be held.
+
+use crate::{Header, record};
+use curves::{Path, Polyline};
+
+/// Where in a walk the robot is (the outer states of thesis figure 4.5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u64)]
+pub enum GaitState {
+    /// No plan yet: joints hold.
+    Idle = 0,
+    /// Both feet on the ground, at rest or coming to rest.
+    Standing = 1,
+    /// First step out of standing.
+    Starting = 2,
+    /// Periodic walking.
+    Walking = 3,
+    /// Last steps before standing.
+    Stopping = 4,
+}
+
+impl From<u64> for GaitState {
+    fn from(n: u64) -> Self {
+        match n {
+            1 => Self::Standing,
+            2 => Self::Starting,
+            3 => Self::Walking,
+            4 => Self::Stopping,
+            _ => Self::Idle,
+        }
+    }
+}
+
+record! {
+    /// One step: a double support from the former to the new stance foot, then a single support (thesis 4.3).
+    part Step {
+        /// \[1\] Foot that carries the single support: 0 right, 1 left (i_s).
+        stance: u64,
+        /// \[s\] Start of the double support, from the start of the plan.
+        begin: f64,
+        /// \[s\] End of the double support, start of the swing.
+        lift: f64,
+        /// \[s\] End of the swing, start of the next step.
+        end: f64,
+        /// \[m, m, rad\] @planning frame Pose (x, y, heading) of the stance sole.
+        foothold: [f64; 3],
+        /// \[m, m, rad\] @planning frame Where the swing foot lands.
+        landing: [f64; 3],
+    }
+}
+
+record! {
+    /// Trajectories of the whole task space (thesis table 4.2) in the planning frame of the plan. Written by planner.
+    ///
+    /// Times count from the start of cycle `start_tick`. All curves are C2 and end at rest. Arrays of feet: right, left.
+    record Plan {
+        /// Tick in which the plan was made; it is made ahead of `start_tick`.
+        header: Header,
+        /// \[1\] Number of this plan, ascending; 0 is no plan.
+        id: u64,
+        /// \[1\] The cycle in which the controller switches to this plan.
+        start_tick: u64,
+        /// \[1\] A [`GaitState`]: what the first step of the plan does.
+        state: u64,
+        /// \[m, m, rad\] @I_0 Planning frame I of this plan in the frame of the first one (odometry).
+        origin: [f64; 3],
+        /// \[1\] Number of entries of `steps` in use; 0 while standing.
+        step_count: u64,
+        /// The steps of the plan, the running one first.
+        steps: [Step; 8],
+        /// \[m\] Centre of gravity of the robot (x, y, z).
+        com: Path<3, 96>,
+        /// \[rad\] Upper body: inclinations phi_x, phi_y (pi/2 is upright) and heading alpha (4.11)-(4.13).
+        torso: Path<3, 16>,
+        /// \[m, rad\] Sole frame of each foot: x, y, z and heading.
+        feet: [Path<4, 32>; 2],
+        /// \[rad\] Toe joints.
+        toes: [Path<1, 16>; 2],
+        /// \[m\] Zero-moment point (x, y) after modification (4.49).
+        zmp: Polyline<2, 64>,
+        /// \[1\] Load factor rho of the left foot (4.62); the right one carries the rest.
+        load_left: Path<1, 16>,
+    }
+}
+
+impl Plan {
+    /// Length of the plan \[s\]: from here on the robot rests.
+    pub fn end(&self) -> f64 {
+        let steps = self.steps[..self.step_count as usize].last().map_or(0.0, |s| s.end);
+        self.com.end().max(self.torso.end()).max(steps)
+    }
+}

@@ -1,0 +1,31 @@
+//! `power` and `watchdog_reset`: the motor supply and what keeps it on.
+
+use crate::{Header, record};
+
+record! {
+    /// State of the motor supply. Written by watchdog.
+    ///
+    /// The supply is on only while `toggle` moves: a dead watchdog is a switched-off robot.
+    record Power {
+        /// Tick of the last reset the watchdog has seen.
+        header: Header,
+        /// \[1\] Counts up once per cycle while the supply shall be on.
+        toggle: u64,
+        /// \[1\] 1: supply on. Latched: once 0 it stays 0 until a reset edge and then an enable edge.
+        on: u64,
+        /// \[1\] Why it went off: an [`EventCode`](crate::EventCode), 0 while on.
+        reason: u64,
+        /// \[1\] Watchdog cycles since the last reset was seen.
+        missed: u64,
+    }
+}
+
+record! {
+    /// The sign of life of the joint loop. Written by lowlevel once per cycle.
+    record WatchdogReset {
+        /// Tick of the bus cycle.
+        header: Header,
+        /// \[1\] 0: all is well; otherwise the [`EventCode`](crate::EventCode) for which power shall go off.
+        trip: u64,
+    }
+}

@@ -1,0 +1,35 @@
+//! `sim_state`: the truth about the simulated robot, which no controller reads.
+
+use crate::{Header, Joints, Wrench, record};
+
+record! {
+    /// Pose, motion and contact of the simulated robot. Written by sim-backend, read by logger and figures only.
+    record SimState {
+        /// Tick of the bus cycle.
+        header: Header,
+        /// \[s\] Simulated time.
+        time: f64,
+        /// \[m\] @world Origin of the torso frame.
+        position: [f64; 3],
+        /// \[1\] Unit quaternion (x, y, z, w), world_from_torso.
+        orientation: [f64; 4],
+        /// \[m/s\] @torso Velocity of the torso frame's origin.
+        velocity: [f64; 3],
+        /// \[rad/s\] @torso
+        angular_velocity: [f64; 3],
+        /// \[rad\] Joint angles.
+        joint_angle: Joints,
+        /// \[m\] @world Centre of gravity.
+        com: [f64; 3],
+        /// \[N, N m\] @world Ground on each foot: force, and moment about the foot's sole frame; right, left.
+        foot_wrench: [Wrench; 2],
+        /// \[m, rad\] @world Sole frame of each foot: x, y, z, heading.
+        feet: [[f64; 4]; 2],
+        /// \[N\] @world External push on the torso.
+        push: [f64; 3],
+        /// \[1\] 1 while the motor supply is on.
+        power: u64,
+        /// \[1\] 1 once the robot has fallen: torso tilted by more than 45 degrees or below half its height.
+        fallen: u64,
+    }
+}

@@ -1,0 +1,199 @@
+//! The table of topics: the whole data plane on one page.
+
+use crate::record::Record;
+use crate::{
+    BusFrames, ControllerState, CycleStats, Event, JointTargets, Plan, Power, Sensors, SimState, WatchdogReset,
+};
+
+/// The processes of a running robot, in the order they are started.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Process {
+    /// Forwards commands between processes and over TCP.
+    Broker,
+    /// Cuts motor power.
+    Watchdog,
+    /// The simulated robot at the far end of the bus.
+    SimBackend,
+    /// Joint targets to the field bus, sensor data from it; the clock.
+    Lowlevel,
+    /// Commands to plans.
+    Planner,
+    /// Plan and sensors to joint targets.
+    Controller,
+    /// Topics to log files.
+    Logger,
+    /// Command line, dashboards, tests: readers that come and go.
+    Observer,
+}
+
+impl Process {
+    /// All processes that `gangwerk run` starts, in order.
+    pub const ALL: [Self; 7] = [
+        Self::Broker,
+        Self::Watchdog,
+        Self::SimBackend,
+        Self::Logger,
+        Self::Lowlevel,
+        Self::Planner,
+        Self::Controller,
+    ];
+
+    /// The name of the process's folder, command and topics.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Broker => "broker",
+            Self::Watchdog => "watchdog",
+            Self::SimBackend => "sim-backend",
+            Self::Lowlevel => "lowlevel",
+            Self::Planner => "planner",
+            Self::Controller => "controller",
+            Self::Logger => "logger",
+            Self::Observer => "observer",
+        }
+    }
+
+    /// The process of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|p| p.name() == name)
+    }
+}
+
+/// One row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Topic {
+    /// Name of the topic.
+    pub name: &'static str,
+    /// Name of the record type.
+    pub type_name: &'static str,
+    /// The only process that writes it.
+    pub writer: Process,
+    /// Processes in the chain that read it, besides logger and observers, which may read everything.
+    pub readers: &'static [Process],
+    /// Processes that sleep until the topic is written.
+    pub wakes: &'static [Process],
+    /// Records per second in normal operation; 0: when there is something to say.
+    pub rate_hz: u32,
+    /// Age in bus cycles from which a reader treats the newest record as missing; 0: never.
+    pub stale_after: u32,
+    /// Records kept in shared memory: how far a slow logger may fall behind without losing any.
+    pub depth: usize,
+    /// Whether it goes into the log.
+    pub logged: bool,
+}
+
+use Process::{Broker, Controller, Logger, Lowlevel, Planner, SimBackend, Watchdog};
+
+macro_rules! topics {
+    ($($(#[$doc:meta])* $name:ident: $type:ident = $topic:literal, $writer:ident -> [$($reader:ident),*],
+        wakes [$($wake:ident),*], $rate:literal Hz, stale $stale:literal, depth $depth:literal, logged $logged:literal;)*) => {
+        $($(#[$doc])* pub const $name: Topic = Topic {
+            name: $topic, type_name: stringify!($type), writer: $writer, readers: &[$($reader),*],
+            wakes: &[$($wake),*], rate_hz: $rate, stale_after: $stale, depth: $depth, logged: $logged,
+        };)*
+
+        /// Every topic.
+        pub const TOPICS: &[Topic] = &[$($name),*];
+
+        /// Calls `f` with the type of the topic: how code that is generic over records gets from a row of the table
+        /// to a Rust type. `None` if no such topic.
+        pub fn with_type<R>(topic: &str, f: impl ForType<R>) -> Option<R> {
+            $(if topic == $topic { return Some(f.call::<$type>(&$name)); })*
+            let _ = f;
+            None
+        }
+    };
+}
+
+/// A computation that needs a topic's record type. See [`with_type`].
+pub trait ForType<R> {
+    /// Called with the record type of `topic`.
+    fn call<T: Record>(self, topic: &'static Topic) -> R;
+}
+
+topics! {
+    /// Measured state of the robot.
+    SENSORS: Sensors = "sensors", Lowlevel -> [Controller, Planner], wakes [Planner, Controller],
+        1000 Hz, stale 5, depth 256, logged true;
+    /// Trajectories to the end of the horizon.
+    PLAN: Plan = "plan", Planner -> [Controller], wakes [],
+        0 Hz, stale 0, depth 8, logged true;
+    /// Sign of life of the planner; in lockstep the controller waits for it.
+    PLANNER_TICK: Event = "planner_tick", Planner -> [Controller], wakes [Controller],
+        1000 Hz, stale 100, depth 4, logged false;
+    /// Targets of the joints.
+    JOINT_TARGETS: JointTargets = "joint_targets", Controller -> [Lowlevel], wakes [Lowlevel],
+        1000 Hz, stale 5, depth 256, logged true;
+    /// What the stabilizer sees and does.
+    CONTROLLER_STATE: ControllerState = "controller_state", Controller -> [Planner], wakes [],
+        1000 Hz, stale 100, depth 256, logged true;
+    /// Sign of life of the joint loop.
+    WATCHDOG_RESET: WatchdogReset = "watchdog_reset", Lowlevel -> [Watchdog], wakes [Watchdog],
+        1000 Hz, stale 3, depth 4, logged false;
+    /// State of the motor supply.
+    POWER: Power = "power", Watchdog -> [SimBackend, Lowlevel], wakes [Lowlevel],
+        1000 Hz, stale 3, depth 256, logged true;
+    /// Frames to the drives.
+    BUS_TX: BusFrames = "bus_tx", Lowlevel -> [SimBackend], wakes [SimBackend],
+        1000 Hz, stale 5, depth 4, logged false;
+    /// Frames from the drives.
+    BUS_RX: BusFrames = "bus_rx", SimBackend -> [Lowlevel], wakes [Lowlevel],
+        1000 Hz, stale 5, depth 4, logged false;
+    /// Truth about the simulated robot.
+    SIM_STATE: SimState = "sim_state", SimBackend -> [], wakes [],
+        1000 Hz, stale 0, depth 256, logged true;
+    /// How far the log has come; in lockstep the joint loop does not run ahead of it.
+    LOG_TICK: Event = "log_tick", Logger -> [Lowlevel], wakes [Lowlevel],
+        0 Hz, stale 0, depth 4, logged false;
+    /// Cycle statistics of the watchdog.
+    STATS_WATCHDOG: CycleStats = "cycle_stats/watchdog", Watchdog -> [], wakes [],
+        10 Hz, stale 0, depth 16, logged true;
+    /// Cycle statistics of the simulated robot.
+    STATS_SIM_BACKEND: CycleStats = "cycle_stats/sim-backend", SimBackend -> [], wakes [],
+        10 Hz, stale 0, depth 16, logged true;
+    /// Cycle statistics of the joint loop.
+    STATS_LOWLEVEL: CycleStats = "cycle_stats/lowlevel", Lowlevel -> [], wakes [],
+        10 Hz, stale 0, depth 16, logged true;
+    /// Cycle statistics of the planner.
+    STATS_PLANNER: CycleStats = "cycle_stats/planner", Planner -> [], wakes [],
+        10 Hz, stale 0, depth 16, logged true;
+    /// Cycle statistics of the stabilizer.
+    STATS_CONTROLLER: CycleStats = "cycle_stats/controller", Controller -> [], wakes [],
+        10 Hz, stale 0, depth 16, logged true;
+    /// What the broker saw.
+    EVENTS_BROKER: Event = "events/broker", Broker -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
+    /// What the watchdog saw.
+    EVENTS_WATCHDOG: Event = "events/watchdog", Watchdog -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
+    /// What happened to the simulated robot.
+    EVENTS_SIM_BACKEND: Event = "events/sim-backend", SimBackend -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
+    /// What the joint loop saw.
+    EVENTS_LOWLEVEL: Event = "events/lowlevel", Lowlevel -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
+    /// What the planner saw.
+    EVENTS_PLANNER: Event = "events/planner", Planner -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
+    /// What the stabilizer saw.
+    EVENTS_CONTROLLER: Event = "events/controller", Controller -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
+}
+
+impl Topic {
+    /// The topic of that name.
+    pub fn find(name: &str) -> Option<&'static Topic> {
+        TOPICS.iter().find(|t| t.name == name)
+    }
+}
+
+/// Hash (FNV-1a) of the layout of a record type: two programs may share a topic only if it is equal.
+pub fn schema_hash<T: Record>() -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325u64;
+    let mut eat = |s: &str| {
+        for b in s.bytes().chain([0]) {
+            hash = (hash ^ u64::from(b)).wrapping_mul(0x100_0000_01b3);
+        }
+    };
+    T::describe(&mut |name, fields| {
+        eat(name);
+        for (type_name, field) in fields {
+            eat(&type_name);
+            eat(field);
+        }
+    });
+    hash
+}
