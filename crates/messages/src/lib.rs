@@ -12,6 +12,7 @@ pub mod command;
 pub mod controller_state;
 pub mod cycle_stats;
 pub mod event;
+pub mod frames;
 pub mod joint_targets;
 pub mod plan;
 pub mod power;
