@@ -1,1 +1,18 @@
-//! (being written)
+//! The joint loop: joint targets to the field bus, sensor data from it, and the last word on every command.
+//!
+//! | stage | where |
+//! |---|---|
+//! | frames of the bus → sensor data, time stamp | [`JointLoop::receive`] |
+//! | finite? fresh? in range? slow enough? following? | [`JointLoop::send`], [`limits`] |
+//! | controlled stop when targets stay away | [`braking`] |
+//! | targets → frames of the bus; watchdog reset | [`JointLoop::send`] |
+//!
+//! What is at the far end of the bus is behind the trait [`Fieldbus`]: a simulated robot, later CAN and Sercos III.
+
+pub mod braking;
+pub mod fieldbus;
+pub mod joint_loop;
+pub mod limits;
+
+pub use fieldbus::Fieldbus;
+pub use joint_loop::JointLoop;

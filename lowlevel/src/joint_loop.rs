@@ -1,0 +1,212 @@
+//! One cycle of the joint loop. Pure: no clock, no bus, no shared memory.
+
+use config::{Robot, System};
+use messages::frames::{decode_sensors, encode_targets};
+use messages::{BusFrames, EventCode, Header, JointMode, JointTargets, Sensors, WatchdogReset};
+
+use crate::braking::brake;
+use crate::limits::{Motion, admit, following_limit};
+
+/// What the joint loop is doing with the joints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Motor supply off: targets follow the measured angles.
+    Off,
+    /// Supply on, nobody commands: joints stay.
+    Hold,
+    /// Targets are followed.
+    Track,
+    /// Controlled stop for this reason, latched until the supply was off.
+    Stop(EventCode),
+}
+
+/// The joint loop of one robot.
+pub struct JointLoop {
+    robot: Robot,
+    system: System,
+    dt: f64,
+    state: State,
+    /// What the drives were told last.
+    last: [Motion; messages::MAX_JOINTS],
+    /// Tick of the newest targets that were used.
+    used: u64,
+    /// Cycles since targets were new.
+    stale: u32,
+    /// Cycles since the bus answered.
+    silent: u32,
+    sensors: Sensors,
+    targets: JointTargets,
+    frames: BusFrames,
+    reset: WatchdogReset,
+    event: Option<(EventCode, u64)>,
+}
+
+impl JointLoop {
+    /// The joint loop of `robot` with a bus cycle of `dt` \[s\].
+    pub fn new(robot: &Robot, system: &System, dt: f64) -> Self {
+        Self {
+            robot: robot.clone(),
+            system: system.clone(),
+            dt,
+            state: State::Off,
+            last: [Motion { angle: 0.0, speed: 0.0 }; messages::MAX_JOINTS],
+            used: 0,
+            stale: 0,
+            silent: 0,
+            sensors: Sensors::default(),
+            targets: JointTargets::default(),
+            frames: BusFrames::default(),
+            reset: WatchdogReset::default(),
+            event: None,
+        }
+    }
+
+    /// What the loop is doing.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Something worth a line in the log, since the last call.
+    pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
+        self.event.take()
+    }
+
+    /// First half of the cycle: what the bus brought, stamped.
+    pub fn receive(&mut self, tick: u64, stamp_ns: u64, frames: Option<&BusFrames>) -> &Sensors {
+        self.sensors.header = Header { tick, stamp_ns, epoch: 0 };
+        self.silent += 1;
+        if let Some(frames) = frames {
+            let missing = decode_sensors(&self.robot.nodes, frames, &mut self.sensors);
+            self.sensors.frames_missed += missing as u64;
+            if missing == 0 {
+                self.silent = 0;
+            }
+        }
+        &self.sensors
+    }
+
+    /// Second half of the cycle: the newest targets, checked, as frames for the drives; and the watchdog's reset.
+    ///
+    /// `cause` is a reason of the run-time system's own for a controlled stop (too many overruns).
+    pub fn send(
+        &mut self,
+        targets: Option<&JointTargets>,
+        cause: Option<EventCode>,
+    ) -> (&BusFrames, &WatchdogReset) {
+        self.reset.trip = 0;
+        self.choose_state(targets, cause);
+        match self.state {
+            State::Off => self.follow_measured(),
+            State::Hold => self.brake_all(),
+            State::Stop(_) => self.brake_all(),
+            State::Track => self.track(targets),
+        }
+        self.check_following();
+        self.write_frames();
+        (&self.frames, &self.reset)
+    }
+
+    /// The transition table.
+    fn choose_state(&mut self, targets: Option<&JointTargets>, cause: Option<EventCode>) {
+        let powered = self.sensors.power == 1;
+        let mode = targets.map_or(JointMode::Off, |t| JointMode::from(t.mode));
+        if targets.is_some_and(|t| t.header.tick > self.used) {
+            self.used = targets.map_or(0, |t| t.header.tick);
+            self.stale = 0;
+        } else {
+            self.stale = self.stale.saturating_add(1);
+        }
+        let late = self.stale > self.system.targets_missed;
+        let mute = self.silent > self.system.targets_missed;
+        self.state = match self.state {
+            _ if !powered => State::Off,
+            State::Stop(why) => State::Stop(why),
+            State::Off | State::Hold | State::Track if mute => self.stop(EventCode::BusSilent, self.silent.into()),
+            State::Off => State::Hold,
+            State::Hold if mode == JointMode::Track && !late => State::Track,
+            State::Hold => State::Hold,
+            State::Track if cause.is_some() => self.stop(cause.unwrap_or(EventCode::SafeStop), 0),
+            State::Track if late => self.stop(EventCode::TargetsStale, self.stale.into()),
+            State::Track if mode == JointMode::Stop => self.stop(EventCode::SafeStop, 0),
+            State::Track if mode == JointMode::Track => State::Track,
+            State::Track => State::Hold,
+        };
+    }
+
+    fn stop(&mut self, why: EventCode, detail: u64) -> State {
+        self.event = Some((why, detail));
+        State::Stop(why)
+    }
+
+    fn follow_measured(&mut self) {
+        for j in 0..self.robot.joints.len() {
+            self.last[j] = Motion { angle: self.sensors.joint_angle[j], speed: 0.0 };
+        }
+    }
+
+    fn brake_all(&mut self) {
+        for (j, joint) in self.robot.joints.iter().enumerate() {
+            self.last[j] = brake(joint, self.last[j], self.dt);
+        }
+    }
+
+    /// New targets if they are new and finite, otherwise the last ones carried on at their speed.
+    fn track(&mut self, targets: Option<&JointTargets>) {
+        let fresh = targets.filter(|_| self.stale == 0);
+        if let Some(bad) = fresh.and_then(|t| self.first_not_finite(t)) {
+            self.sensors.targets_limited += 1;
+            self.state = self.stop(EventCode::TargetNotFinite, bad as u64);
+            return self.brake_all();
+        }
+        for (j, joint) in self.robot.joints.iter().enumerate() {
+            let last = self.last[j];
+            let wanted = match fresh {
+                Some(t) => Motion { angle: t.angle[j], speed: t.speed[j] },
+                None => Motion { angle: last.angle + last.speed * self.dt, speed: last.speed },
+            };
+            if let Ok((motion, held)) = admit(joint, last, wanted, self.dt) {
+                self.last[j] = motion;
+                if held {
+                    self.sensors.targets_limited += 1;
+                    self.event.get_or_insert((EventCode::TargetLimited, j as u64));
+                }
+            }
+        }
+    }
+
+    fn first_not_finite(&self, t: &JointTargets) -> Option<usize> {
+        (0..self.robot.joints.len()).find(|&j| !(t.angle[j].is_finite() && t.speed[j].is_finite()))
+    }
+
+    /// A joint that is not where it was told to be is broken, blocked or not ours: power off.
+    fn check_following(&mut self) {
+        if self.state == State::Off || self.silent > 0 {
+            return;
+        }
+        for j in 0..self.robot.joints.len() {
+            let error = (self.last[j].angle - self.sensors.joint_angle[j]).abs();
+            let limit =
+                following_limit(self.system.following_error, self.system.following_time, self.last[j].speed);
+            if error > limit {
+                self.reset.trip = EventCode::FollowingError as u64;
+                self.event = Some((EventCode::FollowingError, j as u64));
+            }
+        }
+    }
+
+    fn write_frames(&mut self) {
+        let header = Header { epoch: 0, ..self.sensors.header };
+        self.reset.header = header;
+        self.targets.header = header;
+        self.targets.mode = match self.state {
+            State::Off => JointMode::Off,
+            State::Hold | State::Stop(_) => JointMode::Hold,
+            State::Track => JointMode::Track,
+        } as u64;
+        for j in 0..self.robot.joints.len() {
+            self.targets.angle[j] = self.last[j].angle;
+            self.targets.speed[j] = self.last[j].speed;
+        }
+        encode_targets(&self.robot.nodes, &self.targets, &mut self.frames);
+    }
+}
