@@ -1,7 +1,8 @@
 //! What an operator may ask for: messages of the command plane (design: thesis 7.4).
 //!
 //! A message is (domain, id, priority, payload). Local brokers deliver by (domain, id); the global broker forwards
-//! whole domains to the processes that subscribed to them.
+//! whole domains to the processes that subscribed to them. [`COMMANDS`](crate::command_text::COMMANDS) lists all
+//! commands with their fields and ranges; [`Command::check`] holds a command against it.
 
 use serde::{Deserialize, Serialize};
 
@@ -55,6 +56,14 @@ impl Domain {
     }
 }
 
+impl TryFrom<u16> for Domain {
+    type Error = u16;
+
+    fn try_from(n: u16) -> Result<Self, u16> {
+        Self::ALL.get(usize::from(n)).copied().ok_or(n)
+    }
+}
+
 /// How urgent a message is: higher ones pass lower ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[repr(u8)]
@@ -65,6 +74,19 @@ pub enum Priority {
     Normal = 1,
     /// Everything that can wait.
     Low = 2,
+}
+
+impl Priority {
+    /// All classes, the most urgent first.
+    pub const ALL: [Self; 3] = [Self::High, Self::Normal, Self::Low];
+}
+
+impl TryFrom<u8> for Priority {
+    type Error = u8;
+
+    fn try_from(n: u8) -> Result<Self, u8> {
+        Self::ALL.get(usize::from(n)).copied().ok_or(n)
+    }
 }
 
 /// Everything an operator may ask for.
@@ -172,37 +194,6 @@ impl Command {
             Self::Step(_) => "walk/step",
             Self::Velocity(_) => "walk/velocity",
             Self::Push(_) => "sim/push",
-        }
-    }
-
-    /// The first number of the command that is not finite or out of any use, by field name.
-    pub fn check(&self) -> Result<(), String> {
-        let range = |field: &str, x: f64, lo: f64, hi: f64, unit: &str| {
-            if x >= lo && x <= hi {
-                Ok(())
-            } else {
-                Err(format!("{}: {field} = {x} is outside of [{lo}, {hi}] {unit}", self.name()))
-            }
-        };
-        match *self {
-            Self::Step(s) => {
-                range("length", s.length, -1.0, 1.0, "m")?;
-                range("side", s.side, -0.5, 0.5, "m")?;
-                range("turn", s.turn, -0.7, 0.7, "rad")?;
-                range("duration", s.duration, 0.3, 5.0, "s")
-            }
-            Self::Velocity(v) => {
-                range("forward", v.forward, -2.0, 2.0, "m/s")?;
-                range("left", v.left, -1.0, 1.0, "m/s")?;
-                range("turn", v.turn, -1.0, 1.0, "rad/s")
-            }
-            Self::Push(p) => {
-                for (axis, f) in ["force.x", "force.y", "force.z"].into_iter().zip(p.force) {
-                    range(axis, f, -5000.0, 5000.0, "N")?;
-                }
-                range("duration", p.duration, 0.0, 10.0, "s")
-            }
-            _ => Ok(()),
         }
     }
 }

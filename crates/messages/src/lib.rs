@@ -9,6 +9,7 @@
 
 pub mod bus;
 pub mod command;
+pub mod command_text;
 pub mod controller_state;
 pub mod cycle_stats;
 pub mod event;
@@ -30,7 +31,7 @@ pub use event::{Event, EventCode};
 pub use joint_targets::{JointMode, JointTargets};
 pub use plan::{GaitState, Plan, Step};
 pub use power::{Power, WatchdogReset};
-pub use record::{Field, Header, Record, Visit, Wrench};
+pub use record::{Field, Header, Read, Record, Visit, Wrench};
 pub use sensors::{Imu, Sensors};
 pub use sim_state::SimState;
 pub use topics::{Process, TOPICS, Topic};

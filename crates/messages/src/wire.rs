@@ -1,6 +1,6 @@
 //! How commands become bytes: bincode 2, legacy configuration (fixed width, little endian), with a size limit.
 //!
-//! The bytes equal those of bincode 1 and of wincode; a test holds golden vectors against both.
+//! The bytes equal those of bincode 1 and of wincode; `tests/wire.rs` holds golden vectors against both.
 
 use crate::command::Command;
 
@@ -30,7 +30,8 @@ impl std::error::Error for WireError {}
 
 /// Encodes into `buffer` without an allocation; returns the bytes used.
 pub fn encode<'a>(command: &Command, buffer: &'a mut [u8]) -> Result<&'a [u8], WireError> {
-    let n = bincode::serde::encode_into_slice(command, buffer, config()).map_err(|e| WireError(e.to_string()))?;
+    let n =
+        bincode::serde::encode_into_slice(command, buffer, config()).map_err(|e| WireError(e.to_string()))?;
     Ok(&buffer[..n])
 }
 

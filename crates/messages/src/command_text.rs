@@ -1,0 +1,236 @@
+//! The table of commands, and their text form for people: `walk/velocity forward=0.5 turn=-0.1`.
+//!
+//! One table serves `gangwerk topic list`, the parser and the check of ranges, so that what is listed is what is
+//! accepted. Text is `field=number`, separated by blanks or commas, in any order; fields with a default may be left
+//! out. Nothing here runs in a control cycle: errors are text and allocate.
+
+use crate::command::{Command, PushCommand, StepCommand, VelocityCommand};
+
+/// One number of a command.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldInfo {
+    /// Name in the text form.
+    pub name: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Least and greatest value accepted.
+    pub range: [f64; 2],
+    /// Value when it is left out; none: it must be given.
+    pub default: Option<f64>,
+    /// What it means.
+    pub about: &'static str,
+}
+
+/// One command.
+#[derive(Clone, Copy, Debug)]
+pub struct CommandInfo {
+    /// Name of the topic.
+    pub name: &'static str,
+    /// What it does.
+    pub about: &'static str,
+    /// Its numbers.
+    pub fields: &'static [FieldInfo],
+    build: fn(&[f64]) -> Command,
+}
+
+/// Most numbers in one command.
+const MAX_FIELDS: usize = 4;
+
+const fn field(
+    name: &'static str,
+    unit: &'static str,
+    range: [f64; 2],
+    default: Option<f64>,
+    about: &'static str,
+) -> FieldInfo {
+    FieldInfo { name, unit, range, default, about }
+}
+
+const fn plain(name: &'static str, build: fn(&[f64]) -> Command, about: &'static str) -> CommandInfo {
+    CommandInfo { name, about, fields: &[], build }
+}
+
+/// Every command. The ranges are those of any use on any robot; a gait narrows them.
+pub const COMMANDS: &[CommandInfo] = &[
+    plain("system/emergency_stop", |_| Command::EmergencyStop, "motor supply off, latched"),
+    plain("system/reset", |_| Command::Reset, "first edge after a power-off: forget the reason"),
+    plain("system/enable", |_| Command::Enable, "second edge: motor supply on"),
+    plain("system/end", |_| Command::End, "stop walking, stand, end all processes"),
+    plain("walk/stand", |_| Command::Stand, "go from any standing pose to the walking pose"),
+    plain("walk/start", |_| Command::Start, "walk with the present step parameters"),
+    plain("walk/stop", |_| Command::Stop, "stop walking and stand"),
+    CommandInfo {
+        name: "walk/step",
+        about: "step parameters from the next step on",
+        fields: &[
+            field("length", "m", [-1.0, 1.0], None, "step length forward"),
+            field("side", "m", [-0.5, 0.5], Some(0.0), "step length to the left"),
+            field("turn", "rad", [-0.7, 0.7], Some(0.0), "turn to the left per step"),
+            field("duration", "s", [0.3, 5.0], None, "duration of a step"),
+        ],
+        build: |v| Command::Step(StepCommand { length: v[0], side: v[1], turn: v[2], duration: v[3] }),
+    },
+    CommandInfo {
+        name: "walk/velocity",
+        about: "walk with this velocity; zero is a stop",
+        fields: &[
+            field("forward", "m/s", [-2.0, 2.0], Some(0.0), "forward"),
+            field("left", "m/s", [-1.0, 1.0], Some(0.0), "to the left"),
+            field("turn", "rad/s", [-1.0, 1.0], Some(0.0), "to the left"),
+        ],
+        build: |v| Command::Velocity(VelocityCommand { forward: v[0], left: v[1], turn: v[2] }),
+    },
+    CommandInfo {
+        name: "sim/push",
+        about: "push the simulated robot at its torso's centre of gravity",
+        fields: &[
+            field("force.x", "N", [-5000.0, 5000.0], Some(0.0), "force in the world frame"),
+            field("force.y", "N", [-5000.0, 5000.0], Some(0.0), "force in the world frame"),
+            field("force.z", "N", [-5000.0, 5000.0], Some(0.0), "force in the world frame"),
+            field("duration", "s", [0.0, 10.0], None, "how long"),
+        ],
+        build: |v| Command::Push(PushCommand { force: [v[0], v[1], v[2]], duration: v[3] }),
+    },
+];
+
+impl CommandInfo {
+    /// The command of that name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        COMMANDS.iter().find(|c| c.name == name)
+    }
+
+    /// The command with all fields at zero, for its address and priority.
+    pub fn example(&self) -> Command {
+        (self.build)(&[0.0; MAX_FIELDS])
+    }
+
+    /// Names of all fields, for messages.
+    fn field_names(&self) -> Vec<&'static str> {
+        self.fields.iter().map(|f| f.name).collect()
+    }
+}
+
+impl FieldInfo {
+    /// Refuses what is not a number or out of range. NaN lies in no range.
+    fn check(&self, command: &str, x: f64) -> Result<(), String> {
+        let Self { name, unit, range: [lo, hi], .. } = *self;
+        if x >= lo && x <= hi {
+            return Ok(());
+        }
+        let why = if x.is_finite() { "is outside of" } else { "is not a finite number; it must lie in" };
+        Err(format!("{command}: {name} = {x} {why} [{lo}, {hi}] {unit}"))
+    }
+}
+
+impl Command {
+    /// The numbers of the command, in the order of its [`CommandInfo::fields`]; the rest are zero.
+    fn values(&self) -> [f64; MAX_FIELDS] {
+        match *self {
+            Self::Step(s) => [s.length, s.side, s.turn, s.duration],
+            Self::Velocity(v) => [v.forward, v.left, v.turn, 0.0],
+            Self::Push(p) => [p.force[0], p.force[1], p.force[2], p.duration],
+            _ => [0.0; MAX_FIELDS],
+        }
+    }
+
+    /// The row of [`COMMANDS`] for this command.
+    pub fn info(&self) -> &'static CommandInfo {
+        CommandInfo::find(self.name()).expect("every command is in the table")
+    }
+
+    /// The first number of the command that is not finite or out of any use, by field name.
+    pub fn check(&self) -> Result<(), String> {
+        self.info().fields.iter().zip(self.values()).try_for_each(|(f, x)| f.check(self.name(), x))
+    }
+
+    /// The command that `name` and `text` describe, e.g. `walk/step` and `length=0.3 duration=0.8`, in its ranges.
+    ///
+    /// # Errors
+    /// An unknown topic or field (with the nearest names), a missing or repeated field, text that is no number, a
+    /// number that is not finite or out of range.
+    pub fn parse(name: &str, text: &str) -> Result<Self, String> {
+        let info = CommandInfo::find(name).ok_or_else(|| {
+            let names: Vec<_> = COMMANDS.iter().map(|c| c.name).collect();
+            format!("{}; `gangwerk topic list` shows them all", unknown("topic", name, &names))
+        })?;
+        let mut given = [None; MAX_FIELDS];
+        for part in text.split([' ', ',', '\t', '\n']).filter(|p| !p.is_empty()) {
+            let (index, value) = info.parse_field(part)?;
+            if given[index].replace(value).is_some() {
+                return Err(format!("{name}: {} is given twice", info.fields[index].name));
+            }
+        }
+        if !info.fields.is_empty() && given.iter().all(Option::is_none) {
+            return Err(format!("{name}: give it numbers, for example {}", info.usage()));
+        }
+        let mut values = [0.0; MAX_FIELDS];
+        for (i, f) in info.fields.iter().enumerate() {
+            values[i] = given[i].or(f.default).ok_or_else(|| {
+                format!(
+                    "{name}: {} is missing: a number in [{}, {}] {}",
+                    f.name, f.range[0], f.range[1], f.unit
+                )
+            })?;
+        }
+        let command = (info.build)(&values);
+        command.check()?;
+        Ok(command)
+    }
+}
+
+impl CommandInfo {
+    /// Index and value of one `field=number`.
+    fn parse_field(&self, part: &str) -> Result<(usize, f64), String> {
+        let name = self.name;
+        if self.fields.is_empty() {
+            return Err(format!("{name}: takes no numbers, but got `{part}`"));
+        }
+        let (field, number) = part.split_once('=').ok_or_else(|| {
+            format!("{name}: `{part}` is not of the form field=number, for example {}", self.usage())
+        })?;
+        let index = (self.fields.iter().position(|f| f.name == field))
+            .ok_or_else(|| format!("{name}: {}", unknown("field", field, &self.field_names())))?;
+        let value = number.parse().map_err(|_| {
+            let [lo, hi] = self.fields[index].range;
+            format!(
+                "{name}: {field} = `{number}` is not a number in [{lo}, {hi}] {}",
+                self.fields[index].unit
+            )
+        })?;
+        Ok((index, value))
+    }
+
+    /// The text form with every field, for help: `length=<m> side=<m>`.
+    pub fn usage(&self) -> String {
+        let fields: Vec<_> = self.fields.iter().map(|f| format!("{}=<{}>", f.name, f.unit)).collect();
+        fields.join(" ")
+    }
+}
+
+/// "there is no KIND `name`; did you mean ...?" with the nearest names, or all of them if none is near.
+fn unknown(kind: &str, name: &str, known: &[&str]) -> String {
+    let tail = |s: &str| s.rsplit('/').next().unwrap_or(s).to_owned();
+    let distance = |k: &&str| edits(name, k).min(edits(&tail(name), &tail(k)));
+    let best = known.iter().map(distance).min().unwrap_or(usize::MAX);
+    if best > 1 + name.len() / 3 {
+        return format!("there is no {kind} `{name}`; there are {}", known.join(", "));
+    }
+    let near: Vec<_> = known.iter().filter(|k| distance(k) == best).copied().collect();
+    format!("there is no {kind} `{name}`; did you mean {}?", near.join(" or "))
+}
+
+/// Edits (insert, delete, replace a letter) that turn `a` into `b`.
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = i;
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let replace = diagonal + usize::from(x != *y);
+            diagonal = row[j + 1];
+            row[j + 1] = replace.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
