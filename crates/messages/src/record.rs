@@ -30,6 +30,22 @@ pub trait Field: Copy {
 
     /// Shows every part of the value, in the order of declaration.
     fn visit(&self, visit: &mut dyn Visit);
+
+    /// Puts the value together again from its parts, in the order of declaration: the inverse of [`Field::visit`].
+    fn read(read: &mut dyn Read) -> Self;
+}
+
+/// Hands out the parts of a record in the order of declaration. It never fails: what has run dry hands out zeros and
+/// remembers it.
+pub trait Read {
+    /// A scalar `float64`.
+    fn f64(&mut self) -> f64;
+    /// A scalar `uint64`.
+    fn u64(&mut self) -> u64;
+    /// A scalar `uint32`.
+    fn u32(&mut self) -> u32;
+    /// A scalar `uint8`.
+    fn u8(&mut self) -> u8;
 }
 
 /// Receives the parts of a record in the order of declaration.
@@ -56,6 +72,7 @@ macro_rules! scalar {
             fn type_name() -> String { $ros.into() }
             fn describe(_: &mut dyn FnMut(&'static str, Vec<(String, &'static str)>)) {}
             fn visit(&self, visit: &mut dyn Visit) { visit.$t(*self); }
+            fn read(read: &mut dyn Read) -> Self { read.$t() }
         }
     )*};
 }
@@ -83,6 +100,9 @@ impl<T: Field, const N: usize> Field for [T; N] {
         }
         visit.end();
     }
+    fn read(read: &mut dyn Read) -> Self {
+        std::array::from_fn(|_| T::read(read))
+    }
 }
 
 /// Declares a `#[repr(C)]` record or a part of one, and its [`Field`](crate::Field) description.
@@ -106,6 +126,9 @@ macro_rules! record {
             }
             fn visit(&self, visit: &mut dyn $crate::record::Visit) {
                 $(visit.field(stringify!($field)); self.$field.visit(visit); visit.end();)*
+            }
+            fn read(read: &mut dyn $crate::record::Read) -> Self {
+                Self { $($field: <$type as $crate::record::Field>::read(read),)* }
             }
         }
 
@@ -196,6 +219,15 @@ impl<const D: usize, const N: usize> Field for Path<D, N> {
         self.coefficients.visit(visit);
         visit.end();
     }
+    fn read(read: &mut dyn Read) -> Self {
+        Self {
+            pieces: Field::read(read),
+            start: Field::read(read),
+            origin: Field::read(read),
+            ends: Field::read(read),
+            coefficients: Field::read(read),
+        }
+    }
 }
 trait CurveName {
     fn name() -> &'static str;
@@ -240,6 +272,9 @@ impl<const D: usize, const N: usize> Field for Polyline<D, N> {
         visit.field("values");
         self.values.visit(visit);
         visit.end();
+    }
+    fn read(read: &mut dyn Read) -> Self {
+        Self { points: Field::read(read), times: Field::read(read), values: Field::read(read) }
     }
 }
 impl<const D: usize, const N: usize> Zero for Polyline<D, N> {

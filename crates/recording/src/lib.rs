@@ -1,1 +1,26 @@
-//! (being written)
+//! Logs: MCAP files that ROS 2 tools, Foxglove, PlotJuggler and Rerun open.
+//!
+//! - [`Recorder`]: writes every logged topic of [`messages::TOPICS`] verbatim, and standard messages made from them.
+//! - [`Log`]: reads a log back into records, also one that was cut off by a crash.
+//! - [`payload_hashes`]: two runs are equal if these are.
+//!
+//! Design: profile `ros2`, CDR only. One channel of another encoding would break other readers of ROS 2 bags.
+
+pub mod cdr;
+pub mod definition;
+mod error;
+mod hashes;
+mod links;
+mod log;
+pub mod polygon;
+mod recorder;
+mod robot;
+mod standard;
+mod standard_definitions;
+
+pub use error::RecordingError;
+pub use hashes::payload_hashes;
+pub use links::{Link, LinkPoses, Pose};
+pub use log::{End, FrameTree, Log, Message, Transform};
+pub use recorder::{Recorder, STANDARD_RATE, Sink, channel_name};
+pub use robot::{FootInfo, RobotInfo, RunInfo};

@@ -1,0 +1,79 @@
+//! Why a log could not be written or read.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// What went wrong, and what to do next.
+#[derive(Debug)]
+pub enum RecordingError {
+    /// The file could not be made.
+    Create(PathBuf, std::io::Error),
+    /// The file could not be opened or read.
+    Read(PathBuf, std::io::Error),
+    /// Writing failed; nothing more can be written to this file.
+    Write(String),
+    /// The file is not an MCAP file at all.
+    NotALog(PathBuf, String),
+    /// The file is an MCAP file, but not one of ours.
+    Foreign(PathBuf),
+    /// The topic was written with another layout of its record.
+    OtherLayout {
+        /// The log.
+        path: PathBuf,
+        /// The topic.
+        topic: &'static str,
+        /// Its record type.
+        record: &'static str,
+        /// Software that wrote the log.
+        software: String,
+    },
+    /// The file is damaged at this message number.
+    Damaged(PathBuf, u64, String),
+}
+
+impl RecordingError {
+    pub(crate) fn write(error: impl fmt::Display) -> Self {
+        Self::Write(error.to_string())
+    }
+
+    pub(crate) fn not_a_log(path: &Path, why: impl fmt::Display) -> Self {
+        Self::NotALog(path.into(), why.to_string())
+    }
+}
+
+impl fmt::Display for RecordingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Create(path, e) => {
+                write!(
+                    f,
+                    "{}: cannot make the log: {e}; choose a directory that exists and is writable",
+                    path.display()
+                )
+            }
+            Self::Read(path, e) => write!(f, "{}: cannot read the log: {e}", path.display()),
+            Self::Write(e) => write!(f, "the log can no longer be written: {e}; is the disk full?"),
+            Self::NotALog(path, why) => {
+                write!(
+                    f,
+                    "{}: not an MCAP file ({why}); logs end in .mcap and are written by `gangwerk`",
+                    path.display()
+                )
+            }
+            Self::Foreign(path) => {
+                write!(f, "{}: an MCAP file without the metadata record of a gangwerk log", path.display())
+            }
+            Self::OtherLayout { path, topic, record, software } => write!(
+                f,
+                "{}: topic {topic} holds another layout of {record} than this program's; read it with the version \
+                 that wrote it ({software})",
+                path.display()
+            ),
+            Self::Damaged(path, message, why) => {
+                write!(f, "{}: damaged after message {message}: {why}", path.display())
+            }
+        }
+    }
+}
+
+impl std::error::Error for RecordingError {}

@@ -1,0 +1,246 @@
+//! Reads a log, also one that ends in the middle because its writer was killed.
+
+use crate::cdr::{Decoder, decode};
+use crate::definition::definition;
+use crate::error::RecordingError;
+use crate::links::Pose;
+use crate::recorder::channel_name;
+use crate::robot::{METADATA, RobotInfo, RunInfo, from_metadata};
+use crate::standard_definitions::{ROBOT_DESCRIPTION, TF};
+use mcap::McapError;
+use mcap::records::Record as Entry;
+use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use messages::record::Read as _;
+use messages::{Record, Topic};
+use std::collections::HashMap;
+use std::io::Read;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// \[B\] No record of ours is longer; a longer one is damage, not a reason to ask for memory.
+const LONGEST_RECORD: usize = 64 * 1024 * 1024;
+
+/// A log on disk.
+#[derive(Clone, Debug)]
+pub struct Log {
+    path: PathBuf,
+    robot: RobotInfo,
+    run: RunInfo,
+}
+
+/// One message as it stands in the file.
+#[derive(Clone, Copy, Debug)]
+pub struct Message<'a> {
+    /// Name of the channel.
+    pub channel: &'a str,
+    /// Definition of its type.
+    pub definition: &'a [u8],
+    /// \[ns\]
+    pub log_time_ns: u64,
+    /// CDR with encapsulation header.
+    pub payload: &'a [u8],
+}
+
+/// How the log ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// With its index, as it should.
+    Complete,
+    /// In the middle: its writer was killed or the file was cut. Holds the number of messages before the cut.
+    Truncated(u64),
+}
+
+/// One frame of `/tf`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Transform {
+    /// Frame the pose is given in.
+    pub parent: String,
+    /// The frame.
+    pub child: String,
+    /// parent_from_child
+    pub pose: Pose,
+}
+
+/// All frames at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameTree {
+    /// \[ns\]
+    pub stamp_ns: u64,
+    /// Parents before their children.
+    pub transforms: Vec<Transform>,
+}
+
+impl Log {
+    /// Opens a log and reads what it says about itself.
+    pub fn open(path: &Path) -> Result<Self, RecordingError> {
+        let (mut about, mut urdf) = (None, None);
+        walk(path, |seen| {
+            match seen {
+                Seen::Metadata(name, map) if name == METADATA => about = Some(from_metadata(map)),
+                Seen::Message(m) if m.channel == ROBOT_DESCRIPTION.topic => {
+                    urdf = Decoder::new(m.payload).map(|mut d| d.string().to_string());
+                }
+                _ => {}
+            }
+            if about.is_some() && urdf.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+        let (mut robot, run) = about.ok_or_else(|| RecordingError::Foreign(path.into()))?;
+        robot.urdf = urdf.unwrap_or_default();
+        Ok(Self { path: path.into(), robot, run })
+    }
+
+    /// The robot.
+    pub fn robot(&self) -> &RobotInfo {
+        &self.robot
+    }
+
+    /// The run.
+    pub fn run(&self) -> &RunInfo {
+        &self.run
+    }
+
+    /// Shows every message in the order of the file.
+    pub fn each(&self, mut see: impl FnMut(Message<'_>)) -> Result<End, RecordingError> {
+        walk(&self.path, |seen| {
+            if let Seen::Message(message) = seen {
+                see(message);
+            }
+            ControlFlow::Continue(())
+        })
+    }
+
+    /// Shows every record of a topic in the order of the file.
+    pub fn each_record<T: Record>(
+        &self,
+        topic: &Topic,
+        mut see: impl FnMut(&T),
+    ) -> Result<End, RecordingError> {
+        let (channel, ours) = (channel_name(topic.name), definition::<T>());
+        let mut same_layout = true;
+        let end = self.each(|message| {
+            if message.channel == channel {
+                match decode::<T>(message.payload) {
+                    Some(record) if message.definition == ours.as_bytes() => see(&record),
+                    _ => same_layout = false,
+                }
+            }
+        })?;
+        if !same_layout {
+            return Err(RecordingError::OtherLayout {
+                path: self.path.clone(),
+                topic: Topic::find(topic.name).map_or("", |t| t.name),
+                record: T::NAME,
+                software: self.run.software.clone(),
+            });
+        }
+        Ok(end)
+    }
+
+    /// All records of a topic.
+    pub fn records<T: Record>(&self, topic: &Topic) -> Result<Vec<T>, RecordingError> {
+        let mut records = Vec::new();
+        self.each_record(topic, |record: &T| records.push(*record))?;
+        Ok(records)
+    }
+
+    /// All messages of `/tf`.
+    pub fn frames(&self) -> Result<Vec<FrameTree>, RecordingError> {
+        let mut trees = Vec::new();
+        self.each(|message| {
+            if message.channel == TF.topic {
+                trees.push(FrameTree {
+                    stamp_ns: message.log_time_ns,
+                    transforms: read_transforms(message.payload),
+                });
+            }
+        })?;
+        Ok(trees)
+    }
+}
+
+/// `tf2_msgs/TFMessage`.
+fn read_transforms(payload: &[u8]) -> Vec<Transform> {
+    let Some(mut d) = Decoder::new(payload) else { return Vec::new() };
+    let mut transforms = Vec::new();
+    for _ in 0..d.u32() {
+        let _stamp = (d.i32(), d.u32());
+        let (parent, child) = (d.string().to_string(), d.string().to_string());
+        let position = std::array::from_fn(|_| d.f64());
+        let orientation = std::array::from_fn(|_| d.f64());
+        if d.ran_dry() {
+            break;
+        }
+        transforms.push(Transform { parent, child, pose: Pose { position, orientation } });
+    }
+    transforms
+}
+
+enum Seen<'a> {
+    Metadata(&'a str, &'a std::collections::BTreeMap<String, String>),
+    Message(Message<'a>),
+}
+
+/// Walks over the file until its end, a cut, or a break.
+fn walk(path: &Path, mut see: impl FnMut(Seen<'_>) -> ControlFlow<()>) -> Result<End, RecordingError> {
+    let mut file = std::fs::File::open(path).map_err(|e| RecordingError::Read(path.into(), e))?;
+    let options = LinearReaderOptions::default()
+        .with_validate_chunk_crcs(true)
+        .with_record_length_limit(LONGEST_RECORD);
+    let mut reader = LinearReader::new_with_options(options);
+    let mut schemas: HashMap<u16, Vec<u8>> = HashMap::new();
+    let mut channels: HashMap<u16, (String, u16)> = HashMap::new();
+    let (mut messages, mut bytes) = (0u64, 0u64);
+    while let Some(event) = reader.next_event() {
+        let (opcode, data) = match event {
+            Ok(LinearReadEvent::Record { opcode, data }) => (opcode, data),
+            Ok(LinearReadEvent::ReadRequest(wanted)) => {
+                let wanted = wanted.max(64 * 1024);
+                let got =
+                    file.read(reader.insert(wanted)).map_err(|e| RecordingError::Read(path.into(), e))?;
+                bytes += got as u64;
+                reader.notify_read(got);
+                continue;
+            }
+            Err(McapError::BadMagic) => {
+                return Err(RecordingError::not_a_log(path, "it does not begin like one"));
+            }
+            Err(McapError::UnexpectedEof) if bytes < mcap::MAGIC.len() as u64 => {
+                return Err(RecordingError::not_a_log(path, format!("it has only {bytes} bytes")));
+            }
+            Err(McapError::UnexpectedEof) => return Ok(End::Truncated(messages)),
+            Err(e) => return Err(RecordingError::Damaged(path.into(), messages, e.to_string())),
+        };
+        let entry = mcap::parse_record(opcode, data)
+            .map_err(|e| RecordingError::Damaged(path.into(), messages, e.to_string()))?;
+        let flow = match entry {
+            Entry::Schema { header, data } => {
+                schemas.insert(header.id, data.into_owned());
+                ControlFlow::Continue(())
+            }
+            Entry::Channel(channel) => {
+                channels.insert(channel.id, (channel.topic, channel.schema_id));
+                ControlFlow::Continue(())
+            }
+            Entry::Metadata(metadata) => see(Seen::Metadata(&metadata.name, &metadata.metadata)),
+            Entry::Message { header, data } => {
+                messages += 1;
+                let Some((channel, schema)) = channels.get(&header.channel_id) else {
+                    let why = format!("it belongs to the unknown channel {}", header.channel_id);
+                    return Err(RecordingError::Damaged(path.into(), messages, why));
+                };
+                let definition = schemas.get(schema).map_or(&[][..], Vec::as_slice);
+                see(Seen::Message(Message {
+                    channel,
+                    definition,
+                    log_time_ns: header.log_time,
+                    payload: &data,
+                }))
+            }
+            _ => ControlFlow::Continue(()),
+        };
+        if flow.is_break() {
+            return Ok(End::Complete);
+        }
+    }
+    Ok(End::Complete)
+}
