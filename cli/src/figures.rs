@@ -104,7 +104,8 @@ impl Gatherer {
         self.stance = Some(stance);
         self.steps += 1;
         let here = (sim.time, [sim.position[0], sim.position[1]]);
-        if gait != GaitState::Walking {
+        // Every second step: the torso sways from side to side, and the sway is no way made.
+        if gait != GaitState::Walking || stance != RIGHT {
             return;
         }
         match self.last {
