@@ -100,10 +100,8 @@ impl Recorder {
 
     /// All channels in the order of the table, so that equal runs give equal files.
     fn add_channels(&mut self) -> Result<(), RecordingError> {
-        for Standard { topic, interface, .. } in STANDARD {
-            let text =
-                STANDARD.iter().find(|s| s.topic == *topic).map(|s| s.definition()).unwrap_or_default();
-            self.add_channel(topic, topic, interface, &text)?;
+        for standard in STANDARD {
+            self.add_channel(standard.topic, standard.topic, standard.interface, &standard.definition())?;
         }
         for topic in TOPICS.iter().filter(|t| t.logged) {
             if let Some((interface, text)) = with_type(topic.name, Describe) {

@@ -1,0 +1,259 @@
+//! Logs on disk: what is written is read again, also after a cut, and differences show.
+
+use messages::record::Wrench;
+use messages::topics::{CONTROLLER_STATE, EVENTS_CONTROLLER, PLAN, SENSORS, SIM_STATE, STATS_CONTROLLER};
+use messages::{ControllerState, CycleStats, Event, EventCode, Plan, Sensors, SimState};
+use recording::{
+    End, FootInfo, Link, LinkPoses, Log, Pose, Recorder, RecordingError, RobotInfo, RunInfo, payload_hashes,
+};
+use std::path::{Path, PathBuf};
+
+const CYCLES: u64 = 400;
+
+fn file(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("recording_{name}"))
+}
+
+fn robot() -> RobotInfo {
+    let foot = |side: &str| FootInfo {
+        link: format!("{side}_foot"),
+        sole: [0.0, 0.0, -0.05],
+        support: [-0.1, 0.2, -0.06, 0.06],
+        sensor_link: format!("{side}_foot"),
+        sensor: [0.0, 0.0, 0.02],
+    };
+    RobotInfo {
+        name: "two_sticks".into(),
+        joints: vec!["right_hip".into(), "left_hip".into()],
+        urdf: "<robot name=\"two_sticks\"/>".into(),
+        torso: "torso".into(),
+        imu: [0.1, 0.0, 0.2],
+        feet: [foot("right"), foot("left")],
+    }
+}
+
+fn run() -> RunInfo {
+    RunInfo { scene: "test".into(), config_hash: 0xabc, software: "0.1.0".into() }
+}
+
+struct TwoSticks([Link; 3]);
+impl TwoSticks {
+    fn new() -> Self {
+        let link = |name: &str, parent| Link { name: name.into(), parent };
+        Self([link("torso", None), link("right_foot", Some(0)), link("left_foot", Some(0))])
+    }
+}
+impl LinkPoses for TwoSticks {
+    fn links(&self) -> &[Link] {
+        &self.0
+    }
+    fn poses(&mut self, state: &SimState, out: &mut [Pose]) {
+        let torso = Pose { position: state.position, orientation: state.orientation };
+        out.copy_from_slice(&[
+            torso,
+            torso.then(&Pose::moved([0.0, -0.1, -0.9])),
+            torso.then(&Pose::moved([0.0, 0.1, -0.9])),
+        ]);
+    }
+}
+
+fn sensors(tick: u64) -> Sensors {
+    let mut sensors = Sensors::default();
+    sensors.header.tick = tick;
+    sensors.header.stamp_ns = tick * 1_000_000;
+    sensors.joint_angle[1] = (tick as f64).sin();
+    sensors.foot_wrench[1].force = [1.0, 2.0, 300.0];
+    sensors
+}
+
+fn state(tick: u64) -> SimState {
+    let mut state = SimState::default();
+    state.header = sensors(tick).header;
+    state.position = [0.001 * tick as f64, 0.0, 1.0];
+    let (s, c) = (0.1 * tick as f64).sin_cos();
+    state.orientation = [0.0, 0.0, s, c];
+    state.foot_wrench[0] = Wrench { force: [0.0, 0.0, 500.0], moment: [0.0; 3] };
+    state
+}
+
+fn write(path: &Path, change: impl Fn(u64, &mut Sensors)) {
+    let mut recorder =
+        Recorder::create(path, &robot(), &run()).unwrap().with_links(Box::new(TwoSticks::new()));
+    for tick in 0..CYCLES {
+        let mut s = sensors(tick);
+        change(tick, &mut s);
+        recorder.write(&SENSORS, &s).unwrap();
+        recorder.write(&SIM_STATE, &state(tick)).unwrap();
+        let mut stats = CycleStats::default();
+        stats.lateness_ns[0] = std::process::id().into();
+        recorder.write(&STATS_CONTROLLER, &stats).unwrap();
+    }
+    recorder.finish().unwrap();
+}
+
+#[test]
+fn records_come_back() {
+    let path = file("records.mcap");
+    let mut recorder = Recorder::create(&path, &robot(), &run()).unwrap();
+    let mut plan = Plan::default();
+    plan.id = 7;
+    plan.header.stamp_ns = 5;
+    recorder.write(&PLAN, &plan).unwrap();
+    let mut controller = ControllerState::default();
+    controller.zmp = [f64::NAN, 0.25];
+    recorder.write(&CONTROLLER_STATE, &controller).unwrap();
+    let mut event = Event::default();
+    event.code = EventCode::PlanActive as u64;
+    recorder.write(&EVENTS_CONTROLLER, &event).unwrap();
+    recorder.finish().unwrap();
+
+    let log = Log::open(&path).unwrap();
+    assert_eq!((log.robot(), log.run()), (&robot(), &run()));
+    assert_eq!(log.records::<Plan>(&PLAN).unwrap(), [plan]);
+    assert_eq!(log.records::<Event>(&EVENTS_CONTROLLER).unwrap(), [event]);
+    let back = log.records::<ControllerState>(&CONTROLLER_STATE).unwrap();
+    assert!(back[0].zmp[0].is_nan() && back[0].zmp[1] == 0.25);
+}
+
+#[test]
+fn standard_messages_are_thinned_and_verbatim_ones_are_not() {
+    let path = file("rates.mcap");
+    write(&path, |_, _| {});
+    let mut counts = std::collections::BTreeMap::new();
+    let end =
+        Log::open(&path).unwrap().each(|m| *counts.entry(m.channel.to_string()).or_insert(0) += 1).unwrap();
+    assert_eq!(end, End::Complete);
+    for channel in
+        ["/joint_states", "/imu/data", "/foot/right/wrench", "/foot/left/wrench", "/tf", "/markers"]
+    {
+        assert_eq!(counts[channel], CYCLES / 10, "{channel}");
+    }
+    assert_eq!(counts["/gangwerk/sensors"], CYCLES);
+    assert_eq!(counts["/robot_description"], 1);
+}
+
+#[test]
+fn the_tree_of_frames_leads_to_where_the_links_are() {
+    let path = file("frames.mcap");
+    write(&path, |_, _| {});
+    let trees = Log::open(&path).unwrap().frames().unwrap();
+    assert_eq!(trees.len() as u64, CYCLES / 10);
+    for tree in trees {
+        let state = state(tree.stamp_ns / 1_000_000);
+        let mut expected = [Pose::IDENTITY; 3];
+        TwoSticks::new().poses(&state, &mut expected);
+        let find = |name: &str| tree.transforms.iter().find(|t| t.child == name).unwrap();
+        let (torso, left, sole) = (find("torso"), find("left_foot"), find("l_sole"));
+        assert_eq!(
+            (torso.parent.as_str(), left.parent.as_str(), sole.parent.as_str()),
+            ("world", "torso", "left_foot")
+        );
+        let left_in_world = torso.pose.then(&left.pose);
+        let sole_in_world = left_in_world.then(&sole.pose).position;
+        for k in 0..3 {
+            assert!((left_in_world.position[k] - expected[2].position[k]).abs() < 1e-12);
+        }
+        assert!((sole_in_world[2] - 0.05).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_log_cut_anywhere_gives_all_whole_messages_before_the_cut() {
+    let path = file("whole.mcap");
+    write(&path, |_, _| {});
+    let bytes = std::fs::read(&path).unwrap();
+    let whole = Log::open(&path).unwrap().records::<Sensors>(&SENSORS).unwrap();
+    let cut = file("cut.mcap");
+    let first_message = bytes.len() / 20;
+    let mut last = 0;
+    for k in 0..97 {
+        let n = first_message + (bytes.len() - first_message) * k / 97 + k % 13;
+        std::fs::write(&cut, &bytes[..n]).unwrap();
+        let log = Log::open(&cut).unwrap();
+        let mut records = 0;
+        let end = log.each_record(&SENSORS, |s: &Sensors| {
+            assert_eq!(*s, whole[records]);
+            records += 1;
+        });
+        assert!(matches!(end, Ok(End::Truncated(_))), "{n}: {end:?}");
+        assert!(records >= last, "{n}: {records} < {last}");
+        last = records;
+    }
+    assert!(last as u64 > CYCLES * 9 / 10, "{last}");
+}
+
+#[test]
+fn a_log_cut_before_its_metadata_or_not_a_log_at_all_is_named() {
+    let path = file("short.mcap");
+    write(&path, |_, _| {});
+    let bytes = std::fs::read(&path).unwrap();
+    let cut = file("bad.mcap");
+    for n in 0..200 {
+        std::fs::write(&cut, &bytes[..n]).unwrap();
+        let error = Log::open(&cut).unwrap_err();
+        let expected = if n < 8 { "not an MCAP file" } else { "metadata" };
+        assert!(error.to_string().contains(expected), "{n}: {error}");
+    }
+    std::fs::write(&cut, b"time,angle\n0,1\n0.001,2\n").unwrap();
+    assert!(matches!(Log::open(&cut), Err(RecordingError::NotALog(..))));
+    std::fs::remove_file(&cut).unwrap();
+    assert!(matches!(Log::open(&cut), Err(RecordingError::Read(..))));
+}
+
+#[test]
+fn a_flipped_bit_in_a_chunk_is_damage() {
+    let path = file("damaged.mcap");
+    write(&path, |_, _| {});
+    let mut bytes = std::fs::read(&path).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0x10;
+    std::fs::write(&path, &bytes).unwrap();
+    let result = Log::open(&path).and_then(|log| log.each(|_| {}));
+    assert!(matches!(result, Err(RecordingError::Damaged(..))), "{result:?}");
+}
+
+#[test]
+fn equal_runs_have_equal_hashes_and_one_bit_changes_one_channel() {
+    let (a, b, c) = (file("a.mcap"), file("b.mcap"), file("c.mcap"));
+    write(&a, |_, _| {});
+    write(&b, |_, _| {});
+    write(&c, |tick, s| {
+        if tick == 123 {
+            s.motor_angle[31] = f64::from_bits(1);
+        }
+    });
+    assert_eq!(std::fs::read(&a).unwrap(), std::fs::read(&b).unwrap(), "files of equal runs are equal");
+    let hashes =
+        |path| payload_hashes(path, |channel| !channel.starts_with("/gangwerk/cycle_stats/")).unwrap();
+    assert_eq!(hashes(&a), hashes(&b));
+    assert!(!hashes(&a).keys().any(|k| k.contains("cycle_stats")));
+    let differing: Vec<_> =
+        hashes(&a).into_iter().filter(|(k, v)| hashes(&c)[k] != *v).map(|(k, _)| k).collect();
+    assert_eq!(differing, ["/gangwerk/sensors"]);
+}
+
+#[test]
+fn what_was_flushed_survives_a_recorder_that_is_never_finished() {
+    let path = file("flushed.mcap");
+    let mut recorder = Recorder::create(&path, &robot(), &run()).unwrap();
+    for tick in 0..50 {
+        recorder.write(&SENSORS, &sensors(tick)).unwrap();
+    }
+    recorder.flush().unwrap();
+    recorder.write(&SENSORS, &sensors(50)).unwrap();
+    std::mem::forget(recorder); // as SIGKILL would
+    let log = Log::open(&path).unwrap();
+    assert_eq!(log.records::<Sensors>(&SENSORS).unwrap().len(), 50);
+    assert!(matches!(log.each(|_| {}).unwrap(), End::Truncated(_)));
+}
+
+#[test]
+fn a_full_disk_is_an_error_that_says_so() {
+    let Ok(full) = std::fs::OpenOptions::new().write(true).open("/dev/full") else { return };
+    let result = Recorder::to(Box::new(full), &robot(), &run()).and_then(|mut recorder| {
+        recorder.write(&SENSORS, &sensors(0))?;
+        recorder.flush()
+    });
+    let error = result.unwrap_err().to_string();
+    assert!(error.contains("disk full"), "{error}");
+}
