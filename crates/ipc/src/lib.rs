@@ -1,1 +1,30 @@
-//! (being written)
+//! Shared memory between the processes: the only crate that names iceoryx2.
+//!
+//! - [`Space`]: everything one running robot shares, under one directory. `create` for the supervisor, `open` for the
+//!   processes. Two robots, or two tests, have two spaces and never meet.
+//! - [`Writer`], [`Reader`]: the records of [`messages::TOPICS`]. A write allocates nothing, takes no lock and makes no
+//!   system call; a reader gets the newest record or follows every one of them.
+//! - [`Bell`], [`Waiter`]: wake a process that sleeps until its input is there.
+//! - [`QueueSender`], [`QueueReceiver`], [`QueueWaiter`]: small byte messages of the command plane, not for control cycles.
+//! - [`Run`]: what a process started with `gangwerk PROCESS --run DIR` needs to know.
+//!
+//! Why it is built this way: `docs/decisions/0002-data-plane.md`.
+
+mod bell;
+mod error;
+mod lock;
+mod place;
+mod queue;
+mod reader;
+mod run;
+mod slot;
+mod space;
+mod writer;
+
+pub use bell::{Bell, Waiter};
+pub use error::IpcError;
+pub use queue::{MAX_MESSAGE, QueueReceiver, QueueSender, QueueWaiter};
+pub use reader::Reader;
+pub use run::{Mode, Run};
+pub use space::Space;
+pub use writer::Writer;

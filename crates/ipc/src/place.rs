@@ -1,0 +1,70 @@
+//! Where a space lives: run directory, prefix in /dev/shm, and the iceoryx2 configuration made from them.
+
+use crate::error::{IpcError, because};
+use iceoryx2::prelude::*;
+use std::path::{Path as StdPath, PathBuf};
+
+/// Shared memory objects appear here.
+const SHM: &str = "/dev/shm";
+
+/// One run directory and the names derived from it.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    pub(crate) dir: PathBuf,
+    pub(crate) prefix: String,
+}
+
+impl Place {
+    /// `dir` must exist. The prefix is a hash of its full path, so that a new supervisor finds what the last one left.
+    pub(crate) fn of(dir: &StdPath) -> Result<Self, IpcError> {
+        let dir = dir
+            .canonicalize()
+            .map_err(|e| IpcError::Other(format!("run directory {}: {e}", dir.display())))?;
+        let mut hash = 0xcbf2_9ce4_8422_2325u64;
+        for b in dir.as_os_str().as_encoded_bytes() {
+            hash = (hash ^ u64::from(*b)).wrapping_mul(0x100_0000_01b3);
+        }
+        Ok(Self { dir, prefix: format!("gangwerk_{hash:016x}_") })
+    }
+
+    /// Root of iceoryx2's own files.
+    pub(crate) fn root(&self) -> PathBuf {
+        self.dir.join("iceoryx2")
+    }
+
+    /// Own configuration: never the process-wide one, no clean-up behind a control process's back.
+    pub(crate) fn config(&self) -> Result<Config, IpcError> {
+        let mut config = Config::default();
+        let root = self.root();
+        let bytes = root.as_os_str().as_encoded_bytes();
+        config.global.set_root_path(&Path::new(bytes).map_err(|e| because(root.display(), e))?);
+        config.global.prefix = FileName::new(self.prefix.as_bytes()).map_err(|e| because(&self.prefix, e))?;
+        config.global.service.cleanup_dead_nodes_on_open = false;
+        config.global.node.cleanup_dead_nodes_on_creation = false;
+        config.global.node.cleanup_dead_nodes_on_destruction = false;
+        Ok(config)
+    }
+
+    /// Removes what a former run of this very space left behind. Only under the supervisor's lock.
+    pub(crate) fn wipe(&self) -> Result<(), IpcError> {
+        let root = self.root();
+        if root.exists() {
+            std::fs::remove_dir_all(&root)
+                .map_err(|e| IpcError::Other(format!("{}: {e}", root.display())))?;
+        }
+        for entry in std::fs::read_dir(SHM).map_err(|e| IpcError::Other(format!("{SHM}: {e}")))?.flatten() {
+            if entry.file_name().as_encoded_bytes().starts_with(self.prefix.as_bytes()) {
+                let path = entry.path();
+                std::fs::remove_file(&path)
+                    .map_err(|e| IpcError::Other(format!("{}: {e}", path.display())))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Bytes free in shared memory.
+    pub(crate) fn free() -> Result<u64, IpcError> {
+        let s = rustix::fs::statvfs(SHM).map_err(|e| IpcError::Other(format!("{SHM}: {e}")))?;
+        Ok(s.f_bavail * s.f_frsize)
+    }
+}

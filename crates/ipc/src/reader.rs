@@ -1,0 +1,132 @@
+//! Readers of a topic: the newest record, or every one of them.
+
+use crate::error::{IpcError, because};
+use crate::slot::{self, HEAD, Head, HeadEntry, Numbered, RealTime, RingEntry, SLOTS, SlotService};
+use iceoryx2::prelude::*;
+use messages::{Record, Topic};
+
+/// One slot as a reader sees it.
+struct Slot<T: Record> {
+    ring: Vec<RingEntry<T>>,
+    head: HeadEntry,
+    _service: SlotService,
+}
+
+impl<T: Record> Slot<T> {
+    fn open(node: &Node<RealTime>, topic: &Topic, index: usize) -> Result<Self, IpcError> {
+        let what = || format!("reader of topic {}", topic.name);
+        let service = slot::open::<T>(node, topic, index)?;
+        let port = service.reader_builder().create().map_err(|e| because(what(), e))?;
+        let ring = (0..topic.depth as u64)
+            .map(|k| port.entry::<Numbered<T>>(&k))
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|e| because(what(), e))?;
+        let head = port.entry::<Head>(&HEAD).map_err(|e| because(what(), e))?;
+        Ok(Self { ring, head, _service: service })
+    }
+
+    /// The entry in which record `number` lies, or a later one that took its place.
+    fn entry(&self, number: u64) -> &RingEntry<T> {
+        &self.ring[(number % self.ring.len() as u64) as usize]
+    }
+}
+
+/// Reads the records of one topic.
+///
+/// [`Reader::latest`] and [`Reader::newer`] look at the newest record; [`Reader::follow`] walks through all of them.
+/// A reader does one or the other: they share the copy that is handed out.
+pub struct Reader<T: Record> {
+    slots: Vec<Slot<T>>,
+    /// The slot with the highest epoch seen, and that epoch.
+    slot: usize,
+    epoch: u64,
+    /// Number of the last record handed out of that slot.
+    number: u64,
+    lost: u64,
+    /// Nothing followed yet.
+    fresh: bool,
+    held: Box<Numbered<T>>,
+}
+
+impl<T: Record> Reader<T> {
+    pub(crate) fn new(node: &Node<RealTime>, topic: &Topic) -> Result<Self, IpcError> {
+        let slots = (0..SLOTS).map(|k| Slot::open(node, topic, k)).collect::<Result<_, _>>()?;
+        let held = Box::new(Numbered { number: 0, record: T::empty() });
+        Ok(Self { slots, slot: 0, epoch: 0, number: 0, lost: 0, fresh: true, held })
+    }
+
+    /// The newest record; none before the first one was written.
+    pub fn latest(&mut self) -> Option<&T> {
+        self.refresh();
+        (self.held.number > 0).then_some(&self.held.record)
+    }
+
+    /// The newest record if it is another one than last time.
+    pub fn newer(&mut self) -> Option<&T> {
+        self.refresh().then_some(&self.held.record)
+    }
+
+    /// The next record in the order of writing; none if there is no more yet.
+    ///
+    /// What a reader first sees is the oldest record the ring still holds. Records overwritten before they were read
+    /// are counted, see [`Reader::lost`].
+    pub fn follow(&mut self) -> Option<&T> {
+        let mut count = self.slots[self.slot].head.get().count;
+        if count == self.number || self.epoch == 0 {
+            if !self.find_writer() {
+                return None;
+            }
+            count = self.slots[self.slot].head.get().count;
+        }
+        let slot = &self.slots[self.slot];
+        let depth = slot.ring.len() as u64;
+        let mut next = self.number + 1;
+        if count > self.number + depth {
+            // Overtaken: go on with the oldest record that is left, and a little ahead of the writer's pen.
+            next = count - depth + 1 + depth / 8;
+        }
+        if self.fresh {
+            // What was overwritten before this reader came is not lost.
+            (self.number, self.fresh) = (next - 1, false);
+        }
+        *self.held = *slot.entry(next).get();
+        // The writer may have come round again since the head was read.
+        let got = self.held.number;
+        self.lost += got - self.number - 1;
+        self.number = got;
+        Some(&self.held.record)
+    }
+
+    /// Records that were overwritten before [`Reader::follow`] came to them.
+    pub fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    /// Copies the newest record if it is not yet the one held.
+    fn refresh(&mut self) -> bool {
+        let mut count = self.slots[self.slot].head.get().count;
+        if count == self.number || self.epoch == 0 {
+            if !self.find_writer() {
+                return false;
+            }
+            count = self.slots[self.slot].head.get().count;
+        }
+        *self.held = *self.slots[self.slot].entry(count).get();
+        self.number = self.held.number;
+        true
+    }
+
+    /// Goes to the slot of a newer writer that has written something; `false` if there is none.
+    fn find_writer(&mut self) -> bool {
+        let mut found = false;
+        for (k, slot) in self.slots.iter().enumerate() {
+            let Head { epoch, count } = *slot.head.get();
+            if epoch > self.epoch {
+                // A slot that was given back goes on counting: its old records were another writer's.
+                self.number = if k == self.slot { self.number } else { 0 };
+                (self.slot, self.epoch, found) = (k, epoch, count > 0);
+            }
+        }
+        found
+    }
+}

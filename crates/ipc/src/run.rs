@@ -1,0 +1,96 @@
+//! What a process needs to know when it is started with `gangwerk PROCESS --run DIR`.
+//!
+//! The supervisor writes `DIR/run` before it starts anybody: one `key = value` per line.
+//!
+//! ```text
+//! mode = lockstep            # or real-time
+//! scene = walk_1kmh
+//! config = /home/me/gangwerk/config
+//! log = /home/me/walk.mcap   # empty: no log
+//! ```
+
+use crate::IpcError;
+use crate::space::Space;
+use messages::Process;
+use std::path::{Path, PathBuf};
+
+/// The two ways to run (design 5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Simulated time: everybody waits for its input of tick n and answers with tick n.
+    Lockstep,
+    /// The bus cycle is the clock.
+    RealTime,
+}
+
+/// The run a process takes part in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// The run directory.
+    pub dir: PathBuf,
+    /// Lockstep or real time.
+    pub mode: Mode,
+    /// Name of the scene.
+    pub scene: String,
+    /// The configuration directory: `system.toml`, `robots/`, `scenes/`, `gaits/`.
+    pub config: PathBuf,
+    /// Where the log goes; none: nowhere.
+    pub log: Option<PathBuf>,
+}
+
+impl Run {
+    /// Writes `dir/run`. The directory must exist: make the space first.
+    pub fn save(&self) -> Result<(), IpcError> {
+        let mode = match self.mode {
+            Mode::Lockstep => "lockstep",
+            Mode::RealTime => "real-time",
+        };
+        let log = self.log.as_deref().unwrap_or(Path::new(""));
+        let text = format!(
+            "mode = {mode}\nscene = {}\nconfig = {}\nlog = {}\n",
+            self.scene,
+            self.config.display(),
+            log.display()
+        );
+        // Whole or not at all: a process never reads half a file.
+        let (path, draft) = (self.dir.join("run"), self.dir.join("run.new"));
+        std::fs::write(&draft, text)
+            .and_then(|()| std::fs::rename(&draft, &path))
+            .map_err(|e| IpcError::Other(format!("{}: {e}", path.display())))
+    }
+
+    /// Reads `dir/run`.
+    pub fn load(dir: &Path) -> Result<Self, IpcError> {
+        let path = dir.join("run");
+        let text = std::fs::read_to_string(&path).map_err(|e| {
+            IpcError::Other(format!("{}: {e}; processes are started by `gangwerk run`", path.display()))
+        })?;
+        let value = |key: &str| {
+            text.lines()
+                .filter_map(|line| line.split_once(" = ").or(line.strip_suffix(" =").map(|k| (k, ""))))
+                .find_map(|(k, v)| (k == key).then_some(v))
+                .ok_or_else(|| IpcError::Other(format!("{}: {key} is missing", path.display())))
+        };
+        let mode = match value("mode")? {
+            "lockstep" => Mode::Lockstep,
+            "real-time" => Mode::RealTime,
+            other => {
+                let text = format!("{}: mode = {other}: must be lockstep or real-time", path.display());
+                return Err(IpcError::Other(text));
+            }
+        };
+        let log = value("log")?;
+        Ok(Self {
+            dir: dir.into(),
+            mode,
+            scene: value("scene")?.into(),
+            config: value("config")?.into(),
+            log: (!log.is_empty()).then(|| log.into()),
+        })
+    }
+
+    /// Enters the space of this run.
+    pub fn enter(&self, process: Process) -> Result<Space, IpcError> {
+        Space::open(&self.dir, process)
+    }
+}

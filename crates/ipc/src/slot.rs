@@ -1,0 +1,122 @@
+//! How one topic lies in shared memory.
+//!
+//! A topic has [`SLOTS`] slots; each is one blackboard with the entries
+//!
+//! | key | content |
+//! |---|---|
+//! | 0 … depth-1 | ring: record number n lies in entry n mod depth |
+//! | [`HEAD`] | (epoch of the writer, records written so far) |
+//!
+//! A writer takes the first slot whose head it can lock and keeps it. A writer that is killed never unlocks
+//! (iceoryx2 #2008); its slot stays as it was, to be read, and the next writer takes the next slot with a higher
+//! epoch. Each slot is a service of its own because a blackboard admits one writer port, dead or alive.
+
+use crate::error::{IpcError, because};
+use iceoryx2::port::reader::EntryHandle;
+use iceoryx2::prelude::*;
+use iceoryx2::service::builder::blackboard::BlackboardOpenError;
+use iceoryx2::service::port_factory::blackboard::PortFactory;
+use messages::topics::schema_hash;
+use messages::{Record, Topic};
+
+/// Writers a topic can have in the life of a space, killed ones included.
+pub(crate) const SLOTS: usize = 4;
+/// Key of the head entry.
+pub(crate) const HEAD: u64 = u64::MAX;
+/// Ports of one slot.
+const MAX_READERS: usize = 64;
+const MAX_NODES: usize = 64;
+/// Name of the attribute that carries the layout.
+const SCHEMA: &str = "schema";
+
+pub(crate) type RealTime = ipc::Service;
+pub(crate) type SlotService = PortFactory<RealTime, u64>;
+
+/// A record on its way through shared memory.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(crate) struct Numbered<T> {
+    /// Which record of its slot this is, from 1.
+    pub(crate) number: u64,
+    pub(crate) record: T,
+}
+
+// SAFETY: `Record`s are declared by `messages::record!` only: `#[repr(C)]`, `Copy`, 'static, made of numbers and arrays
+// of numbers. They hold no pointer, reference or handle, so their bytes mean the same in every process.
+unsafe impl<T: Record> ZeroCopySend for Numbered<T> {}
+
+/// How far a slot has come.
+#[derive(Clone, Copy, Debug, ZeroCopySend)]
+#[repr(C)]
+pub(crate) struct Head {
+    /// Which writer of the topic this is, from 1; 0: the slot was never written.
+    pub(crate) epoch: u64,
+    /// Records written into the slot so far.
+    pub(crate) count: u64,
+}
+
+pub(crate) type RingEntry<T> = EntryHandle<RealTime, u64, Numbered<T>>;
+pub(crate) type HeadEntry = EntryHandle<RealTime, u64, Head>;
+
+fn name(topic: &Topic, slot: usize) -> Result<ServiceName, IpcError> {
+    format!("topic/{}/{slot}", topic.name).as_str().try_into().map_err(|e| because(topic.name, e))
+}
+
+/// Name, size and layout of the record: what two programs must agree on.
+fn schema<T: Record>(topic: &Topic) -> String {
+    format!("{} {:016x} depth {}", T::NAME, schema_hash::<T>(), topic.depth)
+}
+
+/// What all slots of a topic take in shared memory \[B\], a little more than needed.
+pub(crate) fn bytes<T: Record>(topic: &Topic) -> u64 {
+    (SLOTS * (topic.depth * (2 * size_of::<Numbered<T>>() + 256) + 16384)) as u64
+}
+
+/// Makes slot `slot` of a topic.
+pub(crate) fn create<T: Record>(
+    node: &Node<RealTime>,
+    topic: &Topic,
+    slot: usize,
+) -> Result<SlotService, IpcError> {
+    let what = || format!("topic {}", topic.name);
+    let attributes = AttributeSpecifier::new()
+        .define(&SCHEMA.try_into().map_err(|e| because(what(), e))?, &attribute(&schema::<T>(topic))?)
+        .map_err(|e| because(what(), e))?;
+    let mut creator = node
+        .service_builder(&name(topic, slot)?)
+        .blackboard_creator::<u64>()
+        .max_readers(MAX_READERS)
+        .max_nodes(MAX_NODES)
+        .add(HEAD, Head { epoch: 0, count: 0 });
+    for k in 0..topic.depth as u64 {
+        creator = creator.add(k, Numbered { number: 0, record: T::empty() });
+    }
+    creator.create_with_attributes(&attributes).map_err(|e| because(what(), e))
+}
+
+/// Opens slot `slot` of a topic, if its record looks here as it looked to who made it.
+pub(crate) fn open<T: Record>(
+    node: &Node<RealTime>,
+    topic: &Topic,
+    slot: usize,
+) -> Result<SlotService, IpcError> {
+    let what = || format!("topic {}", topic.name);
+    let here = schema::<T>(topic);
+    let required = AttributeVerifier::new()
+        .require(&SCHEMA.try_into().map_err(|e| because(what(), e))?, &attribute(&here)?)
+        .map_err(|e| because(what(), e))?;
+    node.service_builder(&name(topic, slot)?).blackboard_opener::<u64>().open_with_attributes(&required).map_err(
+        |e| match e {
+            BlackboardOpenError::IncompatibleAttributes => IpcError::Schema { topic: topic.name.into(), here },
+            BlackboardOpenError::DoesNotExist => IpcError::Other(format!(
+                "topic {} does not exist in this run: start the supervisor (gangwerk run) first, from this same build",
+                topic.name
+            )),
+            e => because(what(), e),
+        },
+    )
+}
+
+fn attribute(text: &str) -> Result<iceoryx2::service::attribute::AttributeValue, IpcError> {
+    text.try_into().map_err(|e| because(text, e))
+}

@@ -1,0 +1,205 @@
+//! Everything one running robot shares.
+
+use crate::bell::{self, Bell, Waiter};
+use crate::error::{IpcError, because};
+use crate::lock::Lock;
+use crate::place::Place;
+use crate::queue::{Plane, QueueReceiver, QueueSender, QueueWaiter};
+use crate::reader::Reader;
+use crate::slot::{self, RealTime, SLOTS, SlotService};
+use crate::writer::Writer;
+use iceoryx2::prelude::*;
+use messages::topics::{ForType, with_type};
+use messages::{Process, Record, TOPICS, Topic};
+use std::cell::OnceCell;
+use std::os::unix::fs::DirBuilderExt;
+use std::path::Path as StdPath;
+use std::time::Duration;
+
+/// Room kept free in shared memory for queues, bells and rings of other programs \[B\].
+const SPARE: u64 = 8 << 20;
+
+/// One running robot's shared memory. Ports are made from it before a process arms; afterwards it only has to live.
+pub struct Space {
+    place: Place,
+    node: Node<RealTime>,
+    commands: OnceCell<Node<Plane>>,
+    process: Option<Process>,
+    /// The supervisor keeps all topics in being.
+    _topics: Vec<SlotService>,
+    // Dropped last: the place is free only when all of it is gone.
+    _hold: Hold,
+}
+
+/// What keeps others out of a place.
+struct Hold {
+    place: Place,
+    process: Option<Process>,
+    _lock: Option<Lock>,
+}
+
+impl Drop for Hold {
+    fn drop(&mut self) {
+        // The supervisor leaves nothing behind, unless somebody still lives there.
+        let alone = || Process::ALL.iter().all(|p| Lock::owner(&self.place.dir, p.name()).is_none());
+        if self.process.is_none() && alone() {
+            let _ = self.place.wipe();
+        }
+    }
+}
+
+impl Space {
+    /// For the supervisor: takes `dir` for itself, clears away what a former run left there, makes all topics.
+    ///
+    /// `dir` is made with mode 0700 if it does not exist; it should lie on a tmpfs. A second supervisor is refused, and
+    /// so is a first one while processes of a former run are still alive.
+    pub fn create(dir: &StdPath) -> Result<Self, IpcError> {
+        Self::create_topics(dir, TOPICS)
+    }
+
+    fn create_topics(dir: &StdPath, topics: &[Topic]) -> Result<Self, IpcError> {
+        std::fs::DirBuilder::new()
+            .recursive(true)
+            .mode(0o700)
+            .create(dir)
+            .map_err(|e| IpcError::Other(format!("run directory {}: {e}", dir.display())))?;
+        let place = Place::of(dir)?;
+        let lock = Lock::take(&place.dir, "supervisor")?;
+        for process in Process::ALL {
+            if let Some(pid) = Lock::owner(&place.dir, process.name()) {
+                let dir = place.dir.display().to_string();
+                return Err(IpcError::AlreadyRunning { who: process.name().into(), pid, dir });
+            }
+        }
+        place.wipe()?;
+        let needed = topics.iter().filter_map(|t| with_type(t.name, Bytes)).sum::<u64>() + SPARE;
+        let free = Place::free()?;
+        if free < needed {
+            return Err(IpcError::NoRoom { needed, free });
+        }
+        let node = node::<RealTime>(&place, "supervisor")?;
+        let mut made = Vec::new();
+        for topic in topics {
+            made.extend(with_type(topic.name, Create { node: &node }).unwrap_or_else(|| Ok(Vec::new()))?);
+        }
+        for process in Process::ALL {
+            bell::service(&node, process.name())?;
+        }
+        let hold = Hold { place: place.clone(), process: None, _lock: Some(lock) };
+        Ok(Self { place, node, commands: OnceCell::new(), process: None, _topics: made, _hold: hold })
+    }
+
+    /// For a process: enters the space in `dir`. Each process but the observer may enter once at a time.
+    pub fn open(dir: &StdPath, process: Process) -> Result<Self, IpcError> {
+        let place = Place::of(dir)?;
+        let lock = match process {
+            Process::Observer => None,
+            _ => Some(Lock::take(&place.dir, process.name())?),
+        };
+        let node = node::<RealTime>(&place, process.name())?;
+        let process = Some(process);
+        let hold = Hold { place: place.clone(), process, _lock: lock };
+        Ok(Self { place, node, commands: OnceCell::new(), process, _topics: Vec::new(), _hold: hold })
+    }
+
+    /// The run directory.
+    pub fn dir(&self) -> &StdPath {
+        &self.place.dir
+    }
+
+    /// The writer of a topic. Only the process named in the table may have it.
+    pub fn writer<T: Record>(&self, topic: &Topic) -> Result<Writer<T>, IpcError> {
+        right_type::<T>(topic)?;
+        match self.process {
+            Some(p) if p != topic.writer => Err(IpcError::Other(format!(
+                "topic {} is written by {}, not by {}",
+                topic.name,
+                topic.writer.name(),
+                p.name()
+            ))),
+            _ => Writer::new(&self.node, topic),
+        }
+    }
+
+    /// A reader of a topic.
+    pub fn reader<T: Record>(&self, topic: &Topic) -> Result<Reader<T>, IpcError> {
+        right_type::<T>(topic)?;
+        Reader::new(&self.node, topic)
+    }
+
+    /// Rings the processes that a topic wakes.
+    pub fn bell(&self, topic: &Topic) -> Result<Bell, IpcError> {
+        let names: Vec<&str> = topic.wakes.iter().map(|p| p.name()).collect();
+        Bell::new(&self.node, &names)
+    }
+
+    /// Sleeps until somebody rings this process.
+    pub fn waiter(&self, process: Process) -> Result<Waiter, IpcError> {
+        Waiter::new(&self.node, process.name())
+    }
+
+    /// Sends into the queue `name`; every message wakes the [`Space::queue_waiter`] called `wakes`.
+    pub fn queue_sender(&self, name: &str, wakes: &str) -> Result<QueueSender, IpcError> {
+        QueueSender::new(self.commands()?, name, wakes)
+    }
+
+    /// Receives from the queue `name`.
+    pub fn queue_receiver(&self, name: &str) -> Result<QueueReceiver, IpcError> {
+        QueueReceiver::new(self.commands()?, name)
+    }
+
+    /// Sleeps until a queue that wakes `name` has something.
+    pub fn queue_waiter(&self, name: &str) -> Result<QueueWaiter, IpcError> {
+        QueueWaiter::new(self.commands()?, name)
+    }
+
+    /// For the supervisor, before it starts a process again: clears away the ports of killed processes. Returns how
+    /// many were cleared.
+    pub fn clear_dead(&self) -> u64 {
+        self.node.blocking_cleanup_dead_nodes(Duration::from_millis(200)).cleanups
+    }
+
+    fn commands(&self) -> Result<&Node<Plane>, IpcError> {
+        if self.commands.get().is_none() {
+            let name = self.process.map_or("supervisor", Process::name);
+            let _ = self.commands.set(node::<Plane>(&self.place, name)?);
+        }
+        Ok(self.commands.get().expect("set above"))
+    }
+}
+
+/// A node of one process, which touches no signal handler and prints errors only.
+fn node<S: Service>(place: &Place, name: &str) -> Result<Node<S>, IpcError> {
+    set_log_level(LogLevel::Error);
+    NodeBuilder::new()
+        .name(&name.try_into().map_err(|e| because(name, e))?)
+        .signal_handling_mode(SignalHandlingMode::Disabled)
+        .config(&place.config()?)
+        .create::<S>()
+        .map_err(|e| because(format!("shared memory of {}", place.dir.display()), e))
+}
+
+fn right_type<T: Record>(topic: &Topic) -> Result<(), IpcError> {
+    if topic.type_name == T::NAME {
+        return Ok(());
+    }
+    Err(IpcError::Other(format!("topic {} holds {}, not {}", topic.name, topic.type_name, T::NAME)))
+}
+
+/// What a topic needs in shared memory.
+struct Bytes;
+impl ForType<u64> for Bytes {
+    fn call<T: Record>(self, topic: &'static Topic) -> u64 {
+        slot::bytes::<T>(topic)
+    }
+}
+
+/// Makes all slots of a topic.
+struct Create<'a> {
+    node: &'a Node<RealTime>,
+}
+impl ForType<Result<Vec<SlotService>, IpcError>> for Create<'_> {
+    fn call<T: Record>(self, topic: &'static Topic) -> Result<Vec<SlotService>, IpcError> {
+        (0..SLOTS).map(|k| slot::create::<T>(self.node, topic, k)).collect()
+    }
+}
