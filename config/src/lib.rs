@@ -7,11 +7,16 @@
 //!
 //! Only this crate names TOML.
 
+mod error;
+mod file;
 pub mod gait;
 pub mod robot;
 pub mod scene;
+mod section;
 pub mod system;
 
+pub use error::{ConfigError, Problem};
+pub use file::{Hash, root};
 pub use gait::Gait;
 pub use robot::Robot;
 pub use scene::Scene;

@@ -1,6 +1,13 @@
 //! What a URDF cannot say about a robot: soles, contact points, sensors, limits, bus.
 
 use std::collections::BTreeMap;
+use std::path::Path;
+
+use messages::MAX_JOINTS;
+
+use crate::error::ConfigError;
+use crate::file::{self, Hash};
+use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 
 /// A robot: its URDF and everything else that is data about it.
 #[derive(Clone, Debug)]
@@ -9,6 +16,8 @@ pub struct Robot {
     pub name: String,
     /// Text of the URDF.
     pub urdf: String,
+    /// Hash of the robot's files.
+    pub hash: Hash,
     /// \[kg\] Sum of all masses, which the URDF must meet within 1 g.
     pub total_mass: f64,
     /// Link that is the floating base: the upper body.
@@ -74,4 +83,201 @@ pub struct Contact {
     pub damping_time: f64,
     /// \[1\] Coulomb friction against the ground.
     pub friction: f64,
+}
+
+/// \[kg\] How far the URDF's masses may be from the robot's total mass.
+const MASS_TOLERANCE: f64 = 1e-3;
+
+impl Robot {
+    /// Reads `robot.toml` in a robot's directory, and the URDF it names.
+    pub fn load(directory: &Path) -> Result<Self, ConfigError> {
+        let path = directory.join("robot.toml");
+        let text = file::text(&path)?;
+        let name = directory.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let mut robot = section::read(&path, &text, |top| Self::build(top, name))?;
+        let urdf_path = directory.join(&robot.urdf);
+        robot.urdf = file::text(&urdf_path)?;
+        robot.hash = Hash::default().with(text.as_bytes()).with(robot.urdf.as_bytes());
+        let masses = masses(&robot.urdf).map_err(|text| ConfigError::of_file(&urdf_path, text))?;
+        if (masses - robot.total_mass).abs() > MASS_TOLERANCE {
+            let wanted = robot.total_mass;
+            let text =
+                format!("its masses sum to {masses:.3} kg, but total_mass in robot.toml is {wanted} kg");
+            return Err(ConfigError::of_file(urdf_path, text));
+        }
+        Ok(robot)
+    }
+
+    /// Index of a joint in every array of joints.
+    pub fn joint(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|joint| joint.name == name)
+    }
+
+    /// Everything but the URDF's text: `urdf` is its file name here.
+    fn build(top: &Section<'_, '_>, name: String) -> Self {
+        let joints = top.tables("joint", Joint::build);
+        let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+        if joints.is_empty() || joints.len() > MAX_JOINTS {
+            top.problem("joint", format!("there are {} joints; a robot has 1 to {MAX_JOINTS}", joints.len()));
+        }
+        for (i, name) in names.iter().enumerate().filter(|(i, name)| names[..*i].contains(name)) {
+            top.problem("joint", format!("joint[{i}]: the name `{name}` is taken already"));
+        }
+        Self {
+            name,
+            urdf: top.text("urdf"),
+            hash: Hash::default(),
+            total_mass: top.number("total_mass", "kg", POSITIVE),
+            torso: top.text("torso"),
+            feet: feet(top, &names),
+            contact: top.table("contact", Contact::build).unwrap_or(Contact::NONE),
+            imu: top.numbers("imu", "m", -2.0..=2.0),
+            poses: poses(top, &joints),
+            nodes: nodes(top, &names),
+            joints,
+        }
+    }
+}
+
+impl Joint {
+    fn build(row: &Section<'_, '_>) -> Self {
+        Self {
+            name: row.text("name"),
+            range: row.interval("range_deg", "deg", -360.0..=360.0).map(f64::to_radians),
+            speed_limit: row.number("speed_limit", "rad/s", POSITIVE),
+            braking: row.number("braking", "rad/s^2", POSITIVE),
+            comfort: row.number("comfort_deg", "deg", -360.0..=360.0).to_radians(),
+            weight: row.number("weight", "", POSITIVE),
+        }
+        .checked(row)
+    }
+
+    fn checked(self, row: &Section<'_, '_>) -> Self {
+        if self.comfort < self.range[0] || self.comfort > self.range[1] {
+            row.problem("comfort_deg", format!("lies outside of range_deg of joint `{}`", self.name));
+        }
+        self
+    }
+}
+
+impl Contact {
+    /// Stand-in while a file is wrong.
+    const NONE: Self = Self {
+        normal_stiffness: f64::NAN,
+        tangential_stiffness: f64::NAN,
+        damping_time: f64::NAN,
+        friction: f64::NAN,
+    };
+
+    fn build(table: &Section<'_, '_>) -> Self {
+        Self {
+            normal_stiffness: table.number("normal_stiffness", "N/m", POSITIVE),
+            tangential_stiffness: table.number("tangential_stiffness", "N/m", POSITIVE),
+            damping_time: table.number("damping_time", "s", NOT_NEGATIVE),
+            friction: table.number("friction", "", 0.0..=2.0),
+        }
+    }
+}
+
+impl Foot {
+    /// Stand-in while a file is wrong.
+    const NONE: Self = Self {
+        link: String::new(),
+        sole: [f64::NAN; 3],
+        support: [f64::NAN; 4],
+        sensor_link: String::new(),
+        sensor: [f64::NAN; 3],
+        points: Vec::new(),
+        toe: None,
+    };
+
+    fn build(table: &Section<'_, '_>, joints: &[&str]) -> Self {
+        let [back, front] = table.interval("support_x", "m", -1.0..=1.0);
+        let [right, left] = table.interval("support_y", "m", -1.0..=1.0);
+        let toe = table.has("toe").then(|| joint_index(table, "toe", &table.text("toe"), joints)).flatten();
+        let point = |row: &Section<'_, '_>| (row.text("link"), row.numbers("at", "m", -1.0..=1.0));
+        let points = table.tables("points", point);
+        if points.len() < 3 {
+            table
+                .problem("points", format!("there are {} contact points; it takes at least 3", points.len()));
+        }
+        Self {
+            link: table.text("link"),
+            sole: table.numbers("sole", "m", -1.0..=1.0),
+            support: [back, front, right, left],
+            sensor_link: table.text("sensor_link"),
+            sensor: table.numbers("sensor", "m", -1.0..=1.0),
+            points,
+            toe,
+        }
+    }
+}
+
+/// The position of a joint that a key names.
+fn joint_index(at: &Section<'_, '_>, key: &str, name: &str, joints: &[&str]) -> Option<usize> {
+    let found = joints.iter().position(|joint| *joint == name);
+    if found.is_none() && !name.is_empty() {
+        let hint =
+            section::nearest(name, joints).map_or(String::new(), |n| format!("; the nearest is `{n}`"));
+        at.problem(key, format!("there is no joint `{name}`{hint}"));
+    }
+    found
+}
+
+fn feet(top: &Section<'_, '_>, joints: &[&str]) -> [Foot; 2] {
+    let foot = |table: &Section<'_, '_>, side| table.table(side, |foot| Foot::build(foot, joints));
+    let feet =
+        top.table("foot", |table| ["right", "left"].map(|side| foot(table, side).unwrap_or(Foot::NONE)));
+    feet.unwrap_or([Foot::NONE, Foot::NONE])
+}
+
+/// Poses name every joint, in degrees, within its range.
+fn poses(top: &Section<'_, '_>, joints: &[Joint]) -> BTreeMap<String, Vec<f64>> {
+    let angle = |pose: &Section<'_, '_>, joint: &Joint| {
+        let q = pose.number(&joint.name, "deg", -360.0..=360.0);
+        let [lo, hi] = joint.range.map(f64::to_degrees);
+        if q < lo - 1e-9 || q > hi + 1e-9 {
+            pose.problem(
+                &joint.name,
+                format!("{q} lies outside of the joint's range_deg [{lo:.1}, {hi:.1}]"),
+            );
+        }
+        q.to_radians()
+    };
+    let pose = |pose: &Section<'_, '_>| joints.iter().map(|joint| angle(pose, joint)).collect();
+    let all = |table: &Section<'_, '_>| {
+        let named = |name: String| table.table(&name, pose).map(|q| (name, q));
+        table.keys().into_iter().filter_map(named).collect()
+    };
+    top.table("pose_deg", all).unwrap_or_default()
+}
+
+/// Every joint hangs on exactly one node.
+fn nodes(top: &Section<'_, '_>, joints: &[&str]) -> Vec<Vec<usize>> {
+    let node = |row: &Section<'_, '_>| {
+        let names = row.texts("joints").into_iter();
+        names.filter_map(|name| joint_index(row, "joints", &name, joints)).collect::<Vec<_>>()
+    };
+    let nodes = top.tables("node", node);
+    for (i, name) in joints.iter().enumerate() {
+        let count = nodes.iter().flatten().filter(|joint| **joint == i).count();
+        if count != 1 {
+            top.problem("node", format!("joint `{name}` is on {count} nodes; it must be on exactly one"));
+        }
+    }
+    nodes
+}
+
+/// Sum of all `<mass value="...">` of a URDF; its structure is checked where the model is built.
+fn masses(urdf: &str) -> Result<f64, String> {
+    let values = urdf.split("<mass").skip(1).map(|rest| rest.split("value=\"").nth(1)?.split('"').next());
+    let mut sum = 0.0;
+    for value in values {
+        let value = value.ok_or("a <mass> has no value")?;
+        sum += value
+            .trim()
+            .parse::<f64>()
+            .map_err(|_| format!("a <mass> has the value `{value}`, not a number"))?;
+    }
+    Ok(sum)
 }

@@ -1,0 +1,57 @@
+//! Where configuration lies, and what it was: lookup of the shipped directory and the hash that goes into every log.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::ConfigError;
+
+/// The configuration directory: the one asked for, else the one of the source tree this program was built from.
+pub fn root(asked: Option<&Path>) -> PathBuf {
+    asked.map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), Path::to_owned)
+}
+
+/// FNV-1a, 64 bits, over the bytes of all files that went into a configuration, in the order they were read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hash(u64);
+
+impl Default for Hash {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Hash {
+    /// Continues with `bytes`.
+    #[must_use]
+    pub fn with(self, bytes: &[u8]) -> Self {
+        Self(bytes.iter().fold(self.0, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3)))
+    }
+
+    /// The number.
+    pub fn value(self) -> u64 {
+        self.0
+    }
+}
+
+/// The text of a file; an error says what lies beside it instead.
+pub(crate) fn text(path: &Path) -> Result<String, ConfigError> {
+    std::fs::read_to_string(path).map_err(|e| {
+        let hint = if e.kind() == std::io::ErrorKind::NotFound { neighbours(path) } else { String::new() };
+        ConfigError::of_file(path, format!("cannot be read: {e}{hint}"))
+    })
+}
+
+fn neighbours(path: &Path) -> String {
+    let wanted = path.extension();
+    let Some(directory) = path.parent() else { return String::new() };
+    let Ok(entries) = std::fs::read_dir(directory) else {
+        return format!("; {} is no directory either, so check --config", directory.display());
+    };
+    let mut names: Vec<String> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.extension() == wanted)
+        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+        .collect();
+    names.sort();
+    if names.is_empty() { String::new() } else { format!("; there is {}", names.join(", ")) }
+}

@@ -1,0 +1,349 @@
+//! The typed reader over TOML: what a file may say is what is asked of it.
+//!
+//! A [`Section`] is one table of the file. Each question (`number`, `text`, ...) names a key, and for numbers the unit
+//! and the allowed range. What is wrong is noted down and a stand-in returned (NaN for numbers, so that no rule between
+//! fields fires on top of it); [`read`] hands all problems out together. A key nobody asked for is refused with the
+//! nearest one somebody did ask for.
+
+use std::cell::RefCell;
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::error::{ConfigError, Problem};
+
+/// Everything above zero, for lengths, masses, times.
+pub(crate) const POSITIVE: RangeInclusive<f64> = 1e-9..=1e9;
+/// Everything from zero on.
+pub(crate) const NOT_NEGATIVE: RangeInclusive<f64> = 0.0..=1e9;
+
+type Value<'t> = Spanned<DeValue<'t>>;
+
+/// What is shared by all sections of one file.
+struct File<'t> {
+    text: &'t str,
+    problems: RefCell<Vec<Problem>>,
+}
+
+impl File<'_> {
+    fn note(&self, at: usize, key: String, text: String) {
+        let line = 1 + self.text[..at.min(self.text.len())].matches('\n').count();
+        self.problems.borrow_mut().push(Problem { line, key, text });
+    }
+}
+
+/// One table of a file.
+pub(crate) struct Section<'a, 't> {
+    file: &'a File<'t>,
+    /// Name with the tables around it; empty at the top.
+    name: String,
+    /// Where the table begins, in bytes.
+    at: usize,
+    table: &'a DeTable<'t>,
+    asked: RefCell<Vec<String>>,
+}
+
+/// Reads `text` with `build`; either everything was right or all problems come back.
+pub(crate) fn read<T>(
+    path: &Path,
+    text: &str,
+    build: impl FnOnce(&Section<'_, '_>) -> T,
+) -> Result<T, ConfigError> {
+    let file = File { text, problems: RefCell::default() };
+    let value = match DeTable::parse(text) {
+        Ok(table) => {
+            let top = Section::new(&file, String::new(), 0, table.get_ref());
+            Some(build(&top))
+        }
+        Err(e) => {
+            let at = e.span().map_or(0, |span| span.start);
+            file.note(at, String::new(), format!("not TOML: {}", e.message()));
+            None
+        }
+    };
+    let mut problems = file.problems.into_inner();
+    problems.sort_by_key(|p| p.line);
+    match value {
+        Some(value) if problems.is_empty() => Ok(value),
+        _ => Err(ConfigError { file: path.to_owned(), problems }),
+    }
+}
+
+impl<'a, 't> Section<'a, 't> {
+    fn new(file: &'a File<'t>, name: String, at: usize, table: &'a DeTable<'t>) -> Self {
+        Self { file, name, at, table, asked: RefCell::default() }
+    }
+
+    fn path(&self, key: &str) -> String {
+        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
+    }
+
+    /// Notes a broken rule at `key`, or at the table itself if the key is not there.
+    pub(crate) fn problem(&self, key: &str, text: impl Into<String>) {
+        let at = self.table.get(key).map_or(self.at, |v| v.span().start);
+        self.file.note(at, self.path(key), text.into());
+    }
+
+    /// Is the key there?
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.asked.borrow_mut().push(key.to_owned());
+        self.table.contains_key(key)
+    }
+
+    fn get(&self, key: &str, wanted: &str) -> Option<&'a Value<'t>> {
+        let found = self.has(key).then(|| &self.table[key]);
+        if found.is_none() {
+            self.problem(key, format!("missing; it takes {wanted}"));
+        }
+        found
+    }
+
+    fn wrong_type(&self, key: &str, value: &Value<'_>, wanted: &str) {
+        let is = value.get_ref().type_str();
+        self.file.note(value.span().start, key.to_owned(), format!("is of type {is}; it takes {wanted}"));
+    }
+
+    /// A number in `range`, or NaN.
+    pub(crate) fn number(&self, key: &str, unit: &str, range: RangeInclusive<f64>) -> f64 {
+        match self.get(key, &number_in(unit, &range)) {
+            Some(value) => self.number_of(&self.path(key), value, unit, &range),
+            None => f64::NAN,
+        }
+    }
+
+    fn number_of(&self, key: &str, value: &Value<'_>, unit: &str, range: &RangeInclusive<f64>) -> f64 {
+        let x = match value.get_ref() {
+            DeValue::Float(x) => x.as_str().parse().unwrap_or(f64::NAN),
+            DeValue::Integer(n) => i64::from_str_radix(n.as_str(), n.radix()).map_or(f64::NAN, |n| n as f64),
+            _ => {
+                self.wrong_type(key, value, &number_in(unit, range));
+                return f64::NAN;
+            }
+        };
+        if range.contains(&x) {
+            return x;
+        }
+        let text = format!("{x} is not allowed; it takes {}", number_in(unit, range));
+        self.file.note(value.span().start, key.to_owned(), text);
+        f64::NAN
+    }
+
+    /// `N` numbers in `range`, NaN where one is wrong.
+    pub(crate) fn numbers<const N: usize>(
+        &self,
+        key: &str,
+        unit: &str,
+        range: RangeInclusive<f64>,
+    ) -> [f64; N] {
+        let wanted = format!("{N} numbers, each {}", number_in(unit, &range));
+        match self.get(key, &wanted) {
+            Some(value) => self.array_of(&self.path(key), value, unit, &range),
+            None => [f64::NAN; N],
+        }
+    }
+
+    fn array_of<const N: usize>(
+        &self,
+        key: &str,
+        value: &Value<'_>,
+        unit: &str,
+        range: &RangeInclusive<f64>,
+    ) -> [f64; N] {
+        let wanted = format!("{N} numbers, each {}", number_in(unit, range));
+        match value.get_ref() {
+            DeValue::Array(items) if items.len() == N => {
+                std::array::from_fn(|i| self.number_of(&format!("{key}[{i}]"), &items[i], unit, range))
+            }
+            DeValue::Array(items) => {
+                let text = format!("has {} entries; it takes {wanted}", items.len());
+                self.file.note(value.span().start, key.to_owned(), text);
+                [f64::NAN; N]
+            }
+            _ => {
+                self.wrong_type(key, value, &wanted);
+                [f64::NAN; N]
+            }
+        }
+    }
+
+    /// Two numbers in `range`, ascending.
+    pub(crate) fn interval(&self, key: &str, unit: &str, range: RangeInclusive<f64>) -> [f64; 2] {
+        let [lo, hi] = self.numbers(key, unit, range);
+        if lo >= hi {
+            self.problem(key, format!("its lower end {lo} must lie below its upper end {hi} {unit}"));
+        }
+        [lo, hi]
+    }
+
+    /// Rows of `N` numbers each; at least one row.
+    pub(crate) fn rows<const N: usize>(&self, key: &str, meaning: &str) -> Vec<[f64; N]> {
+        let name = self.path(key);
+        self.items(key, &format!("a list of rows, each {meaning}"))
+            .iter()
+            .enumerate()
+            .map(|(i, row)| self.array_of(&format!("{name}[{i}]"), row, "", &(-1e9..=1e9)))
+            .collect()
+    }
+
+    /// A whole number in `range`; its lower end if the entry is wrong.
+    pub(crate) fn integer(&self, key: &str, range: RangeInclusive<u64>) -> u64 {
+        let wanted = format!("a whole number from {} to {}", range.start(), range.end());
+        let Some(value) = self.get(key, &wanted) else { return *range.start() };
+        let DeValue::Integer(n) = value.get_ref() else {
+            self.wrong_type(&self.path(key), value, &wanted);
+            return *range.start();
+        };
+        match u64::from_str_radix(n.as_str(), n.radix()) {
+            Ok(n) if range.contains(&n) => n,
+            _ => {
+                self.problem(key, format!("{} is not allowed; it takes {wanted}", n.as_str()));
+                *range.start()
+            }
+        }
+    }
+
+    /// A string; empty if the entry is wrong.
+    pub(crate) fn text(&self, key: &str) -> String {
+        let Some(value) = self.get(key, "a string") else { return String::new() };
+        let text = value.get_ref().as_str();
+        if text.is_none() {
+            self.wrong_type(&self.path(key), value, "a string");
+        }
+        text.unwrap_or_default().to_owned()
+    }
+
+    /// A list of strings.
+    pub(crate) fn texts(&self, key: &str) -> Vec<String> {
+        let name = self.path(key);
+        let items = self.items(key, "a list of strings").iter().enumerate();
+        let text = |(i, item): (usize, &Value<'_>)| match item.get_ref().as_str() {
+            Some(text) => text.to_owned(),
+            None => {
+                self.wrong_type(&format!("{name}[{i}]"), item, "a string");
+                String::new()
+            }
+        };
+        items.map(text).collect()
+    }
+
+    /// The position of a word in `words`; 0 if the entry is wrong.
+    pub(crate) fn word(&self, key: &str, words: &[&str]) -> usize {
+        let text = self.text(key);
+        words.iter().position(|word| *word == text).unwrap_or_else(|| {
+            if !text.is_empty() {
+                self.problem(key, format!("`{text}` is not known; it takes one of {}", listed(words)));
+            }
+            0
+        })
+    }
+
+    fn items(&self, key: &str, wanted: &str) -> &'a [Value<'t>] {
+        let Some(value) = self.get(key, wanted) else { return &[] };
+        match value.get_ref() {
+            DeValue::Array(items) if !items.is_empty() => items,
+            DeValue::Array(_) => {
+                self.problem(key, format!("is empty; it takes {wanted}"));
+                &[]
+            }
+            _ => {
+                self.wrong_type(&self.path(key), value, wanted);
+                &[]
+            }
+        }
+    }
+
+    /// Reads the table `key` with `build`; nothing if it is missing.
+    pub(crate) fn table<T>(&self, key: &str, build: impl FnOnce(&Section<'a, 't>) -> T) -> Option<T> {
+        let value = self.get(key, "a table")?;
+        self.table_of(self.path(key), value, build)
+    }
+
+    fn table_of<T>(
+        &self,
+        name: String,
+        value: &'a Value<'t>,
+        build: impl FnOnce(&Section<'a, 't>) -> T,
+    ) -> Option<T> {
+        match value.get_ref() {
+            DeValue::Table(table) => Some(build(&Section::new(self.file, name, value.span().start, table))),
+            _ => {
+                self.wrong_type(&name, value, "a table");
+                None
+            }
+        }
+    }
+
+    /// Reads every table of the list `[[key]]` with `build`; none if the list is missing.
+    pub(crate) fn tables<T>(&self, key: &str, build: impl Fn(&Section<'a, 't>) -> T) -> Vec<T> {
+        if !self.has(key) {
+            return Vec::new();
+        }
+        let name = self.path(key);
+        let items = self.items(key, "a list of tables").iter().enumerate();
+        items.filter_map(|(i, item)| self.table_of(format!("{name}[{i}]"), item, &build)).collect()
+    }
+
+    /// The keys of this table, for tables whose keys are names.
+    pub(crate) fn keys(&self) -> Vec<String> {
+        self.table.keys().map(|key| key.get_ref().clone().into_owned()).collect()
+    }
+}
+
+impl Drop for Section<'_, '_> {
+    /// Whatever nobody asked for is refused.
+    fn drop(&mut self) {
+        let asked = self.asked.get_mut();
+        for key in self.table.keys() {
+            let name: &str = key.get_ref();
+            if !asked.iter().any(|known| known == name) {
+                let text = match nearest(name, asked) {
+                    Some(known) => format!("unknown key; the nearest known one is `{known}`"),
+                    None => "unknown key".to_owned(),
+                };
+                let path =
+                    if self.name.is_empty() { name.to_owned() } else { format!("{}.{name}", self.name) };
+                self.file.note(key.span().start, path, text);
+            }
+        }
+    }
+}
+
+fn number_in(unit: &str, range: &RangeInclusive<f64>) -> String {
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    let (lo, hi) = (*range.start(), *range.end());
+    match (lo > -1e9 && lo != *POSITIVE.start(), hi < 1e9) {
+        (true, true) => format!("a number from {lo} to {hi}{unit}"),
+        (true, false) => format!("a number of at least {lo}{unit}"),
+        (false, _) if lo == *POSITIVE.start() && hi < 1e9 => format!("a number above 0, up to {hi}{unit}"),
+        (false, _) if lo == *POSITIVE.start() => format!("a number above 0{unit}"),
+        _ => format!("a number{unit}"),
+    }
+}
+
+/// `a`, `b` and `c`.
+pub(crate) fn listed(words: &[&str]) -> String {
+    words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// The known word with the fewest edits between it and `word`.
+pub(crate) fn nearest<'w>(word: &str, known: &'w [impl AsRef<str>]) -> Option<&'w str> {
+    known.iter().map(AsRef::as_ref).min_by_key(|known| edits(word, known))
+}
+
+/// Levenshtein distance.
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(row[j] + 1).min(row[j + 1] + 1);
+        }
+    }
+    row[b.len()]
+}
