@@ -1,0 +1,182 @@
+//! All scratch of the algorithms, made once.
+
+use nalgebra::DMatrix;
+
+use crate::model::{Kind, Model};
+use crate::space::{Mat3, Sym3, V3, ZERO, v3};
+
+/// Results and scratch for one [`Model`]. Nothing allocates after [`Data::new`].
+///
+/// What a function leaves here it says in its documentation; a query reads what the last update left.
+#[derive(Clone, Debug)]
+pub struct Data {
+    pub(crate) joints: Vec<Position>,
+    /// parent_from_body of joints about oblique axes; others unused.
+    pub(crate) oblique: Vec<Mat3>,
+    pub(crate) base: Mat3,
+    pub(crate) places: Vec<Place>,
+    pub(crate) motions: Vec<Motion>,
+    /// First moments of mass of the carried bodies, about the world's origin, world axes.
+    pub(crate) moments: Vec<V3>,
+    pub(crate) locals: Vec<Local>,
+    pub(crate) composites: Vec<Composite>,
+    pub(crate) articulated: Vec<Articulated>,
+    /// Mass matrix and its factors as rows of [`crate::model::Paths`].
+    pub(crate) m: Vec<f64>,
+    pub(crate) l: Vec<f64>,
+    pub(crate) mass_matrix: DMatrix<f64>,
+}
+
+/// A joint in its position: cosine, sine, and the body's origin in the parent's frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Position {
+    pub c: f64,
+    pub s: f64,
+    pub r: V3,
+}
+
+/// A body in the world: rotation world_from_body, origin, axis of its joint along the coordinate.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub a: Mat3,
+    pub r: V3,
+    pub e: V3,
+}
+
+/// A body's motion, world axes: angular velocity, velocity of the origin, and both accelerations at v' = 0.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Motion {
+    pub w: V3,
+    pub v: V3,
+    pub dw: V3,
+    pub dv: V3,
+}
+
+/// A body in its own axes: angular velocity, angular acceleration, acceleration of the origin less gravity, and the
+/// force and the moment about the origin that give them to the body and all it carries.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Local {
+    pub w: V3,
+    pub dw: V3,
+    pub a: V3,
+    pub f: V3,
+    pub n: V3,
+}
+
+/// First moment and moments of inertia about the body's origin of the body and all it carries.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Composite {
+    pub mc: V3,
+    pub i: Sym3,
+}
+
+/// Articulated inertia about the body's origin and what the elimination of the joint leaves for the second sweep.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Articulated {
+    /// n = i dw + h a + n0, f = h^T dw + m a + f0
+    pub i: Sym3,
+    pub h: Mat3,
+    pub m: Sym3,
+    pub n: V3,
+    pub f: V3,
+    /// Column of the joint's axis.
+    pub un: V3,
+    pub uf: V3,
+    /// 1/D and joint force left over.
+    pub d: f64,
+    pub u: f64,
+    /// Velocity products: angular and linear.
+    pub cw: V3,
+    pub ca: V3,
+}
+
+impl Data {
+    /// Allocates for a model.
+    pub fn new(model: &Model) -> Data {
+        let (nb, nv) = (model.bodies.len(), model.nv());
+        let joints = model.bodies.iter().map(|b| Position { c: 1.0, s: 0.0, r: b.r }).collect();
+        let entries = model.paths.column.len();
+        Data {
+            joints,
+            oblique: vec![Mat3::IDENTITY; nb],
+            base: Mat3::IDENTITY,
+            places: vec![Place { a: Mat3::IDENTITY, r: ZERO, e: v3(0.0, 0.0, 1.0) }; nb],
+            motions: vec![Motion::default(); nb],
+            moments: vec![ZERO; nb],
+            locals: vec![Local::default(); nb],
+            composites: vec![Composite::default(); nb],
+            articulated: vec![Articulated::NONE; nb],
+            m: vec![0.0; entries],
+            l: vec![0.0; entries],
+            mass_matrix: DMatrix::zeros(nv, nv),
+        }
+    }
+
+    /// Takes the joint coordinates and the base's attitude.
+    pub(crate) fn set_position(&mut self, model: &Model, q: &[f64]) {
+        assert_eq!(q.len(), model.nq(), "length of q");
+        self.base = Mat3::from_quaternion([q[3], q[4], q[5], q[6]]);
+        for (k, ((body, joint), &q)) in
+            model.bodies.iter().zip(&mut self.joints).skip(1).zip(&q[7..]).enumerate()
+        {
+            match body.kind {
+                Kind::Along(e) => joint.r = body.r + e * q,
+                kind => {
+                    let (s, c) = q.sin_cos();
+                    (joint.s, joint.c) = (s * body.sign, c);
+                    if let Kind::About(e) = kind {
+                        self.oblique[k + 1] = Mat3::about(e, joint.c, joint.s);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Articulated {
+    pub(crate) const NONE: Articulated = Articulated {
+        i: Sym3 { xx: 0.0, yy: 0.0, zz: 0.0, xy: 0.0, xz: 0.0, yz: 0.0 },
+        h: Mat3 { x: ZERO, y: ZERO, z: ZERO },
+        m: Sym3 { xx: 0.0, yy: 0.0, zz: 0.0, xy: 0.0, xz: 0.0, yz: 0.0 },
+        n: ZERO,
+        f: ZERO,
+        un: ZERO,
+        uf: ZERO,
+        d: 0.0,
+        u: 0.0,
+        cw: ZERO,
+        ca: ZERO,
+    };
+}
+
+/// Runs an expression with the joint's [`crate::turn::Turn`]; the kernel is compiled for each kind.
+macro_rules! with_turn {
+    ($body:expr, $joint:expr, $oblique:expr, $t:ident => $run:expr) => {{
+        use $crate::model::Kind;
+        use $crate::turn::{About, AboutX, AboutY, AboutZ, Along};
+        match $body.kind {
+            Kind::X => {
+                let $t = AboutX($joint.c, $joint.s);
+                $run
+            }
+            Kind::Y => {
+                let $t = AboutY($joint.c, $joint.s);
+                $run
+            }
+            Kind::Z => {
+                let $t = AboutZ($joint.c, $joint.s);
+                $run
+            }
+            Kind::About(e) => {
+                let $t = About($oblique, e);
+                $run
+            }
+            Kind::Along(e) => {
+                let $t = Along(e);
+                $run
+            }
+            Kind::Base => {}
+        }
+    }};
+}
+pub(crate) use with_turn;

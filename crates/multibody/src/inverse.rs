@@ -1,0 +1,111 @@
+//! Inverse dynamics: M v' + h of (2.34)-(2.36), by one sweep out and one sweep back.
+//!
+//! | symbol | name | unit | axes |
+//! |---|---|---|---|
+//! | w, dw | angular velocity and acceleration of a body | rad/s | body |
+//! | a | acceleration of its origin, less gravity | m/s^2 | body |
+//! | f, n | force, and moment about its origin, for the body and all it carries | N, N m | body |
+//! | m, mc, i | mass, first moment, moments of inertia about the origin | | body |
+//!
+//! The sweep needs no linear velocities. Gravity enters as the base's acceleration -g with g = (0, 0, -9.81); the
+//! print of (2.36) has the opposite sign (errata).
+
+use crate::data::{Data, Local, with_turn};
+use crate::model::{Body, G, Model};
+use crate::space::{V3, ZERO};
+use crate::turn::Turn;
+
+impl Model {
+    /// Generalized force that gives `acceleration` (v') at `q`, `v`: M v' + h, length n_v each.
+    pub fn inverse_dynamics(
+        &self,
+        data: &mut Data,
+        q: &[f64],
+        v: &[f64],
+        acceleration: &[f64],
+        force: &mut [f64],
+    ) {
+        assert_eq!(acceleration.len(), self.nv(), "length of the acceleration");
+        data.set_position(self, q);
+        let base = (V3::from_slice(acceleration), V3::from_slice(&acceleration[3..]));
+        self.sweeps(data, v, base, |k| acceleration[k + 5]);
+        self.collect(data, force);
+    }
+
+    /// Nonlinear terms h at `q`, `v`: Coriolis, centrifugal and weight; M v' + h = generalized force.
+    pub fn nonlinear_terms(&self, data: &mut Data, q: &[f64], v: &[f64], h: &mut [f64]) {
+        data.set_position(self, q);
+        self.bias(data, v, h);
+    }
+
+    /// Nonlinear terms, the position being set.
+    pub(crate) fn bias(&self, data: &mut Data, v: &[f64], h: &mut [f64]) {
+        self.sweeps(data, v, (ZERO, ZERO), |_| 0.0);
+        self.collect(data, h);
+    }
+
+    /// Both sweeps; leaves force and moment of every body in `data`.
+    #[inline(always)]
+    pub(crate) fn sweeps(&self, data: &mut Data, v: &[f64], base: (V3, V3), qdd: impl Fn(usize) -> f64) {
+        assert_eq!(v.len(), self.nv(), "length of v");
+        let Data { joints, oblique, locals, base: attitude, .. } = data;
+        let w = V3::from_slice(&v[3..]);
+        let a = base.0 + w.cross(V3::from_slice(v)) - attitude.t_mul(G);
+        locals[0] = load(&self.bodies[0], w, base.1, a);
+        for (k, body) in self.bodies.iter().enumerate().skip(1) {
+            let (p, j) = (&locals[body.parent], &joints[k]);
+            let (qd, qdd) = (v[k + 5] * body.sign, qdd(k) * body.sign);
+            with_turn!(body, j, &oblique[k], t => locals[k] = out(t, p, j.r, qd, qdd, body));
+        }
+        for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
+            let (own, j) = (locals[k], &joints[k]);
+            let p = &mut locals[body.parent];
+            with_turn!(body, j, &oblique[k], t => {
+                let f = t.up(own.f);
+                p.f += f;
+                p.n += t.up(own.n) + j.r.cross(f);
+            });
+        }
+    }
+
+    /// Takes the generalized force out of the bodies' forces and moments.
+    fn collect(&self, data: &Data, force: &mut [f64]) {
+        assert_eq!(force.len(), self.nv(), "length of the generalized force");
+        let base = &data.locals[0];
+        force[..3].copy_from_slice(&base.f.array());
+        force[3..6].copy_from_slice(&base.n.array());
+        for (k, body) in self.bodies.iter().enumerate().skip(1) {
+            let (l, j) = (&data.locals[k], &data.joints[k]);
+            with_turn!(body, j, &data.oblique[k], t => {
+                force[k + 5] = t.part(choose(t, l.n, l.f)) * body.sign;
+            });
+        }
+    }
+}
+
+/// What a joint feels: the moment if it turns, the force if it slides.
+#[inline(always)]
+pub(crate) fn choose<T: Turn>(_: T, turning: V3, sliding: V3) -> V3 {
+    if T::SLIDES { sliding } else { turning }
+}
+
+/// Motion of a body from its parent's, and the load of its own inertia.
+#[inline(always)]
+fn out<T: Turn>(t: T, p: &Local, r: V3, qd: f64, qdd: f64, body: &Body) -> Local {
+    let w = t.down(p.w);
+    let dw = t.down(p.dw);
+    let a = t.down(p.a + p.dw.cross(r) + p.w.cross(p.w.cross(r)));
+    if T::SLIDES {
+        load(body, w, dw, t.plus(a + t.across(w, 2.0 * qd), qdd))
+    } else {
+        load(body, t.plus(w, qd), t.plus(dw + t.across(w, qd), qdd), a)
+    }
+}
+
+/// Force and moment about the origin that a body's own inertia asks for (2.36).
+#[inline(always)]
+fn load(b: &Body, w: V3, dw: V3, a: V3) -> Local {
+    let f = a * b.m + dw.cross(b.mc) + w.cross(w.cross(b.mc));
+    let n = b.i * dw + b.mc.cross(a) + w.cross(b.i * w);
+    Local { w, dw, a, f, n }
+}

@@ -1,0 +1,140 @@
+//! Poses and motions of bodies and frames.
+//!
+//! | symbol | name | unit | axes |
+//! |---|---|---|---|
+//! | a | rotation world_from_body | 1 | |
+//! | r | origin of the body | m | world |
+//! | e | axis of the body's joint along its coordinate | 1 | world |
+//! | w, v | angular velocity, velocity of the origin (2.1), (2.3) | rad/s, m/s | world |
+//! | dw, dv | the same, differentiated, for v' = 0: the products J' v of (2.2), (2.4) | | world |
+//!
+//! The thesis carries velocities in body axes and gives no recursion for the products; here they are those of errata
+//! F1, in world axes, where the "- w_rel x" terms vanish.
+
+use nalgebra::{IsometryMatrix3, Vector3};
+
+use crate::data::{Data, Motion, Place, with_turn};
+use crate::model::{Frame, Kind, Model};
+use crate::space::{Mat3, V3, ZERO};
+use crate::turn::Turn;
+
+/// A velocity, or an acceleration, of a frame: of its origin and of its rotation. World axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Twist {
+    /// \[m/s\], \[m/s^2\]
+    pub linear: Vector3<f64>,
+    /// \[rad/s\], \[rad/s^2\]
+    pub angular: Vector3<f64>,
+}
+
+impl Model {
+    /// Poses of all bodies at `q`. Motions in `data` are then stale.
+    pub fn forward_kinematics(&self, data: &mut Data, q: &[f64]) {
+        data.set_position(self, q);
+        let Data { joints, oblique, places, base, .. } = data;
+        places[0] = Place { a: *base, r: V3::from_slice(q), e: ZERO };
+        for (k, body) in self.bodies.iter().enumerate().skip(1) {
+            let (p, j) = (places[body.parent], &joints[k]);
+            with_turn!(body, j, &oblique[k], t => {
+                let a = t.chain(p.a);
+                places[k] = Place { a, r: p.r + p.a * j.r, e: t.column_of(&a) * body.sign };
+            });
+        }
+    }
+
+    /// Poses, velocities and velocity-product accelerations of all bodies at `q`, `v`.
+    pub fn forward_motion(&self, data: &mut Data, q: &[f64], v: &[f64]) {
+        self.forward_kinematics(data, q);
+        self.motion(data, v);
+    }
+
+    /// Velocities and velocity-product accelerations of all bodies, the poses being known.
+    pub fn motion(&self, data: &mut Data, v: &[f64]) {
+        assert_eq!(v.len(), self.nv(), "length of v");
+        let Data { places, motions, .. } = data;
+        let a = places[0].a;
+        let (w, vel) = (a * V3::from_slice(&v[3..]), a * V3::from_slice(v));
+        motions[0] = Motion { w, v: vel, dw: ZERO, dv: w.cross(vel) };
+        for (k, (body, &qd)) in self.bodies.iter().skip(1).zip(&v[6..]).enumerate() {
+            let (place, p) = (&places[k + 1], motions[body.parent]);
+            let d = place.r - places[body.parent].r;
+            let e = place.e * qd;
+            let mut m = Motion {
+                w: p.w,
+                v: p.v + p.w.cross(d),
+                dw: p.dw,
+                dv: p.dv + p.dw.cross(d) + p.w.cross(p.w.cross(d)),
+            };
+            if let Kind::Along(_) = body.kind {
+                m.v += e;
+                m.dv += p.w.cross(e) * 2.0;
+            } else {
+                m.w += e;
+                m.dw += p.w.cross(e);
+            }
+            motions[k + 1] = m;
+        }
+    }
+
+    /// world_from_frame, after [`Model::forward_kinematics`].
+    pub fn frame_pose(&self, data: &Data, frame: &Frame) -> IsometryMatrix3<f64> {
+        let p = &data.places[frame.body];
+        let r: Vector3<f64> = (p.r + p.a * frame.r).into();
+        IsometryMatrix3::from_parts(r.into(), (p.a * frame.rotation).into())
+    }
+
+    /// \[m\] Origin of a frame in the world, after [`Model::forward_kinematics`].
+    pub fn frame_position(&self, data: &Data, frame: &Frame) -> Vector3<f64> {
+        let p = &data.places[frame.body];
+        (p.r + p.a * frame.r).into()
+    }
+
+    /// Velocity of a frame's origin and its angular velocity (2.1), (2.3), after [`Model::forward_motion`].
+    pub fn frame_velocity(&self, data: &Data, frame: &Frame) -> Twist {
+        let m = &data.motions[frame.body];
+        let d = data.places[frame.body].a * frame.r;
+        Twist { linear: (m.v + m.w.cross(d)).into(), angular: m.w.into() }
+    }
+
+    /// J' v: acceleration of a frame when v' = 0 (2.2), (2.4), after [`Model::forward_motion`]. The acceleration is
+    /// J v' plus this.
+    pub fn frame_bias(&self, data: &Data, frame: &Frame) -> Twist {
+        let m = &data.motions[frame.body];
+        let d = data.places[frame.body].a * frame.r;
+        let dv = m.dv + m.dw.cross(d) + m.w.cross(m.w.cross(d));
+        Twist { linear: dv.into(), angular: m.dw.into() }
+    }
+
+    /// Adds J^T (force, moment) to a generalized force: a force \[N\] at the frame's origin and a moment \[N m\], world
+    /// axes, that act on the frame's body. Needs [`Model::forward_kinematics`].
+    pub fn add_wrench(
+        &self,
+        data: &Data,
+        frame: &Frame,
+        force: &Vector3<f64>,
+        moment: &Vector3<f64>,
+        generalized: &mut [f64],
+    ) {
+        let (f, n) = (V3::from(*force), V3::from(*moment));
+        let place = &data.places[frame.body];
+        let at = place.r + place.a * frame.r;
+        let mut k = frame.body;
+        while k != 0 {
+            let (p, body) = (&data.places[k], &self.bodies[k]);
+            generalized[5 + k] += match body.kind {
+                Kind::Along(_) => p.e.dot(f),
+                _ => p.e.dot(n + (at - p.r).cross(f)),
+            };
+            k = body.parent;
+        }
+        let base = &data.places[0];
+        add(&mut generalized[..3], base.a, f);
+        add(&mut generalized[3..6], base.a, n + (at - base.r).cross(f));
+    }
+}
+
+fn add(out: &mut [f64], a: Mat3, world: V3) {
+    for (o, x) in out.iter_mut().zip(a.t_mul(world).array()) {
+        *o += x;
+    }
+}

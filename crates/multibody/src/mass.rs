@@ -1,0 +1,122 @@
+//! Mass matrix (2.35) by composite bodies.
+//!
+//! The body k and all it carries, taken as rigid, have mass, first moment mc and moments i about k's origin. A unit
+//! speed of joint k gives that composite the momentum f and moment of momentum n; carried towards the base, their
+//! parts along each joint on the way are the entries of row k. Entries between different branches are zero and are
+//! never touched.
+
+use nalgebra::DMatrix;
+
+use crate::data::{Composite, Data, with_turn};
+use crate::inverse::choose;
+use crate::model::Model;
+use crate::space::{Sym3, V3};
+use crate::turn::Turn;
+
+impl Model {
+    /// Mass matrix at `q`, n_v x n_v, symmetric, both triangles.
+    pub fn mass_matrix<'d>(&self, data: &'d mut Data, q: &[f64]) -> &'d DMatrix<f64> {
+        data.set_position(self, q);
+        self.composites(data);
+        self.rows(data);
+        let Data { m, mass_matrix, .. } = data;
+        for k in 0..self.nv() {
+            let row = self.paths.row(k);
+            for (&x, &c) in m[row.clone()].iter().zip(&self.paths.column[row]) {
+                mass_matrix[(k, c)] = x;
+                mass_matrix[(c, k)] = x;
+            }
+        }
+        &data.mass_matrix
+    }
+
+    /// Composite bodies, from the tips to the base.
+    pub(crate) fn composites(&self, data: &mut Data) {
+        let Data { joints, oblique, composites, .. } = data;
+        for (c, b) in composites.iter_mut().zip(&self.bodies) {
+            *c = Composite { mc: b.mc, i: b.i };
+        }
+        for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
+            let (own, j) = (composites[k], &joints[k]);
+            let p = &mut composites[body.parent];
+            with_turn!(body, j, &oblique[k], t => carry(t, &own, self.carried[k], j.r, p));
+        }
+    }
+
+    /// Rows of the mass matrix along the paths.
+    pub(crate) fn rows(&self, data: &mut Data) {
+        let Data { joints, oblique, composites, m, .. } = data;
+        base_rows(self.mass(), &composites[0], m);
+        for (k, body) in self.bodies.iter().enumerate().skip(1) {
+            let row = &mut m[self.paths.row(k + 5)];
+            let mut at = row.len() - 1;
+            let (c, j) = (&composites[k], &joints[k]);
+            let (mut f, mut n) = (V3::default(), V3::default());
+            with_turn!(body, j, &oblique[k], t => {
+                (f, n) = momentum(t, c, self.carried[k]);
+                row[at] = t.part(choose(t, n, f));
+                (f, n) = (t.up(f), t.up(n));
+            });
+            n += j.r.cross(f);
+            let mut k = body.parent;
+            while k != 0 {
+                at -= 1;
+                let (ancestor, j) = (&self.bodies[k], &joints[k]);
+                with_turn!(ancestor, j, &oblique[k], t => {
+                    row[at] = t.part(choose(t, n, f)) * ancestor.sign * body.sign;
+                    (f, n) = (t.up(f), t.up(n));
+                });
+                n += j.r.cross(f);
+                k = ancestor.parent;
+            }
+            row[..3].copy_from_slice(&(f * body.sign).array());
+            row[3..6].copy_from_slice(&(n * body.sign).array());
+        }
+    }
+}
+
+/// Adds a composite of mass `m` whose origin is at `r` in the parent's frame.
+#[inline(always)]
+fn carry<T: Turn>(t: T, own: &Composite, m: f64, r: V3, p: &mut Composite) {
+    let mc = t.up(own.mc);
+    // Moments about a point r away: I + m (r.r E - r r^T) + (2 r.mc E - r mc^T - mc r^T), with u = mc + m r/2.
+    let u = mc + r * (0.5 * m);
+    let d = 2.0 * r.dot(u);
+    let (ru, s) =
+        (Sym3 { xx: r.x * u.x, yy: r.y * u.y, zz: r.z * u.z, xy: 0.0, xz: 0.0, yz: 0.0 }, t.up_sym(own.i));
+    p.mc += mc + r * m;
+    p.i.xx += s.xx + d - 2.0 * ru.xx;
+    p.i.yy += s.yy + d - 2.0 * ru.yy;
+    p.i.zz += s.zz + d - 2.0 * ru.zz;
+    p.i.xy += s.xy - (r.x * u.y + r.y * u.x);
+    p.i.xz += s.xz - (r.x * u.z + r.z * u.x);
+    p.i.yz += s.yz - (r.y * u.z + r.z * u.y);
+}
+
+/// Momentum and moment of momentum about the body's origin for unit speed of its joint.
+#[inline(always)]
+fn momentum<T: Turn>(t: T, c: &Composite, m: f64) -> (V3, V3) {
+    if T::SLIDES {
+        (t.plus(V3::default(), m), t.across(c.mc, 1.0))
+    } else {
+        (t.across(c.mc, -1.0), t.column(c.i))
+    }
+}
+
+/// The six rows of the base: m E, m c~, I.
+fn base_rows(mass: f64, c: &Composite, m: &mut [f64]) {
+    let (mc, i) = (c.mc, c.i);
+    let rows: [&[f64]; 6] = [
+        &[mass],
+        &[0.0, mass],
+        &[0.0, 0.0, mass],
+        &[0.0, -mc.z, mc.y, i.xx],
+        &[mc.z, 0.0, -mc.x, i.xy, i.yy],
+        &[-mc.y, mc.x, 0.0, i.xz, i.yz, i.zz],
+    ];
+    let mut at = 0;
+    for row in rows {
+        m[at..at + row.len()].copy_from_slice(row);
+        at += row.len();
+    }
+}

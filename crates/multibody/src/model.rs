@@ -1,0 +1,188 @@
+//! The tree: what never changes.
+
+use nalgebra::{IsometryMatrix3, Vector3};
+
+use crate::builder::kernel_rotation;
+use crate::error::ModelError;
+use crate::space::{Mat3, Sym3, V3};
+
+/// \[m/s^2\] Gravity in the world frame.
+pub const GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
+
+pub(crate) const G: V3 = V3 { x: 0.0, y: 0.0, z: -9.81 };
+
+/// A floating-base tree of rigid bodies.
+///
+/// | symbol | content | shape |
+/// |---|---|---|
+/// | q | base position in the world \[m\], base quaternion (x, y, z, w), joint coordinates | 7 + n |
+/// | v | base velocity \[m/s\] and angular velocity \[rad/s\], both in the base frame, joint speeds | 6 + n |
+///
+/// v's first six are a velocity, not the derivative of q's first seven; [`Model::integrate`] connects them. A
+/// generalized force has the shape of v: force and moment about the base's origin in the base frame, joint torques.
+/// Velocities, accelerations and Jacobians of frames have world axes.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(crate) bodies: Vec<Body>,
+    pub(crate) links: Vec<Link>,
+    pub(crate) joint_names: Vec<String>,
+    /// \[kg\] Mass of the body and everything it carries.
+    pub(crate) carried: Vec<f64>,
+    pub(crate) paths: Paths,
+}
+
+/// One rigid body with the joint that moves it, in a frame parallel to the base at zero coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Body {
+    pub parent: usize,
+    pub kind: Kind,
+    /// +1 or -1: the coordinate counts along or against the axis of `kind`.
+    pub sign: f64,
+    /// Origin in the parent's frame at zero coordinate.
+    pub r: V3,
+    pub m: f64,
+    /// First moment of mass m c.
+    pub mc: V3,
+    /// Moments of inertia about the origin.
+    pub i: Sym3,
+}
+
+impl Body {
+    pub(crate) fn is_finite(&self) -> bool {
+        (self.r.dot(self.r) + self.mc.dot(self.mc)).is_finite()
+    }
+}
+
+/// Joint of a body by its fastest kernel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
+    Base,
+    X,
+    Y,
+    Z,
+    About(V3),
+    Along(V3),
+}
+
+/// A link by name: its body and body_from_link.
+#[derive(Clone, Debug)]
+pub(crate) struct Link {
+    pub name: String,
+    pub body: usize,
+    pub pose: IsometryMatrix3<f64>,
+}
+
+/// A frame fixed to a body; cheap to copy.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    pub(crate) body: usize,
+    /// body_from_frame
+    pub(crate) rotation: Mat3,
+    pub(crate) r: V3,
+}
+
+impl Frame {
+    /// The same axes at another origin, `offset` \[m\] away in this frame's axes.
+    pub fn shifted(&self, offset: [f64; 3]) -> Frame {
+        Frame { r: self.r + self.rotation * V3::from_slice(&offset), ..*self }
+    }
+
+    /// Joint that moves the frame's body, none if it belongs to the base.
+    pub fn joint(&self) -> Option<usize> {
+        self.body.checked_sub(1)
+    }
+}
+
+/// For every degree of freedom the degrees of freedom from the base to it, itself last.
+///
+/// Row k of a symmetric matrix with the sparsity of the tree holds exactly these columns, so rows of this shape, one
+/// after the other, are all there is of the mass matrix, and the row of an ancestor has the same columns as the
+/// beginning of the row of its descendant.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Paths {
+    /// First entry of each row; one more at the end.
+    pub start: Vec<usize>,
+    pub column: Vec<usize>,
+}
+
+impl Paths {
+    fn new(bodies: &[Body]) -> Paths {
+        let mut p = Paths::default();
+        let mut rows: Vec<Vec<usize>> = (0..6).map(|k| (0..=k).collect()).collect();
+        for (k, body) in bodies.iter().enumerate().skip(1) {
+            let mut row = rows[body.parent + 5].clone();
+            row.push(k + 5);
+            rows.push(row);
+        }
+        for row in rows {
+            p.start.push(p.column.len());
+            p.column.extend(row);
+        }
+        p.start.push(p.column.len());
+        p
+    }
+
+    #[inline(always)]
+    pub(crate) fn row(&self, k: usize) -> std::ops::Range<usize> {
+        self.start[k]..self.start[k + 1]
+    }
+}
+
+impl Model {
+    pub(crate) fn new(bodies: Vec<Body>, links: Vec<Link>, joint_names: Vec<String>) -> Model {
+        let mut carried: Vec<f64> = bodies.iter().map(|b| b.m).collect();
+        for k in (1..bodies.len()).rev() {
+            carried[bodies[k].parent] += carried[k];
+        }
+        let paths = Paths::new(&bodies);
+        Model { bodies, links, joint_names, carried, paths }
+    }
+
+    /// Number of joints n.
+    pub fn n(&self) -> usize {
+        self.joint_names.len()
+    }
+
+    /// Length of q: 7 + n.
+    pub fn nq(&self) -> usize {
+        7 + self.n()
+    }
+
+    /// Length of v: 6 + n.
+    pub fn nv(&self) -> usize {
+        6 + self.n()
+    }
+
+    /// \[kg\] Mass of the whole robot.
+    pub fn mass(&self) -> f64 {
+        self.carried[0]
+    }
+
+    /// Names of the joints in the order of their coordinates.
+    pub fn joint_names(&self) -> &[String] {
+        &self.joint_names
+    }
+
+    /// Index of a joint (0..n); its coordinate is q\[7 + i\], its speed v\[6 + i\].
+    pub fn joint_index(&self, name: &str) -> Option<usize> {
+        self.joint_names.iter().position(|j| j == name)
+    }
+
+    /// Joint that carries a joint's parent body; none if that is the base.
+    pub fn parent_joint(&self, joint: usize) -> Option<usize> {
+        self.bodies[joint + 1].parent.checked_sub(1)
+    }
+
+    /// Names of all links, in the order in which they were added.
+    pub fn link_names(&self) -> impl Iterator<Item = &str> {
+        self.links.iter().map(|l| l.name.as_str())
+    }
+
+    /// A frame with the axes of `link`, its origin at `offset` \[m\] in the link.
+    pub fn frame(&self, link: &str, offset: [f64; 3]) -> Result<Frame, ModelError> {
+        let found = self.links.iter().find(|l| l.name == link);
+        let link = found.ok_or_else(|| ModelError::UnknownLink(link.into()))?;
+        let rotation = kernel_rotation(&link.pose);
+        Ok(Frame { body: link.body, rotation, r: link.pose.translation.vector.into() }.shifted(offset))
+    }
+}
