@@ -42,6 +42,13 @@ impl<const D: usize, const N: usize> Path<D, N> {
         Self { pieces: 0, start, origin: position, ends: [0.0; N], coefficients: [[[0.0; 6]; D]; N] }
     }
 
+    /// Removes all pieces: rests at `position` at all times, until the next [`Path::push`].
+    pub fn restart(&mut self, start: f64, position: [f64; D]) {
+        self.pieces = 0;
+        self.start = start;
+        self.origin = position;
+    }
+
     /// End of the last piece \[s\].
     pub fn end(&self) -> f64 {
         if self.pieces == 0 { self.start } else { self.ends[self.pieces as usize - 1] }

@@ -25,6 +25,11 @@ impl<const D: usize, const N: usize> Polyline<D, N> {
         Self { points: 0, times: [0.0; N], values: [[0.0; D]; N] }
     }
 
+    /// Removes all points.
+    pub fn clear(&mut self) {
+        self.points = 0;
+    }
+
     /// Appends a point; `false` if there is no room or `time` does not lie after the last point.
     pub fn push(&mut self, time: f64, value: [f64; D]) -> bool {
         let n = self.points as usize;

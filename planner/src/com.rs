@@ -1,0 +1,237 @@
+//! Centre-of-gravity trajectory of the three-mass model (thesis 4.6.3, 4.6.5; errata 2.6, 2.8, 2.9).
+//!
+//! `y_b.. = om2 y_b + r` with `om2 = (z_b.. + g) / z_b` and
+//! `r = (-p F_z + sum m_l (y_l (z_l.. + g) - z_l y_l..)) / (m_b z_b)`, the same for x and y when the moment is written
+//! through the zero-moment point p. All masses are shares of the robot's mass, which therefore never appears.
+//!
+//! | symbol | name | unit |
+//! |---|---|---|
+//! | m_b, m_l | masses of the body and of one leg over the robot's | 1 |
+//! | z | height of the robot's centre of gravity, given | m |
+//! | z_b, y_b | body mass point | m |
+//! | z_l, y_l | leg mass point: `leg_height` above the sole frame's origin | m |
+//! | gamma | amplitude of a modification of the zero-moment point (4.49) | m |
+
+use crate::collocation::{Collocation, F, LEFT, MAX_KNOTS, RIGHT, U};
+use crate::feet::FootPath;
+use crate::pose::{Pose, rotate};
+use crate::zmp::{Chain, Shape};
+use config::gait;
+use curves::{Path, Sample};
+
+/// \[m/s^2\] Gravity, downwards.
+pub const GRAVITY: f64 = 9.81;
+
+/// Height of the centre of gravity over time.
+pub type HeightPath = Path<1, 16>;
+
+/// Everything that drives the centre of gravity.
+#[derive(Clone, Copy)]
+pub struct Drive<'a> {
+    /// Feet: right, left.
+    pub feet: &'a [FootPath; 2],
+    /// Height of the robot's centre of gravity \[m\].
+    pub height: &'a HeightPath,
+    /// Reference of the zero-moment point.
+    pub zmp: &'a Chain,
+    /// Where the zero-moment point may be modified.
+    pub shapes: [Shape; 2],
+}
+
+/// Position and velocity of the body mass point in the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// \[m\]
+    pub r: [f64; 2],
+    /// \[m/s\]
+    pub v: [f64; 2],
+}
+
+/// Sums over both leg mass points.
+#[derive(Clone, Copy, Default)]
+struct Legs {
+    position: [f64; 3],
+    velocity: [f64; 3],
+    acceleration: [f64; 3],
+}
+
+/// Collocation of the three-mass model over one interval.
+pub struct ComSolver {
+    leg: f64,
+    body: f64,
+    leg_height: f64,
+    problem: Box<Collocation>,
+    legs: Box<[Legs; MAX_KNOTS]>,
+}
+
+impl ComSolver {
+    /// A solver for the masses of `model`.
+    pub fn new(model: &gait::Model) -> Self {
+        Self {
+            leg: model.leg_mass,
+            body: 1.0 - 2.0 * model.leg_mass,
+            leg_height: model.leg_height,
+            problem: Box::new(Collocation::new()),
+            legs: Box::new([Legs::default(); MAX_KNOTS]),
+        }
+    }
+
+    fn legs(&self, feet: &[FootPath; 2], t: f64) -> ([Sample<4>; 2], Legs) {
+        let s = [feet[0].sample(t), feet[1].sample(t)];
+        let sum = |f: fn(&Sample<4>) -> &[f64; 4]| std::array::from_fn(|d| f(&s[0])[d] + f(&s[1])[d]);
+        let mut legs = Legs {
+            position: sum(|s| &s.position),
+            velocity: sum(|s| &s.velocity),
+            acceleration: sum(|s| &s.acceleration),
+        };
+        legs.position[2] += 2.0 * self.leg_height;
+        (s, legs)
+    }
+
+    /// State of the body mass point of a robot whose centre of gravity is `com` (errata on (4.51)-(4.54)).
+    pub fn body_state(&self, com: &Sample<3>, feet: &[FootPath; 2], t: f64) -> State {
+        let (_, legs) = self.legs(feet, t);
+        let of = |c: f64, l: f64| (c - self.leg * l) / self.body;
+        State {
+            r: [0, 1].map(|d| of(com.position[d], legs.position[d])),
+            v: [0, 1].map(|d| of(com.velocity[d], legs.velocity[d])),
+        }
+    }
+
+    /// om2 and right-hand sides at `t`.
+    fn forces(&self, drive: &Drive, t: f64) -> (f64, [f64; F], Legs) {
+        let (feet, legs) = self.legs(drive.feet, t);
+        let z = drive.height.sample(t);
+        let z_b = (z.position[0] - self.leg * legs.position[2]) / self.body;
+        let zdd_b = (z.acceleration[0] - self.leg * legs.acceleration[2]) / self.body;
+        let f_z = z.acceleration[0] + GRAVITY; // (4.35)
+        let p = drive.zmp.at(t);
+        let scale = 1.0 / (self.body * z_b);
+        let r = [0, 1].map(|d| {
+            let swing: f64 = feet
+                .iter()
+                .map(|l| {
+                    l.position[d] * (l.acceleration[2] + GRAVITY)
+                        - (l.position[2] + self.leg_height) * l.acceleration[d]
+                })
+                .sum();
+            scale * (self.leg * swing - p[d] * f_z) // (4.38), (4.39)
+        });
+        let q = [0, 1].map(|j| -scale * f_z * drive.shapes[j].at(t)); // (4.49)
+        ((zdd_b + GRAVITY) / z_b, [r[0], r[1], q[0], q[1]], legs)
+    }
+
+    /// Places knots on all `marks` \[s\], and between them no farther apart than `spacing`, and solves (4.50).
+    pub fn solve(&mut self, drive: &Drive, marks: &[f64], spacing: f64) {
+        let mut n = 0;
+        self.problem.t[0] = marks[0];
+        for pair in marks.windows(2) {
+            let pieces = pieces(pair[1] - pair[0], spacing);
+            for k in 1..=pieces {
+                n += 1;
+                if n >= MAX_KNOTS {
+                    return;
+                }
+                let s = k as f64 / pieces as f64;
+                self.problem.t[n] = if k == pieces { pair[1] } else { pair[0] + s * (pair[1] - pair[0]) };
+            }
+        }
+        self.problem.n = n + 1;
+        for i in 0..=n {
+            let t = self.problem.t[i];
+            let (om2, f, legs) = self.forces(drive, t);
+            self.problem.om2[i] = om2;
+            self.problem.f[i] = f;
+            self.legs[i] = legs;
+            if i < n {
+                self.problem.half[i] = self.forces(drive, 0.5 * (t + self.problem.t[i + 1])).1;
+            }
+        }
+        self.problem.solve();
+    }
+
+    /// The start state of the periodic solution whose end is its start, moved as `from` is moved to `to`
+    /// ((4.31), errata 2.9). Complex numbers stand for vectors in the plane: x + i y.
+    pub fn periodic_state(&self, from: &Pose, to: &Pose) -> State {
+        let (a, b) = (self.problem.slope(0), self.problem.slope(self.problem.n - 1));
+        let angle = to.heading - from.heading;
+        let turn = |v: [f64; 2]| rotate(angle, v);
+        let moved = turn([from.x, from.y]);
+        let d = [to.x - moved[0], to.y - moved[1]]; // r_b = R r_a + d
+        // (a_l R + a_r R^2 - b_l - b_r R) r_a = b_r d + P_b - R (a_r d + P_a)
+        let (s, c) = angle.sin_cos();
+        let (s2, c2) = (2.0 * angle).sin_cos();
+        let (l, r) = (LEFT, RIGHT);
+        let m = [a[l] * c + a[r] * c2 - b[l] - b[r] * c, a[l] * s + a[r] * s2 - b[r] * s];
+        let at_a = turn([0, 1].map(|k| a[r] * d[k] + a[k]));
+        let rhs = [0, 1].map(|k| b[r] * d[k] + b[k] - at_a[k]);
+        let det = m[0] * m[0] + m[1] * m[1];
+        let r_a = [(m[0] * rhs[0] + m[1] * rhs[1]) / det, (m[0] * rhs[1] - m[1] * rhs[0]) / det];
+        let turned = turn(r_a);
+        State { r: r_a, v: [0, 1].map(|k| a[l] * r_a[k] + a[r] * (turned[k] + d[k]) + a[k]) }
+    }
+
+    /// Amplitudes gamma_0, gamma_1 per axis that meet position and velocity at both ends (4.51)-(4.54).
+    pub fn amplitudes(&self, begin: &State, end: &State) -> [[f64; 2]; 2] {
+        let (a, b) = (self.problem.slope(0), self.problem.slope(self.problem.n - 1));
+        let det = a[2] * b[3] - a[3] * b[2];
+        let mut gamma = [[0.0; 2]; 2];
+        for d in 0..2 {
+            let va = begin.v[d] - a[d] - a[LEFT] * begin.r[d] - a[RIGHT] * end.r[d];
+            let vb = end.v[d] - b[d] - b[LEFT] * begin.r[d] - b[RIGHT] * end.r[d];
+            gamma[0][d] = (va * b[3] - a[3] * vb) / det;
+            gamma[1][d] = (a[2] * vb - va * b[2]) / det;
+        }
+        gamma
+    }
+
+    /// Appends the robot's centre of gravity to `com`: quintics through position, velocity and acceleration at knots.
+    pub fn write<const N: usize>(
+        &self,
+        begin: &State,
+        end: &State,
+        gamma: &[[f64; 2]; 2],
+        height: &HeightPath,
+        com: &mut Path<3, N>,
+    ) {
+        let mut last = self.com(0, begin, end, gamma, height);
+        for i in 1..self.problem.n {
+            let next = self.com(i, begin, end, gamma, height);
+            com.push(&last, &next, self.problem.t[i]);
+            last = next;
+        }
+    }
+
+    fn com(
+        &self,
+        i: usize,
+        begin: &State,
+        end: &State,
+        gamma: &[[f64; 2]; 2],
+        height: &HeightPath,
+    ) -> Sample<3> {
+        let p = &self.problem;
+        let slope = p.slope(i);
+        let z = height.sample(p.t[i]);
+        let mut com = Sample::rest([0.0, 0.0, z.position[0]]);
+        com.velocity[2] = z.velocity[0];
+        com.acceleration[2] = z.acceleration[0];
+        for d in 0..2 {
+            let sum = |u: &[f64; U]| {
+                u[d] + gamma[0][d] * u[2] + gamma[1][d] * u[3] + begin.r[d] * u[LEFT] + end.r[d] * u[RIGHT]
+            };
+            let f = p.f[i][d] + gamma[0][d] * p.f[i][2] + gamma[1][d] * p.f[i][3];
+            let body = [sum(&p.u[i]), sum(&slope), p.om2[i] * sum(&p.u[i]) + f];
+            let of = |b: f64, l: f64| self.body * b + self.leg * l;
+            com.position[d] = of(body[0], self.legs[i].position[d]);
+            com.velocity[d] = of(body[1], self.legs[i].velocity[d]);
+            com.acceleration[d] = of(body[2], self.legs[i].acceleration[d]);
+        }
+        com
+    }
+}
+
+/// Pieces no longer than `spacing` that an interval of length `h` is cut into.
+pub fn pieces(h: f64, spacing: f64) -> usize {
+    ((h / spacing - 1e-6).ceil() as usize).max(1)
+}

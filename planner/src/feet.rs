@@ -1,0 +1,106 @@
+//! Foot trajectories: a swing is three phases horizontally and three vertically (thesis 4.5, figure 4.13).
+//!
+//! All of them are quintics from rest to rest; feet stay flat. Knots of both directions are merged, because a foot's
+//! path has common knots for its four components.
+
+use crate::pose::Pose;
+use config::gait;
+use curves::{Path, Sample};
+
+/// Path of one foot: x, y, z \[m\] and heading \[rad\].
+pub type FootPath = Path<4, 32>;
+
+/// Share of a swing after which the foot has reached its full height.
+const RISEN: f64 = 0.4;
+/// Share of a swing after which the foot is lowered.
+const LOWERING: f64 = 0.6;
+/// Instants within a swing at which a trajectory has a knot.
+pub const MARKS: usize = 6;
+
+/// Instants of one swing \[s\].
+#[derive(Clone, Copy, Debug)]
+pub struct Swing {
+    /// Lift-off.
+    pub lift: f64,
+    /// Landing.
+    pub end: f64,
+    depart: f64,
+    arrive: f64,
+    risen: f64,
+    lowering: f64,
+}
+
+impl Swing {
+    /// A swing between lift-off and landing.
+    pub fn new(lift: f64, end: f64, step: &gait::Step) -> Self {
+        let h = end - lift;
+        Self {
+            lift,
+            end,
+            depart: lift + step.swing_lag.min(0.3 * h),
+            arrive: end - step.swing_lead.min(0.3 * h),
+            risen: lift + RISEN * h,
+            lowering: lift + LOWERING * h,
+        }
+    }
+
+    /// When the foot begins to come down.
+    pub fn lowering(&self) -> f64 {
+        self.lowering
+    }
+
+    /// All knots, ascending. The first is the lift-off, the last the landing.
+    pub fn marks(&self) -> [f64; MARKS] {
+        // `new` limits lag and lead to 0.3 of the swing, so this order always holds.
+        [self.lift, self.depart, self.risen, self.lowering, self.arrive, self.end]
+    }
+
+    fn at(&self, t: f64, from: &Pose, to: &Pose, height: f64) -> Sample<4> {
+        let (s, ds, dds) = ramp(t, self.depart, self.arrive);
+        let (z, dz, ddz) = if t < self.lowering {
+            ramp(t, self.lift, self.risen)
+        } else {
+            ramp(-t, -self.end, -self.lowering)
+        };
+        // Going down is going up backwards: the rate changes its sign.
+        let dz = if t < self.lowering { dz } else { -dz };
+        let d = [to.x - from.x, to.y - from.y, to.heading - from.heading];
+        Sample {
+            position: [from.x + s * d[0], from.y + s * d[1], z * height, from.heading + s * d[2]],
+            velocity: [ds * d[0], ds * d[1], dz * height, ds * d[2]],
+            acceleration: [dds * d[0], dds * d[1], ddz * height, dds * d[2]],
+        }
+    }
+}
+
+/// Quintic from 0 to 1 between `begin` and `end`, at rest on both sides: value and two derivatives.
+pub fn ramp(t: f64, begin: f64, end: f64) -> (f64, f64, f64) {
+    let h = end - begin;
+    let u = ((t - begin) / h).clamp(0.0, 1.0);
+    let v = 1.0 - u;
+    (
+        u * u * u * (10.0 - u * (15.0 - 6.0 * u)),
+        30.0 * u * u * v * v / h,
+        60.0 * u * v * (1.0 - 2.0 * u) / (h * h),
+    )
+}
+
+/// A foot that stands: the beginning of every path.
+pub fn stand(path: &mut FootPath, start: f64, at: &Pose) {
+    path.restart(start, [at.x, at.y, 0.0, at.heading]);
+}
+
+/// Appends a rest until lift-off and the swing to `to`.
+pub fn swing(path: &mut FootPath, swing: &Swing, from: &Pose, to: &Pose, height: f64) {
+    let rest = Sample::rest([from.x, from.y, 0.0, from.heading]);
+    if swing.lift > path.end() {
+        path.push(&rest, &rest, swing.lift);
+    }
+    let mut last = rest;
+    for mark in &swing.marks()[1..MARKS - 1] {
+        let next = swing.at(*mark, from, to, height);
+        path.push(&last, &next, *mark);
+        last = next;
+    }
+    path.push(&last, &Sample::rest([to.x, to.y, 0.0, to.heading]), swing.end);
+}

@@ -1,0 +1,309 @@
+//! Gait coordination: standing, starting, walking, stopping (thesis 4.2, figure 4.5), and the planner itself.
+
+use crate::com::GRAVITY;
+use crate::commands::{self, Wish};
+use crate::pose::{Pose, rotate};
+use crate::sole::Sole;
+use crate::steps::Parameters;
+use crate::walk::{Builder, Origin, Walk};
+use config::Gait;
+use curves::Sample;
+use messages::{Command, ControllerState, EventCode, GaitState, LEFT, Plan, RIGHT};
+use std::f64::consts::FRAC_PI_2;
+
+/// Cycles between the publication of a plan and its start.
+pub const LEAD: u64 = 10;
+/// Fewest cycles before its start at which a plan can still reach the controller.
+const LEAD_MIN: u64 = 3;
+/// Most events of one cycle.
+const MAX_EVENTS: usize = 16;
+
+/// What one cycle of the planner puts out.
+pub struct Output<'a> {
+    /// A new plan, in the cycle in which it was made.
+    pub plan: Option<&'a Plan>,
+    /// What happened: code and detail.
+    pub events: &'a [(EventCode, u64)],
+}
+
+/// What to plan next.
+enum Move {
+    Nothing,
+    Stand,
+    Start,
+    Step(GaitState),
+}
+
+/// The planner: walking commands to plans.
+pub struct Planner {
+    gait: Gait,
+    builder: Builder,
+    wish: Wish,
+    parameters: Parameters,
+    /// The plan being executed, as the controller says.
+    active: Walk,
+    /// The plan that was published and has not been confirmed yet; its id is 0 if there is none.
+    next: Walk,
+    last_id: u64,
+    events: Vec<(EventCode, u64)>,
+}
+
+impl Planner {
+    /// A planner for feet with these support rectangles (`config::robot::Foot::support`): right, left.
+    pub fn new(gait: &Gait, support: [[f64; 4]; 2]) -> Self {
+        let duration = gait.step.by_speed.first().map_or(1.0, |row| row[2]);
+        Self {
+            gait: gait.clone(),
+            builder: Builder::new(gait, support.map(Sole::new)),
+            wish: Wish::Rest,
+            parameters: Parameters::on_the_spot(duration),
+            active: Walk::new(),
+            next: Walk::new(),
+            last_id: 0,
+            events: Vec::with_capacity(MAX_EVENTS),
+        }
+    }
+
+    /// One cycle: takes commands, follows what the controller does, and makes a plan when one is due.
+    pub fn step(
+        &mut self,
+        tick: u64,
+        cycle_s: f64,
+        state: Option<&ControllerState>,
+        commands: &[Command],
+    ) -> Output<'_> {
+        self.events.clear();
+        self.builder.set_cycle(cycle_s);
+        if let Some(state) = state {
+            self.confirm(state);
+        }
+        let gait = self.gait_state(tick, state);
+        for command in commands {
+            self.take(command, gait);
+        }
+        let made = match (state, self.due(tick, gait)) {
+            (Some(state), due) => self.make(tick, gait, state, due),
+            (None, _) => false,
+        };
+        Output { plan: made.then_some(&*self.next.plan), events: &self.events }
+    }
+
+    /// A plan counts as active when the controller says so; one it did not take at its start is forgotten.
+    fn confirm(&mut self, state: &ControllerState) {
+        self.last_id = self.last_id.max(state.plan_id);
+        let next = &mut self.next.plan;
+        if next.id == 0 {
+            return;
+        }
+        if state.plan_id == next.id {
+            std::mem::swap(&mut self.active, &mut self.next);
+            self.next.plan.id = 0;
+            if self.active.plan.state == GaitState::Standing as u64 && self.wish == Wish::Stand {
+                self.wish = Wish::Rest;
+            }
+        } else if state.header.tick >= next.start_tick {
+            self.event(EventCode::PlanRefused, self.next.plan.id);
+            self.next.plan.id = 0;
+        }
+    }
+
+    /// Where in a walk the robot is (figure 4.5).
+    fn gait_state(&self, tick: u64, state: Option<&ControllerState>) -> GaitState {
+        let plan = &self.active.plan;
+        let known = state.is_none_or(|s| s.plan_id == plan.id);
+        if plan.id == 0 || !known {
+            // A plan of a planner before this one: its end is seen by the controller only.
+            return state.map_or(GaitState::Idle, |s| match GaitState::from(s.gait) {
+                GaitState::Starting | GaitState::Walking | GaitState::Stopping => GaitState::Walking,
+                GaitState::Idle | GaitState::Standing => GaitState::Idle,
+            });
+        }
+        if tick >= plan.start_tick + self.active.end_cycle {
+            return GaitState::Standing;
+        }
+        GaitState::from(plan.state)
+    }
+
+    /// The transition table.
+    fn due(&self, tick: u64, gait: GaitState) -> Move {
+        use GaitState::{Idle, Standing, Starting, Stopping, Walking};
+        let at_rest = tick + LEAD >= self.active.plan.start_tick + self.active.end_cycle;
+        match (gait, self.wish) {
+            _ if self.next.plan.id != 0 => Move::Nothing,
+            (Idle, Wish::Stand) => Move::Stand,
+            (Standing, Wish::Stand) if at_rest => Move::Stand,
+            (Standing, Wish::Walk) if at_rest => Move::Start,
+            (Starting | Walking | Stopping, Wish::Walk) => Move::Step(Walking),
+            (Starting | Walking, Wish::Rest | Wish::Stand) => Move::Step(Stopping),
+            _ => Move::Nothing,
+        }
+    }
+
+    fn take(&mut self, command: &Command, gait: GaitState) {
+        let taken = match command {
+            Command::Stand if matches!(gait, GaitState::Idle | GaitState::Standing) => {
+                Some((Wish::Stand, None))
+            }
+            Command::Start if gait != GaitState::Idle || self.wish == Wish::Stand => Some((Wish::Walk, None)),
+            Command::Stop | Command::End => {
+                Some((if self.wish == Wish::Stand { Wish::Stand } else { Wish::Rest }, None))
+            }
+            Command::Step(step) => commands::from_step(step, &self.gait).map(|p| (self.wish, Some(p))),
+            Command::Velocity(v) => commands::from_velocity(v, &self.gait).and_then(|p| match p {
+                None => Some((Wish::Rest, None)),
+                Some(_) if gait == GaitState::Idle => None,
+                Some(p) => Some((Wish::Walk, Some(p))),
+            }),
+            Command::Stand | Command::Start => None,
+            Command::EmergencyStop | Command::Reset | Command::Enable | Command::Push(_) => return,
+        };
+        match taken {
+            Some((wish, parameters)) => {
+                self.wish = wish;
+                self.parameters = parameters.unwrap_or(self.parameters);
+            }
+            None => self.event(EventCode::CommandRefused, u64::from(command.address().1)),
+        }
+    }
+
+    fn make(&mut self, tick: u64, gait: GaitState, state: &ControllerState, due: Move) -> bool {
+        match due {
+            Move::Nothing => false,
+            Move::Stand => {
+                let from = if gait == GaitState::Idle { measured(state) } else { Some(self.at_rest(RIGHT)) };
+                let Some((from, heights)) = from else { return false };
+                self.builder.stand(&from, heights, &mut self.next);
+                self.publish(tick + LEAD, tick)
+            }
+            Move::Start => {
+                // The foot on the side to which the robot goes or turns swings first.
+                let p = self.parameters;
+                let left_first = if p.side == 0.0 { p.turn >= 0.0 } else { p.side > 0.0 };
+                let (from, _) = self.at_rest(if left_first { RIGHT } else { LEFT });
+                self.walk(&from, GaitState::Starting);
+                let rest = self.active.plan.start_tick + self.active.end_cycle;
+                self.publish((tick + LEAD).max(rest), tick)
+            }
+            Move::Step(to) => {
+                let Some(k) = self.boundary(tick) else { return false };
+                let start = self.active.plan.start_tick + self.active.strides[k].end_cycle;
+                if start > tick + LEAD {
+                    return false;
+                }
+                let from = self.at_boundary(k);
+                self.walk(&from, to);
+                self.publish(start, tick)
+            }
+        }
+    }
+
+    /// The next step boundary of the active plan at which another step follows.
+    fn boundary(&self, tick: u64) -> Option<usize> {
+        let steps = self.active.steps();
+        let k = steps.iter().position(|s| self.active.plan.start_tick + s.end_cycle >= tick + LEAD_MIN)?;
+        // A stopping plan goes on to its end once nothing but closing is left.
+        (k + 1 < steps.len()).then_some(k)
+    }
+
+    /// Plans with the full change of parameters or, if the zero-moment point would leave the support, with less.
+    fn walk(&mut self, from: &Origin, state: GaitState) {
+        for share in [1.0, 0.5, 0.25, 0.0] {
+            self.builder.walk(from, state, &self.parameters, share, &mut self.next);
+            if self.next.margin >= 0.0 || state == GaitState::Stopping {
+                break;
+            }
+        }
+    }
+
+    fn publish(&mut self, start_tick: u64, tick: u64) -> bool {
+        self.last_id += 1;
+        let plan = &mut self.next.plan;
+        plan.header.tick = tick;
+        plan.id = self.last_id;
+        plan.start_tick = start_tick;
+        if !(self.next.margin >= 0.0) {
+            self.event(EventCode::ControlLimited, self.last_id);
+        }
+        true
+    }
+
+    /// Standing on the feet of the active plan.
+    fn at_rest(&self, stance: usize) -> (Origin, [f64; 2]) {
+        let t = self.active.end_cycle as f64 * self.builder.cycle();
+        (self.origin(t, stance, Parameters::on_the_spot(self.parameters.duration), None), [0.0; 2])
+    }
+
+    /// The active plan at the end of its step `k`.
+    fn at_boundary(&self, k: usize) -> Origin {
+        let s = &self.active.strides[k];
+        self.origin(s.end, 1 - s.stance, s.parameters, Some(s.width))
+    }
+
+    /// The active plan at `t`, seen from the planning frame below the new stance foot (gap 5).
+    fn origin(&self, t: f64, stance: usize, previous: Parameters, width: Option<f64>) -> Origin {
+        let plan = &*self.active.plan;
+        let feet = [0, 1].map(|i| {
+            let p = plan.feet[i].sample(t).position;
+            Pose::new(p[0], p[1], p[3])
+        });
+        let frame = feet[stance];
+        let feet = feet.map(|f| frame.relative(&f));
+        let mut com = plan.com.sample(t);
+        let at = frame.local([com.position[0], com.position[1]]);
+        let v = rotate(-frame.heading, [com.velocity[0], com.velocity[1]]);
+        let a = rotate(-frame.heading, [com.acceleration[0], com.acceleration[1]]);
+        for d in 0..2 {
+            com.position[d] = at[d];
+            com.velocity[d] = v[d];
+            com.acceleration[d] = a[d];
+        }
+        let mut torso = plan.torso.sample(t);
+        torso.position[2] -= frame.heading;
+        let [x, y, heading] = plan.origin;
+        Origin {
+            frame: Pose::new(x, y, heading).compose(&frame),
+            stance,
+            feet,
+            com,
+            zmp: frame.local(plan.zmp.sample(t).0),
+            torso,
+            load_left: plan.load_left.sample(t).position[0],
+            previous,
+            width: width.unwrap_or(feet[1 - stance].y.abs()),
+        }
+    }
+
+    fn event(&mut self, code: EventCode, detail: u64) {
+        if self.events.len() < MAX_EVENTS {
+            self.events.push((code, detail));
+        }
+    }
+}
+
+/// Where the robot stands before its first plan, and the heights of its soles over their mean; `None` if the
+/// measurement is not finite.
+fn measured(state: &ControllerState) -> Option<(Origin, [f64; 2])> {
+    let all = state.feet.iter().flatten().chain(&state.com).chain(&state.origin);
+    if !all.into_iter().all(|x| x.is_finite()) || !(GRAVITY > 0.0) {
+        return None;
+    }
+    let feet = state.feet.map(|f| Pose::new(f[0], f[1], f[3]));
+    let ground = 0.5 * (state.feet[0][2] + state.feet[1][2]);
+    let frame = feet[RIGHT];
+    let [x, y, heading] = state.origin;
+    let at = frame.local([state.com[0], state.com[1]]);
+    let feet = feet.map(|f| frame.relative(&f));
+    let mean = 0.5 * (feet[0].heading + feet[1].heading);
+    let from = Origin {
+        frame: Pose::new(x, y, heading).compose(&frame),
+        stance: RIGHT,
+        feet,
+        com: Sample::rest([at[0], at[1], state.com[2] - ground]),
+        zmp: at,
+        torso: Sample::rest([FRAC_PI_2, FRAC_PI_2, mean]),
+        load_left: 0.5,
+        previous: Parameters::on_the_spot(1.0),
+        width: feet[LEFT].y.abs(),
+    };
+    Some((from, state.feet.map(|f| f[2] - ground)))
+}

@@ -1,0 +1,131 @@
+//! Step sequence: footholds on the standard circular path (thesis 4.3; errata 2.1, 2.2; gaps 1, 2).
+//!
+//! | symbol | name | unit |
+//! |---|---|---|
+//! | L_x, L_y | step length forward and to the left | m |
+//! | phi | turn to the left per step | rad |
+//! | W_c, W_n | width with which the current stance foot was placed, and of the next one | m |
+//! | nu | +1 on the right foot, -1 on the left | 1 |
+//! | p_fc | middle of the foot in the sole frame | m |
+//!
+//! Thesis (4.1) and (4.2) are one formula without cancellation here; (4.3) is added to the result, where it is exact.
+
+use crate::pose::{Pose, rotate};
+use crate::sole::Sole;
+use config::gait;
+
+/// Most steps a plan can hold: the plan's load factors have room for seven.
+pub const MAX_STEPS: usize = 7;
+
+/// What can be asked of a step (table 4.1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    /// \[m\] L_x
+    pub length: f64,
+    /// \[m\] L_y
+    pub side: f64,
+    /// \[rad\] phi_step
+    pub turn: f64,
+    /// \[s\] T_step
+    pub duration: f64,
+}
+
+impl Parameters {
+    /// Stepping on the spot.
+    pub const fn on_the_spot(duration: f64) -> Self {
+        Self { length: 0.0, side: 0.0, turn: 0.0, duration }
+    }
+
+    /// The parameters nearest to `wish` that differ from these by at most `share` of the largest change per step.
+    pub fn towards(&self, wish: &Self, step: &gait::Step, share: f64) -> Self {
+        let near = |now: f64, wish: f64, most: f64| now + (wish - now).clamp(-most * share, most * share);
+        Self {
+            length: near(self.length, wish.length, step.change[0]),
+            side: near(self.side, wish.side, step.change[1]),
+            turn: near(self.turn, wish.turn, step.change[2]),
+            duration: near(self.duration, wish.duration, step.change_duration),
+        }
+    }
+}
+
+/// One step of a sequence. Times in s from the start of the plan; poses in its planning frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Stride {
+    /// Parameters of the step; zero length for one that closes the feet.
+    pub parameters: Parameters,
+    /// Foot that carries the single support.
+    pub stance: usize,
+    /// \[m\] Width W_n with which the swing foot is placed.
+    pub width: f64,
+    /// Start of the double support.
+    pub begin: f64,
+    /// Start of the swing.
+    pub lift: f64,
+    /// Landing.
+    pub end: f64,
+    /// Landing, in cycles from the start of the plan.
+    pub end_cycle: u64,
+    /// Where the stance foot stands.
+    pub foothold: Pose,
+    /// Where the swing foot comes from.
+    pub takeoff: Pose,
+    /// Where the swing foot lands.
+    pub landing: Pose,
+}
+
+impl Stride {
+    /// No step.
+    pub const NONE: Self = Self {
+        parameters: Parameters::on_the_spot(0.0),
+        stance: 0,
+        width: 0.0,
+        begin: 0.0,
+        lift: 0.0,
+        end: 0.0,
+        end_cycle: 0,
+        foothold: Pose::new(0.0, 0.0, 0.0),
+        takeoff: Pose::new(0.0, 0.0, 0.0),
+        landing: Pose::new(0.0, 0.0, 0.0),
+    };
+}
+
+/// nu of a stance foot: +1 right, -1 left.
+pub fn nu(stance: usize) -> f64 {
+    if stance == messages::RIGHT { 1.0 } else { -1.0 }
+}
+
+fn sinc(x: f64) -> f64 {
+    if x.abs() < 1e-8 { 1.0 } else { x.sin() / x }
+}
+
+/// Where the middle of the next foot stands, seen from the middle of the stance foot (4.1).
+pub fn displacement(p: &Parameters, w_c: f64, w_n: f64, nu: f64) -> [f64; 2] {
+    let phi = p.turn;
+    let b = p.side + nu * w_n / 2.0;
+    [
+        p.length * sinc(phi) - b * phi.sin(),
+        nu * w_c / 2.0 + b * phi.cos() + p.length * (phi / 2.0).sin() * sinc(phi / 2.0),
+    ] // (4.1)
+}
+
+/// Pose of the next foothold in the frame of the stance foot, turning about the middle of the foot (4.1), (4.3).
+pub fn next_foothold(p: &Parameters, w_c: f64, w_n: f64, nu: f64, sole: &Sole) -> Pose {
+    let [x, y] = displacement(p, w_c, w_n, nu);
+    let c = sole.center;
+    let rc = rotate(p.turn, c);
+    Pose::new(x + c[0] - rc[0], y + c[1] - rc[1], p.turn) // (4.3)
+}
+
+/// Lateral distance that keeps two turned soles as far apart as `width_min` keeps parallel ones (4.4).
+pub fn required_distance(turn: f64, width_min: f64, sole: &Sole) -> f64 {
+    width_min + sole.half[0] * turn.sin().abs() - sole.half[1] * (1.0 - turn.cos())
+}
+
+/// Width W_n of the next foothold (4.4): at least `step.width`, wide enough for this step (errata 2.2), and at least
+/// half of what two equal steps need, so that widths of a steady turn do not alternate.
+pub fn next_width(p: &Parameters, w_c: f64, nu: f64, step: &gait::Step, sole: &Sole) -> f64 {
+    let need = required_distance(p.turn, step.width_min, sole);
+    let bound = |w_c: f64| 2.0 * (need - nu * displacement(p, w_c, 0.0, nu)[1]) / p.turn.cos(); // (4.4)
+    let together = bound(0.0) / (1.0 + 1.0 / p.turn.cos());
+    step.width.max(bound(w_c)).max(together)
+}

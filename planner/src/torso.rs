@@ -1,0 +1,28 @@
+//! Upper body: upright, and heading where the feet head on average (4.11)-(4.13).
+
+use crate::steps::Stride;
+use curves::{Path, Sample};
+use std::f64::consts::FRAC_PI_2;
+
+/// Inclinations phi_x, phi_y and heading alpha.
+pub type TorsoPath = Path<3, 16>;
+
+/// Writes the path of the upper body: from `start`, at the end of each step half-way between the feet, at `end` at rest.
+pub fn follow(path: &mut TorsoPath, start: &Sample<3>, strides: &[Stride], end: f64) {
+    path.restart(0.0, start.position);
+    let middle = |s: &Stride| 0.5 * (s.foothold.heading + s.landing.heading);
+    let mut last = *start;
+    for (k, stride) in strides.iter().enumerate() {
+        let mut next = Sample::rest([FRAC_PI_2, FRAC_PI_2, middle(stride)]);
+        if let Some(after) = strides.get(k + 1) {
+            // Half of the turns before and after, each spread over its step.
+            let turn = |s: &Stride| (s.landing.heading - s.takeoff.heading) / 2.0 / (s.end - s.begin);
+            next.velocity[2] = 0.5 * (turn(stride) + turn(after));
+        }
+        path.push(&last, &next, stride.end);
+        last = next;
+    }
+    if strides.is_empty() {
+        path.push(&last, &Sample::rest([FRAC_PI_2, FRAC_PI_2, start.position[2]]), end);
+    }
+}

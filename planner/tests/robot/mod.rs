@@ -1,0 +1,144 @@
+//! Lola's gait in code, and a controller that follows every plan perfectly.
+#![allow(dead_code, reason = "each test uses its own part of it")]
+
+use config::gait::{Control, Gait, Limits, Model, Step};
+use messages::{Command, ControllerState, EventCode, Plan, Record};
+use planner::Planner;
+
+/// One cycle \[s\].
+pub const CYCLE: f64 = 1e-3;
+/// Support rectangles of Lola's feet: the sole frame lies in the middle of the toe segment.
+pub const SUPPORT: [[f64; 4]; 2] = [[-0.26, 0.04, -0.05, 0.05]; 2];
+
+pub fn gait() -> Gait {
+    Gait {
+        step: Step {
+            width: 0.21,
+            width_min: 0.16,
+            swing_height: 0.05,
+            double_support: 0.2,
+            start_time: 0.9,
+            swing_lag: 0.05,
+            swing_lead: 0.05,
+            first_length: 0.3,
+            change: [0.12, 0.1, 0.1],
+            change_duration: 0.1,
+            by_speed: vec![
+                [0.0, 0.0, 1.2],
+                [1.0 / 3.6, 0.34, 0.34 * 3.6],
+                [2.0 / 3.6, 0.50, 0.9],
+                [3.0 / 3.6, 0.58, 0.58 * 3.6 / 3.0],
+            ],
+        },
+        model: Model {
+            com_height: 0.80,
+            com_forward: -0.10,
+            leg_mass: 0.082,
+            leg_height: 0.10,
+            zmp_margin: 0.02,
+            spacing: 0.08,
+            stand_time: 2.0,
+        },
+        limits: Limits {
+            length: [-0.2, 0.66],
+            side: [-0.2, 0.2],
+            turn: [-0.35, 0.35],
+            duration: [0.65, 1.3],
+        },
+        control: Control {
+            inclination_p: [0.0; 2],
+            inclination_d: [0.0; 2],
+            height_p: 0.0,
+            height_d: 0.0,
+            force_max: 2.0,
+            force_gain: [0.0; 3],
+            force_feed_forward: 0.0,
+            force_blend: [5.0, 50.0],
+            position_gain: 0.0,
+            modification_limit: [0.0; 3],
+            modification_rate: [0.0; 3],
+            drift_gain: 0.0,
+            null_space_gain: 0.0,
+            force_filter: 0.0,
+        },
+    }
+}
+
+/// Planner and perfect controller.
+pub struct Robot {
+    pub planner: Planner,
+    pub tick: u64,
+    pub state: ControllerState,
+    pub active: Box<Plan>,
+    pub next: Option<Box<Plan>>,
+    pub plans: Vec<Box<Plan>>,
+    pub events: Vec<(u64, EventCode, u64)>,
+}
+
+impl Robot {
+    /// Hanging over the ground in a pose that is not the walking pose.
+    pub fn new(gait: &Gait) -> Self {
+        let mut state = ControllerState::empty();
+        state.com = [-0.06, 0.01, 0.85];
+        state.feet = [[0.0, -0.1, 0.0, 0.0], [0.01, 0.105, 0.0, 0.0]];
+        Self {
+            planner: Planner::new(gait, SUPPORT),
+            tick: 0,
+            state,
+            active: Box::new(Plan::empty()),
+            next: None,
+            plans: Vec::new(),
+            events: Vec::new(),
+        }
+    }
+
+    /// One cycle.
+    pub fn step(&mut self, commands: &[Command]) {
+        self.tick += 1;
+        let out = self.planner.step(self.tick, CYCLE, Some(&self.state), commands);
+        let tick = self.tick;
+        self.events.extend(out.events.iter().map(|e| (tick, e.0, e.1)));
+        if let Some(plan) = out.plan {
+            assert!(plan.start_tick > tick, "a plan from the past");
+            self.next = Some(Box::new(*plan));
+            self.plans.push(Box::new(*plan));
+        }
+        if self.next.as_ref().is_some_and(|n| n.start_tick == tick) {
+            self.active = self.next.take().expect("just seen");
+        }
+        self.follow();
+    }
+
+    /// Samples the active plan at the present tick.
+    fn follow(&mut self) {
+        self.state.header.tick = self.tick;
+        if self.active.id == 0 {
+            return;
+        }
+        let t = self.time();
+        self.state.plan_id = self.active.id;
+        self.state.plan_time = t;
+        self.state.gait = self.active.state;
+        self.state.origin = self.active.origin;
+        self.state.com = self.active.com.sample(t).position;
+        self.state.feet = [0, 1].map(|i| self.active.feet[i].sample(t).position);
+    }
+
+    /// Time in the active plan \[s\].
+    pub fn time(&self) -> f64 {
+        (self.tick - self.active.start_tick) as f64 * CYCLE
+    }
+
+    /// Runs for some time \[s\].
+    pub fn run(&mut self, seconds: f64) {
+        for _ in 0..(seconds / CYCLE) as u64 {
+            self.step(&[]);
+        }
+    }
+
+    /// Takes the walking pose.
+    pub fn stand(&mut self) {
+        self.step(&[Command::Stand]);
+        self.run(2.5);
+    }
+}
