@@ -1,1 +1,25 @@
-//! (being written)
+//! Time and scheduling: the only crate that reads a clock or talks to the scheduler.
+//!
+//! - [`prepare_thread`]: memory locked, stack and heap touched, priority, core, no processor sleep; says what it got.
+//! - [`clock`]: monotonic now and absolute sleep. [`Period`]: a grid of wake-ups and what happens on overrun.
+//! - [`CycleMeter`]: lateness, execution time, page faults and allocations of a cycle, as `cycle_stats` publishes them.
+//! - [`CountingAllocator`]: counts what the cycle's thread allocates after arming.
+//! - [`Stop`]: the request to end, by signal.
+//! - [`preflight`]: what this machine gives to real time.
+
+pub mod allocations;
+pub mod clock;
+mod histogram;
+mod meter;
+mod period;
+mod preflight;
+mod stop;
+mod thread;
+
+pub use allocations::CountingAllocator;
+pub use histogram::Histogram;
+pub use meter::CycleMeter;
+pub use period::{Period, Verdict};
+pub use preflight::{Check, Grade, preflight};
+pub use stop::Stop;
+pub use thread::{Granted, Schedule, prepare_thread};

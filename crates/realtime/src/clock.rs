@@ -1,0 +1,22 @@
+//! The monotonic clock. Wall time exists in file names only; nothing here reads it.
+
+use rustix::thread::{ClockId, clock_nanosleep_absolute};
+use rustix::time::Timespec;
+
+/// Nanoseconds in a second.
+pub const SECOND: u64 = 1_000_000_000;
+
+/// Time since the machine started \[ns\].
+pub fn now() -> u64 {
+    let t = rustix::time::clock_gettime(rustix::time::ClockId::Monotonic);
+    t.tv_sec as u64 * SECOND + t.tv_nsec as u64
+}
+
+/// Sleeps until that time \[ns\]; returns at once if it has passed.
+///
+/// Absolute, so that neither the time between computing and sleeping nor an interruption adds up.
+pub fn sleep_until(time_ns: u64) {
+    let t = Timespec { tv_sec: (time_ns / SECOND) as i64, tv_nsec: (time_ns % SECOND) as i64 };
+    // Interrupted by a signal: sleep on, the end is where it was.
+    while clock_nanosleep_absolute(ClockId::Monotonic, &t).is_err_and(|e| e == rustix::io::Errno::INTR) {}
+}

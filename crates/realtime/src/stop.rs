@@ -1,0 +1,64 @@
+//! The request to end: SIGTERM, SIGINT and SIGHUP, taken by a thread of their own so that no control cycle is
+//! interrupted.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Asked to end? Cheap to copy, to be looked at once per cycle.
+#[derive(Clone, Debug, Default)]
+pub struct Stop(Arc<AtomicBool>);
+
+impl Stop {
+    /// Blocks the signals in this thread and every thread it starts from now on, and starts the thread that takes
+    /// them. To be called first in `main`, while the process has one thread.
+    pub fn on_signals() -> io::Result<Self> {
+        let set = block()?;
+        let stop = Self::default();
+        let asked = stop.clone();
+        std::thread::Builder::new().name("signals".into()).stack_size(64 << 10).spawn(move || {
+            loop {
+                let mut signal = 0;
+                // SAFETY: `set` is an initialised set and `signal` a writable integer, both of this thread.
+                if unsafe { libc::sigwait(&set, &mut signal) } == 0 {
+                    asked.ask();
+                }
+            }
+        })?;
+        Ok(stop)
+    }
+
+    /// Whether the process shall end.
+    pub fn asked(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// Asks it to end.
+    pub fn ask(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// From now on this process gets SIGTERM when the thread that started it ends, killed or not.
+    pub fn with_parent() -> io::Result<()> {
+        // SAFETY: PR_SET_PDEATHSIG takes a signal number and touches no memory.
+        match unsafe { libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM) } {
+            0 => Ok(()),
+            _ => Err(io::Error::last_os_error()),
+        }
+    }
+}
+
+fn block() -> io::Result<libc::sigset_t> {
+    // SAFETY: a signal set is plain bytes; `sigemptyset` then gives it its meaning.
+    let mut set: libc::sigset_t = unsafe { std::mem::zeroed() };
+    // SAFETY: `set` is a writable signal set and the numbers are signals of this platform; the old mask is not asked
+    // for.
+    let error = unsafe {
+        libc::sigemptyset(&mut set);
+        for signal in [libc::SIGTERM, libc::SIGINT, libc::SIGHUP] {
+            libc::sigaddset(&mut set, signal);
+        }
+        libc::pthread_sigmask(libc::SIG_BLOCK, &set, std::ptr::null_mut())
+    };
+    if error == 0 { Ok(set) } else { Err(io::Error::from_raw_os_error(error)) }
+}
