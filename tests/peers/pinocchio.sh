@@ -1,0 +1,9 @@
+#!/bin/sh
+# Compares crates/multibody with Pinocchio on random states of Lola and Talos; fails on any difference above 1e-10.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+cd "$here/../.."
+python=$(sh tests/peers/setup.sh)
+cargo build --quiet --package multibody --example peer
+target=${CARGO_TARGET_DIR:-target}
+exec "$python" tests/peers/with_pinocchio.py "$target/debug/examples/peer" "$@"

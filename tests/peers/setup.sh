@@ -1,0 +1,16 @@
+#!/bin/sh
+# Makes tests/peers/.venv with the programs that results are compared with. Safe to run again; needs python3 and PyPI.
+# Prints the path of its Python.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+venv="$here/.venv"
+wanted="pin==4.1.0 example-robot-data==6.0.0 mujoco rosbags mcap numpy"
+
+[ -x "$venv/bin/python" ] || python3 -m venv "$venv"
+stamp="$venv/installed"
+if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$wanted" ]; then
+    # shellcheck disable=SC2086
+    "$venv/bin/pip" install --quiet --disable-pip-version-check $wanted >&2
+    printf '%s' "$wanted" > "$stamp"
+fi
+echo "$venv/bin/python"
