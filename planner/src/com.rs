@@ -4,11 +4,15 @@
 //! `r = (-p F_z + sum m_l (y_l (z_l.. + g) - z_l y_l..)) / (m_b z_b)`, the same for x and y when the moment is written
 //! through the zero-moment point p. All masses are shares of the robot's mass, which therefore never appears.
 //!
+//! Given is the height of the body mass point, not of the robot's centre of gravity, which a swing leg lifts by some
+//! millimetres: so om2 is constant while walking, and what swings stands on the right-hand side alone, where kinks at
+//! knots cost no accuracy.
+//!
 //! | symbol | name | unit |
 //! |---|---|---|
 //! | m_b, m_l | masses of the body and of one leg over the robot's | 1 |
-//! | z | height of the robot's centre of gravity, given | m |
-//! | z_b, y_b | body mass point | m |
+//! | z_b | height of the body mass point, given | m |
+//! | y_b | body mass point | m |
 //! | z_l, y_l | leg mass point: `leg_height` above the sole frame's origin | m |
 //! | gamma | amplitude of a modification of the zero-moment point (4.49) | m |
 
@@ -22,7 +26,7 @@ use curves::{Path, Sample};
 /// \[m/s^2\] Gravity, downwards.
 pub const GRAVITY: f64 = 9.81;
 
-/// Height of the centre of gravity over time.
+/// Height of the body mass point over time.
 pub type HeightPath = Path<1, 16>;
 
 /// Everything that drives the centre of gravity.
@@ -30,7 +34,7 @@ pub type HeightPath = Path<1, 16>;
 pub struct Drive<'a> {
     /// Feet: right, left.
     pub feet: &'a [FootPath; 2],
-    /// Height of the robot's centre of gravity \[m\].
+    /// Height of the body mass point \[m\].
     pub height: &'a HeightPath,
     /// Reference of the zero-moment point.
     pub zmp: &'a Chain,
@@ -45,6 +49,13 @@ pub struct State {
     pub r: [f64; 2],
     /// \[m/s\]
     pub v: [f64; 2],
+}
+
+impl State {
+    /// The horizontal part of a motion.
+    pub fn of(s: &Sample<3>) -> Self {
+        Self { r: [s.position[0], s.position[1]], v: [s.velocity[0], s.velocity[1]] }
+    }
 }
 
 /// Sums over both leg mass points.
@@ -88,13 +99,14 @@ impl ComSolver {
         (s, legs)
     }
 
-    /// State of the body mass point of a robot whose centre of gravity is `com` (errata on (4.51)-(4.54)).
-    pub fn body_state(&self, com: &Sample<3>, feet: &[FootPath; 2], t: f64) -> State {
+    /// The body mass point of a robot whose centre of gravity is `com` (errata on (4.51)-(4.54)).
+    pub fn body(&self, com: &Sample<3>, feet: &[FootPath; 2], t: f64) -> Sample<3> {
         let (_, legs) = self.legs(feet, t);
-        let of = |c: f64, l: f64| (c - self.leg * l) / self.body;
-        State {
-            r: [0, 1].map(|d| of(com.position[d], legs.position[d])),
-            v: [0, 1].map(|d| of(com.velocity[d], legs.velocity[d])),
+        let of = |c: &[f64; 3], l: &[f64; 3]| std::array::from_fn(|d| (c[d] - self.leg * l[d]) / self.body);
+        Sample {
+            position: of(&com.position, &legs.position),
+            velocity: of(&com.velocity, &legs.velocity),
+            acceleration: of(&com.acceleration, &legs.acceleration),
         }
     }
 
@@ -102,9 +114,8 @@ impl ComSolver {
     fn forces(&self, drive: &Drive, t: f64) -> (f64, [f64; F], Legs) {
         let (feet, legs) = self.legs(drive.feet, t);
         let z = drive.height.sample(t);
-        let z_b = (z.position[0] - self.leg * legs.position[2]) / self.body;
-        let zdd_b = (z.acceleration[0] - self.leg * legs.acceleration[2]) / self.body;
-        let f_z = z.acceleration[0] + GRAVITY; // (4.35)
+        let (z_b, zdd_b) = (z.position[0], z.acceleration[0]);
+        let f_z = self.body * (zdd_b + GRAVITY) + self.leg * (legs.acceleration[2] + 2.0 * GRAVITY); // (4.35)
         let p = drive.zmp.at(t);
         let scale = 1.0 / (self.body * z_b);
         let r = [0, 1].map(|d| {
@@ -213,16 +224,16 @@ impl ComSolver {
         let p = &self.problem;
         let slope = p.slope(i);
         let z = height.sample(p.t[i]);
-        let mut com = Sample::rest([0.0, 0.0, z.position[0]]);
-        com.velocity[2] = z.velocity[0];
-        com.acceleration[2] = z.acceleration[0];
+        let of = |b: f64, l: f64| self.body * b + self.leg * l;
+        let mut com = Sample::rest([0.0, 0.0, of(z.position[0], self.legs[i].position[2])]);
+        com.velocity[2] = of(z.velocity[0], self.legs[i].velocity[2]);
+        com.acceleration[2] = of(z.acceleration[0], self.legs[i].acceleration[2]);
         for d in 0..2 {
             let sum = |u: &[f64; U]| {
                 u[d] + gamma[0][d] * u[2] + gamma[1][d] * u[3] + begin.r[d] * u[LEFT] + end.r[d] * u[RIGHT]
             };
             let f = p.f[i][d] + gamma[0][d] * p.f[i][2] + gamma[1][d] * p.f[i][3];
             let body = [sum(&p.u[i]), sum(&slope), p.om2[i] * sum(&p.u[i]) + f];
-            let of = |b: f64, l: f64| self.body * b + self.leg * l;
             com.position[d] = of(body[0], self.legs[i].position[d]);
             com.velocity[d] = of(body[1], self.legs[i].velocity[d]);
             com.acceleration[d] = of(body[2], self.legs[i].acceleration[d]);

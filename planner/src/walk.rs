@@ -167,7 +167,7 @@ impl Builder {
         self.lay_feet(from, strides, &mut plan.feet);
         torso::follow(&mut plan.torso, &from.torso, strides, end);
         lay_load(from, strides, end, plan);
-        self.lay_height(from, strides[0].end);
+        self.lay_height(from, strides[0].end, &plan.feet);
         out.margin = self.lay_com(from, state, strides, head, end, plan);
     }
 
@@ -251,14 +251,18 @@ impl Builder {
         }
     }
 
-    fn lay_height(&mut self, from: &Origin, end: f64) {
-        self.height.restart(0.0, [from.com.position[2]]);
-        let axis = |s: &Sample<3>| Sample {
+    /// Height of the body: from where it is to where it is when the robot stands, within the first step.
+    fn lay_height(&mut self, from: &Origin, end: f64, feet: &[FootPath; 2]) {
+        let axis = |s: Sample<3>| Sample {
             position: [s.position[2]],
             velocity: [s.velocity[2]],
             acceleration: [s.acceleration[2]],
         };
-        self.height.push(&axis(&from.com), &Sample::rest([self.model.com_height]), end);
+        let first = axis(self.com.body(&from.com, feet, 0.0));
+        let standing = Sample::rest([0.0, 0.0, self.model.com_height]);
+        let last = axis(self.com.body(&standing, feet, 0.0));
+        self.height.restart(0.0, first.position);
+        self.height.push(&first, &last, end);
     }
 
     /// The three boundary value problems; returns the least margin of the modified zero-moment point.
@@ -273,7 +277,8 @@ impl Builder {
     ) -> f64 {
         let (spacing, tail_spacing) = self.spacing(strides, head, end);
         plan.com.restart(0.0, from.com.position);
-        let mut now = self.com.body_state(&from.com, &plan.feet, 0.0);
+        let body = self.com.body(&from.com, &plan.feet, 0.0);
+        let mut now = State::of(&body);
         let mut p = from.zmp;
         let mut margin = f64::INFINITY;
         if head > 0 {
@@ -308,7 +313,7 @@ impl Builder {
         feet[1 - last.stance] = last.landing;
         let goal = self.standing_point(&feet);
         self.chain.fix(end, goal);
-        let target = self.com.body_state(&Sample::rest([goal[0], goal[1], 0.0]), &plan.feet, end);
+        let target = State::of(&self.com.body(&Sample::rest([goal[0], goal[1], 0.0]), &plan.feet, end));
         let settle = rest_shape(last.end, end);
         self.marks.clear(begin);
         self.mark(tail);
