@@ -47,12 +47,16 @@ pub struct Answer {
     pub state: State,
 }
 
+/// Height \[m\] below which a node counts as touching: a node that rests on the ground is there only up to rounding, and
+/// must not lose its force for a step (errata 1, algorithm 1 line 4).
+const TOUCHING: f64 = 1e-6;
+
 /// Solves the contact law for one node: lambda and d' from d, w and g_N.
 pub fn solve(law: &Law, d: [f64; 3], w: [f64; 3], gap: f64) -> Answer {
     let (k, b, mu) = (law.stiffness, law.damping, law.friction);
     let rate = |lambda: [f64; 3]| std::array::from_fn(|i| (lambda[i] - k[i] * d[i]) / b[i]); // (2.37)
     let open = Answer { force: [0.0; 3], rate: rate([0.0; 3]), state: State::Open };
-    if gap >= 0.0 {
+    if gap >= TOUCHING {
         return open;
     }
     // The force that stops the node: lambda* = K d - B w, the normal one also taking back the penetration.
@@ -112,7 +116,7 @@ mod tests {
                 prop_assert!(balance.abs() < 1e-9); // (2.37)
             }
             let (normal, tangent) = (a.force[2], a.force[0].hypot(a.force[1]));
-            if gap >= 0.0 {
+            if gap >= TOUCHING {
                 prop_assert_eq!(a.force, [0.0; 3]);
             } else {
                 prop_assert!(normal >= 0.0 && u[2] >= -1e-9 && (normal * u[2]).abs() < 1e-6);

@@ -30,12 +30,7 @@ impl Drive {
     pub fn follow(from: Motion, angle: f64, speed: f64, dt: f64) -> Self {
         let (dp, v0, v1) = (angle - from.angle, from.speed, speed);
         Self {
-            c: [
-                from.angle,
-                v0,
-                (3.0 * dp / dt - 2.0 * v0 - v1) / dt,
-                (v0 + v1 - 2.0 * dp / dt) / (dt * dt),
-            ],
+            c: [from.angle, v0, (3.0 * dp / dt - 2.0 * v0 - v1) / dt, (v0 + v1 - 2.0 * dp / dt) / (dt * dt)],
         }
     }
 
