@@ -54,11 +54,13 @@ pub enum EventCode {
     PlanActive = 22,
     /// Records were overwritten before the logger read them; detail: how many.
     LogDropped = 23,
+    /// Messages of the command plane were lost by clients that did not keep up; detail: how many since the last time.
+    MessagesLost = 24,
 }
 
 impl EventCode {
     /// All codes, in order of their numbers.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::None,
         Self::Started,
         Self::Ended,
@@ -83,6 +85,7 @@ impl EventCode {
         Self::SafeStop,
         Self::PlanActive,
         Self::LogDropped,
+        Self::MessagesLost,
     ];
 
     /// The code of a number from a record.

@@ -1,0 +1,64 @@
+//! The broker process: `gangwerk broker --run DIR`.
+//!
+//! Not a real-time process: it sleeps until a queue rings, and looks after TCP connections a thousand times a second.
+
+use std::time::Duration;
+
+use ipc::{Run, Space, Writer};
+use messages::{Event, EventCode, Process, Sensors, topics};
+
+use crate::exchange::{Exchange, Report};
+use crate::tcp;
+
+/// Longest time a message of a TCP connection waits while nothing else happens.
+const POLL: Duration = Duration::from_millis(1);
+
+/// Runs the broker until the process is ended. `tcp_port` 0: no TCP.
+///
+/// # Errors
+/// Another broker serves this run, a queue cannot be made, or the port is taken.
+pub fn run(run: &Run, tcp_port: u16) -> Result<(), String> {
+    let space = run.enter(Process::Broker).map_err(|e| e.to_string())?;
+    let (gate, inlet) = tcp::gate();
+    if tcp_port != 0 {
+        tcp::serve(tcp::bind(tcp_port)?, gate)?;
+    }
+    serve(&space, inlet)
+}
+
+/// Forwards messages until the process is ended.
+///
+/// # Errors
+/// A queue or the topic of events cannot be opened.
+pub fn serve(space: &Space, inlet: tcp::Inlet) -> Result<(), String> {
+    let mut exchange = Exchange::new(space, inlet).map_err(|e| e.to_string())?;
+    let mut events = Events::open(space).map_err(|e| e.to_string())?;
+    events.write(EventCode::Started, 0);
+    tracing::info!("broker started");
+    loop {
+        let busy = exchange.turn(&mut |report| match report {
+            Report::Refused(address) => events.write(EventCode::CommandRefused, address.into()),
+            Report::Lost(messages) => events.write(EventCode::MessagesLost, messages),
+        });
+        if !busy {
+            exchange.wait(POLL);
+        }
+    }
+}
+
+/// Writes `events/broker`, stamped with the newest tick.
+struct Events {
+    writer: Writer<Event>,
+    sensors: ipc::Reader<Sensors>,
+}
+
+impl Events {
+    fn open(space: &Space) -> Result<Self, ipc::IpcError> {
+        Ok(Self { writer: space.writer(&topics::EVENTS_BROKER)?, sensors: space.reader(&topics::SENSORS)? })
+    }
+
+    fn write(&mut self, code: EventCode, detail: u64) {
+        let header = self.sensors.latest().map_or(Event::default().header, |s| s.header);
+        self.writer.write(&Event { header, code: code as u64, detail });
+    }
+}

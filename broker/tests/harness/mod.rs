@@ -1,0 +1,140 @@
+//! A run directory with a broker process in it. The processes are this test program, started again in another role.
+
+use std::path::PathBuf;
+use std::process::{Child, Stdio};
+use std::time::Duration;
+
+use broker::{Client, TcpClient};
+use ipc::{Mode, Run, Space};
+use messages::Process;
+use messages::command::Domain;
+
+const ROLE: &str = "GANGWERK_TEST_ROLE";
+const PORT: &str = "GANGWERK_TEST_PORT";
+const DIR: &str = "GANGWERK_TEST_DIR";
+
+/// Ended and removed at the end of the test.
+pub(crate) struct System {
+    run: Run,
+    pub(crate) port: u16,
+    broker: Option<Child>,
+    pub(crate) space: Space,
+    _dir: RemoveDir,
+}
+
+struct RemoveDir(PathBuf);
+
+impl Drop for RemoveDir {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+impl System {
+    pub(crate) fn start(name: &str) -> Self {
+        let mut system = Self::without_broker(name);
+        system.start_broker();
+        system
+    }
+
+    pub(crate) fn without_broker(name: &str) -> Self {
+        let dir = std::env::temp_dir().join(format!("gangwerk-broker-{}-{name}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&dir);
+        let space = Space::create(&dir).expect("space");
+        let run = Run {
+            dir: dir.clone(),
+            mode: Mode::RealTime,
+            scene: "none".into(),
+            config: "none".into(),
+            log: None,
+        };
+        run.save().expect("run");
+        let port = broker::tcp::bind(0)
+            .and_then(|l| l.local_addr().map_err(|e| e.to_string()))
+            .expect("port")
+            .port();
+        Self { run, port, broker: None, space, _dir: RemoveDir(dir) }
+    }
+
+    /// Starts the broker and waits until it answers.
+    pub(crate) fn start_broker(&mut self) {
+        self.broker = Some(self.spawn("broker"));
+        wait_for("the broker", || TcpClient::connect(self.port).is_ok_and(|mut c| c.statistics().is_ok()));
+    }
+
+    /// SIGKILL, and what the supervisor does after it.
+    pub(crate) fn kill_broker(&mut self) {
+        kill(self.broker.take().expect("running"));
+        self.space.clear_dead();
+    }
+
+    /// This program in another role.
+    pub(crate) fn spawn(&self, role: &str) -> Child {
+        std::process::Command::new(std::env::current_exe().expect("own path"))
+            .args(["--exact", "process", "--nocapture"])
+            .env(ROLE, role)
+            .env(PORT, self.port.to_string())
+            .env(DIR, &self.run.dir)
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("process")
+    }
+
+    /// A client of this process, once the broker knows it.
+    pub(crate) fn client(&self, name: &str, domains: &[Domain]) -> Client {
+        let client = Client::start(name, domains, &self.space).expect("client");
+        wait_for("the registration", || client.statistics().connected);
+        client
+    }
+
+    pub(crate) fn tcp(&self) -> TcpClient {
+        TcpClient::connect(self.port).expect("connection")
+    }
+
+    /// The broker's line about a client, if it knows it.
+    pub(crate) fn line_about(&self, name: &str) -> Option<String> {
+        self.tcp().statistics().expect("statistics").into_iter().find(|line| line.starts_with(name))
+    }
+}
+
+impl Drop for System {
+    fn drop(&mut self) {
+        if let Some(broker) = self.broker.take() {
+            kill(broker);
+        }
+    }
+}
+
+pub(crate) fn kill(mut process: Child) {
+    let _ = process.kill();
+    let _ = process.wait();
+}
+
+pub(crate) fn pause(ms: u64) {
+    std::thread::park_timeout(Duration::from_millis(ms));
+}
+
+/// Looks every 2 ms, for 20 s at most: a bound for a hanging test, not a measurement.
+pub(crate) fn wait_for(what: &str, mut come: impl FnMut() -> bool) {
+    for _ in 0..10_000 {
+        if come() {
+            return;
+        }
+        pause(2);
+    }
+    panic!("{what} did not come");
+}
+
+/// What a started process does: nothing in the test run itself.
+pub(crate) fn play_role(other: impl Fn(&str, &Space)) {
+    let Ok(role) = std::env::var(ROLE) else { return };
+    let var = |name| std::env::var(name).expect("set by the test");
+    let run = Run::load(var(DIR).as_ref()).expect("run");
+    if role == "broker" {
+        let port = var(PORT).parse().expect("port");
+        let end = broker::daemon::run(&run, port).expect_err("runs until it is killed");
+        eprintln!("{end}");
+        std::process::exit(2);
+    }
+    other(&role, &run.enter(Process::Observer).expect("space"));
+}

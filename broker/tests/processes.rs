@@ -1,0 +1,191 @@
+//! Real processes, a real broker process, shared memory.
+
+mod harness;
+
+use std::time::Duration;
+
+use broker::Client;
+use harness::{System, kill, pause, play_role, wait_for};
+use messages::command::{Domain, Priority, StepCommand, VelocityCommand};
+use messages::topics::EVENTS_BROKER;
+use messages::{Command, Event, EventCode};
+use rustix::process::{Pid, Signal, kill_process};
+
+fn velocity(n: u32) -> Command {
+    Command::Velocity(VelocityCommand { forward: f64::from(n) / 4096.0, left: 0.0, turn: 0.0 })
+}
+
+fn step(length: f64) -> Command {
+    Command::Step(StepCommand { length, side: 0.0, turn: 0.0, duration: 0.8 })
+}
+
+/// The other processes of these tests: `echo` answers every velocity with a step of that length.
+#[test]
+fn process() {
+    play_role(|role, space| {
+        let mut client = Client::start(role, &[Domain::Walk], space).expect("client");
+        let mut answers = Vec::new();
+        loop {
+            answers.extend(client.received().filter_map(|c| match c {
+                Command::Velocity(v) if role == "echo" => Some(step(v.forward)),
+                _ => None,
+            }));
+            answers.drain(..).for_each(|answer| _ = client.publish(&answer));
+            pause(1);
+        }
+    });
+}
+
+fn signal(process: &std::process::Child, signal: Signal) {
+    kill_process(Pid::from_child(process), signal).expect("signal");
+}
+
+#[test]
+fn a_command_goes_to_another_process_and_back() {
+    let system = System::start("echo");
+    let mut client = system.client("operator", &[Domain::Walk]);
+    let mut other = system.client("other", &[Domain::System, Domain::Sim]);
+    let echo = system.spawn("echo");
+    wait_for("the echo", || system.line_about("echo").is_some());
+    assert!(client.publish(&velocity(1024)));
+    let mut heard = Vec::new();
+    wait_for("the answer", || {
+        heard.extend(client.received());
+        !heard.is_empty()
+    });
+    kill(echo);
+    assert_eq!(heard, [step(0.25)], "its own message must not come back");
+    assert_eq!(other.received().count(), 0, "not its domain");
+}
+
+#[test]
+fn an_emergency_stop_passes_a_flood() {
+    let mut system = System::without_broker("flood");
+    // 240 messages of low priority lie in the queue before the broker even looks.
+    let mut flood = Client::start("flood", &[], &system.space).unwrap();
+    let mut watchdog = Client::start("watchdog", &[Domain::System, Domain::Walk], &system.space).unwrap();
+    let space = system.space.queue_receiver("broker-low").unwrap();
+    for n in 0..120 {
+        assert!(flood.publish_as(&velocity(n), Priority::Low));
+    }
+    pause(50);
+    drop(space);
+    system.start_broker();
+    wait_for("the registration", || watchdog.statistics().connected);
+    for n in 0..120 {
+        assert!(flood.publish_as(&velocity(n), Priority::Low));
+    }
+    assert!(flood.publish(&Command::EmergencyStop));
+    let mut heard = Vec::new();
+    wait_for("all messages", || {
+        heard.extend(watchdog.received());
+        heard.len() >= 121
+    });
+    assert_eq!(heard.len(), 121);
+    assert!(heard.contains(&Command::EmergencyStop));
+}
+
+#[test]
+fn a_stopped_process_loses_its_own_messages_only() {
+    let system = System::start("stopped");
+    let sleeper = system.spawn("sleeper");
+    let mut awake = system.client("awake", &[Domain::Walk]);
+    let mut sender = system.client("sender", &[]);
+    wait_for("the sleeper", || system.line_about("sleeper").is_some());
+    signal(&sleeper, Signal::STOP);
+    let mut heard = Vec::new();
+    for n in 0..1000 {
+        assert!(sender.publish(&velocity(n)));
+        if n % 50 == 49 {
+            wait_for("what was sent", || {
+                heard.extend(awake.received());
+                heard.len() == n as usize + 1
+            });
+        }
+    }
+    signal(&sleeper, Signal::CONT);
+    wait_for("the report of the loss", || {
+        system.line_about("sleeper").is_some_and(|line| !line.contains("lost 0;"))
+    });
+    let expected: Vec<_> = (0..1000).map(velocity).collect();
+    assert_eq!(heard, expected, "the others get everything, in order");
+    assert_eq!((awake.statistics().lost_in, sender.statistics().lost_out), (0, 0));
+    let mut events = system.space.reader::<Event>(&EVENTS_BROKER).unwrap();
+    wait_for("the event", || {
+        events.follow().is_some_and(|e| e.code == EventCode::MessagesLost as u64 && e.detail > 0)
+    });
+    kill(sleeper);
+}
+
+#[test]
+fn a_killed_client_is_let_go() {
+    let system = System::start("killed");
+    let mut awake = system.client("awake", &[Domain::Walk]);
+    let mut sender = system.client("sender", &[]);
+    let victim = system.spawn("victim");
+    wait_for("the victim", || system.line_about("victim").is_some());
+    kill(victim);
+    for n in 0..100 {
+        assert!(sender.publish(&velocity(n)));
+    }
+    let mut heard = 0;
+    wait_for("what was sent", || {
+        heard += awake.received().count();
+        heard == 100
+    });
+    wait_for("the end of the victim's registration", || system.line_about("victim").is_none());
+    let again = system.spawn("victim");
+    wait_for("the next victim", || system.line_about("victim").is_some());
+    kill(again);
+}
+
+#[test]
+fn clients_outlive_the_broker() {
+    let mut system = System::start("restart");
+    let mut sender = system.client("sender", &[Domain::Sim]);
+    let mut receiver = system.client("receiver", &[Domain::Walk]);
+    for life in 0..3 {
+        assert!(sender.publish(&velocity(life)));
+        let mut heard = Vec::new();
+        wait_for("the command", || {
+            heard.extend(receiver.received());
+            !heard.is_empty()
+        });
+        assert_eq!(heard, [velocity(life)]);
+        system.kill_broker();
+        assert!(sender.publish(&velocity(7)), "publishing without a broker is an ordinary call");
+        wait_for("the notice of the broker's end", || !sender.statistics().connected);
+        wait_for("the notice of the broker's end", || !receiver.statistics().connected);
+        assert_eq!(receiver.received().count(), 0);
+        system.start_broker();
+        wait_for("the registration", || sender.statistics().connected && receiver.statistics().connected);
+        // What was sent to nobody must not move the robot later.
+        pause(20);
+        assert_eq!(receiver.received().count(), 0);
+    }
+    assert_eq!(sender.statistics().lost_out, 3);
+}
+
+/// Nothing of this test waits: the rings fill up, and that is all.
+#[test]
+fn without_a_broker_publishing_never_waits() {
+    let system = System::without_broker("alone");
+    let mut client = Client::start("alone", &[Domain::Walk], &system.space).unwrap();
+    for n in 0..100_000 {
+        client.publish(&velocity(n % 1000));
+    }
+    assert_eq!(client.received().count(), 0);
+    wait_for("the count of all losses", || client.statistics().lost_out == 100_000);
+    assert!(!client.statistics().connected);
+}
+
+#[test]
+fn a_second_broker_is_refused() {
+    let system = System::start("second");
+    let second = system.spawn("broker").wait_with_output().unwrap();
+    assert_eq!(second.status.code(), Some(2));
+    let mut client = system.tcp();
+    client.subscribe(&[Domain::Walk]).unwrap();
+    assert_eq!(system.tcp().publish(&Command::Stop), Ok(1));
+    assert_eq!(client.receive(Duration::from_secs(10)), Ok(Some(Command::Stop)), "the first one goes on");
+}
