@@ -1,12 +1,137 @@
 //! Load factors: how much each foot carries (thesis 4.8, (4.62); gap 15).
+//!
+//! Linear over a double support, with corners smoothed by quintics, and moved with the zero-moment point where that
+//! leaves its straight way. By (4.64) both feet share what is left of the moment about the weighted middle of their
+//! sole frames, so the point `e = p - (1 - rho) r_0 - rho r_1` must lie in both soles, each seen in its own heading.
+//! Corners are as soft as that allows.
 
+use crate::pose::{Pose, rotate};
+use crate::sole::Sole;
 use curves::{Path, Sample};
 
 /// Load factor rho of the left foot over time.
-pub type LoadPath = Path<1, 16>;
+pub type LoadPath = Path<1, 40>;
 
-/// Appends a change of the left foot's load to `to` between the present end (or `begin`) and `end`: the smoothstep
-/// quintic, at rest on both sides.
-pub fn shift(path: &mut LoadPath, from: f64, to: f64, end: f64) {
-    path.push(&Sample::rest([from]), &Sample::rest([to]), end);
+/// Shares of a piece that its corners may take, softest first.
+const CORNERS: [f64; 5] = [0.3, 0.2, 0.15, 0.1, 0.05];
+
+/// \[m\] Distance of the point e from the edges that is enough.
+const ENOUGH: f64 = 0.002;
+/// Instants of a double support at which the distance is looked at.
+const PROBES: usize = 24;
+
+/// A double support: zero-moment point at its kinks, feet (right, left) and load of the left foot at both ends.
+pub struct DoubleSupport<'a> {
+    /// Times \[s\] and zero-moment points \[m\], ascending; at most four.
+    pub kinks: &'a [(f64, [f64; 2])],
+    /// Sole frames: right, left.
+    pub feet: [Pose; 2],
+    /// Soles: right, left.
+    pub soles: &'a [Sole; 2],
+    /// Load factor of the left foot at the begin and at the end.
+    pub ends: [f64; 2],
+}
+
+impl DoubleSupport<'_> {
+    /// Load at the kinks: linear in time, plus what the zero-moment point leaves its straight way towards a foot.
+    fn corners(&self) -> [(f64, f64); 4] {
+        let n = self.kinks.len();
+        let (first, last) = (self.kinks[0], self.kinks[n - 1]);
+        let d = [self.feet[1].x - self.feet[0].x, self.feet[1].y - self.feet[0].y];
+        let square = (d[0] * d[0] + d[1] * d[1]).max(1e-6);
+        std::array::from_fn(|k| {
+            let (t, p) = self.kinks[k.min(n - 1)];
+            let s = (t - first.0) / (last.0 - first.0);
+            let off = [0, 1].map(|j| p[j] - first.1[j] - s * (last.1[j] - first.1[j]));
+            let rho =
+                self.ends[0] + s * (self.ends[1] - self.ends[0]) + (off[0] * d[0] + off[1] * d[1]) / square;
+            (t, rho.clamp(0.0, 1.0))
+        })
+    }
+
+    /// Least distance of the point e from the edges of the soles at `t`, if the left foot carries `rho`.
+    fn margin(&self, t: f64, rho: f64) -> f64 {
+        let k = self.kinks.iter().position(|k| t < k.0).unwrap_or(self.kinks.len() - 1).max(1);
+        let (a, b) = (self.kinks[k - 1], self.kinks[k]);
+        let s = (t - a.0) / (b.0 - a.0);
+        let middle = [
+            (1.0 - rho) * self.feet[0].x + rho * self.feet[1].x,
+            (1.0 - rho) * self.feet[0].y + rho * self.feet[1].y,
+        ];
+        let e = [0, 1].map(|d| a.1[d] + s * (b.1[d] - a.1[d]) - middle[d]);
+        let here = Pose::default();
+        (0..2)
+            .map(|i| self.soles[i].margin(&here, rotate(-self.feet[i].heading, e)))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Appends the load over this double support to `path`.
+    pub fn lay(&self, path: &mut LoadPath) {
+        let n = self.kinks.len();
+        if n < 2 || n > 4 {
+            return;
+        }
+        let corners = self.corners();
+        let corners = &corners[..n];
+        let begun = path.pieces;
+        let (mut best, mut best_share) = (f64::NEG_INFINITY, CORNERS[0]);
+        for share in CORNERS {
+            path.pieces = begun;
+            smooth(path, corners, share);
+            let margin = self.least_margin(path);
+            if margin > ENOUGH {
+                return;
+            }
+            if margin > best + 1e-3 {
+                (best, best_share) = (margin, share);
+            }
+        }
+        // Soles of different heading cannot both hold the point; sharp corners would not help.
+        path.pieces = begun;
+        smooth(path, corners, best_share);
+    }
+
+    fn least_margin(&self, path: &LoadPath) -> f64 {
+        let (begin, end) = (self.kinks[0].0, self.kinks[self.kinks.len() - 1].0);
+        (1..PROBES)
+            .map(|k| {
+                let t = begin + (end - begin) * k as f64 / PROBES as f64;
+                self.margin(t, path.sample(t).position[0])
+            })
+            .fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Lines through the corners, each corner replaced by a quintic that takes `share` of the shorter piece beside it.
+fn smooth(path: &mut LoadPath, corners: &[(f64, f64)], share: f64) {
+    let n = corners.len();
+    let half = |k: usize| 0.5 * share * (corners[k + 1].0 - corners[k].0);
+    // The first and last line begin and end inside, so that the path rests at both ends.
+    let begin = |k: usize| (corners[k].0 + if k == 0 { half(0) } else { 0.0 }, corners[k].1);
+    let end = |k: usize| (corners[k + 1].0 - if k + 2 == n { half(n - 2) } else { 0.0 }, corners[k + 1].1);
+    let line = |k: usize, t: f64| {
+        let (a, b) = (begin(k), end(k));
+        let slope = (b.1 - a.1) / (b.0 - a.0);
+        Sample { position: [a.1 + slope * (t - a.0)], velocity: [slope], acceleration: [0.0] }
+    };
+    let mut last = Sample::rest([corners[0].1]);
+    for k in 0..n - 1 {
+        let radius = if k == 0 { 0.0 } else { half(k - 1).min(half(k)) };
+        let from = if k == 0 { corners[0].0 + 2.0 * half(0) } else { corners[k].0 + radius };
+        let to = if k + 2 == n {
+            corners[n - 1].0 - 2.0 * half(n - 2)
+        } else {
+            corners[k + 1].0 - half(k).min(half(k + 1))
+        };
+        path.push(&last, &line(k, from), from);
+        path.push(&line(k, from), &line(k, to), to);
+        last = line(k, to);
+    }
+    path.push(&last, &Sample::rest([corners[n - 1].1]), corners[n - 1].0);
+}
+
+/// Appends a rest at `load` until `end`.
+pub fn hold(path: &mut LoadPath, load: f64, end: f64) {
+    let rest = Sample::rest([load]);
+    path.push(&rest, &rest, end);
 }

@@ -7,7 +7,7 @@
 use crate::collocation::MAX_KNOTS;
 use crate::com::{ComSolver, Drive, HeightPath, State, pieces};
 use crate::feet::{self, FootPath, Swing};
-use crate::load;
+use crate::load::{self, DoubleSupport};
 use crate::pose::{Pose, rotate};
 use crate::sole::{Sole, double_support_margin};
 use crate::steps::{MAX_STEPS, Parameters, Stride, next_foothold, next_width, nu};
@@ -137,7 +137,7 @@ impl Builder {
         plan.torso.restart(0.0, from.torso.position);
         plan.torso.push(&from.torso, &Sample::rest([FRAC_PI_2, FRAC_PI_2, heading]), end);
         plan.load_left.restart(0.0, [from.load_left]);
-        load::shift(&mut plan.load_left, from.load_left, 0.5, end);
+        plan.load_left.push(&Sample::rest([from.load_left]), &Sample::rest([0.5]), end);
         const POINTS: usize = 24;
         for k in 0..=POINTS {
             let t = end * k as f64 / POINTS as f64;
@@ -166,9 +166,9 @@ impl Builder {
         }
         self.lay_feet(from, strides, &mut plan.feet);
         torso::follow(&mut plan.torso, &from.torso, strides, end);
-        lay_load(from, strides, end, plan);
         self.lay_height(from, strides[0].end, &plan.feet);
         out.margin = self.lay_com(from, state, strides, head, end, plan);
+        self.lay_load(from, strides, end, plan);
     }
 
     /// Footholds and times (thesis 4.3).
@@ -322,6 +322,35 @@ impl Builder {
         margin.min(self.solve(&now, &target, shapes, tail, tail_spacing, plan))
     }
 
+    /// Load factors, with the zero-moment point (thesis 4.8).
+    fn lay_load(&self, from: &Origin, strides: &[Stride], end: f64, plan: &mut Plan) {
+        let Plan { zmp, load_left: path, .. } = plan;
+        path.restart(0.0, [from.load_left]);
+        let mut load = from.load_left;
+        let mut lay = |begin: f64, end: f64, until: f64, feet: [Pose; 2], to: f64| {
+            let times = rest_shape(begin, end).corners();
+            let kinks = times.map(|t| (t, zmp.sample(t).0));
+            let straight = [kinks[0], kinks[3]];
+            let leaves = |k: usize| {
+                let s = (kinks[k].0 - begin) / (end - begin);
+                (0..2).any(|d| (kinks[k].1[d] - (1.0 - s) * kinks[0].1[d] - s * kinks[3].1[d]).abs() > 1e-9)
+            };
+            let kinks = if leaves(1) || leaves(2) { &kinks[..] } else { &straight[..] };
+            DoubleSupport { kinks, feet, soles: &self.soles, ends: [load, to] }.lay(path);
+            load::hold(path, to, until);
+            load = to;
+        };
+        for s in strides {
+            let mut feet = [s.foothold; 2];
+            feet[1 - s.stance] = s.takeoff;
+            lay(s.begin, s.lift, s.end, feet, if s.stance == LEFT { 1.0 } else { 0.0 });
+        }
+        let last = &strides[strides.len() - 1];
+        let mut feet = [last.foothold; 2];
+        feet[1 - last.stance] = last.landing;
+        lay(last.end, end, end, feet, 0.5);
+    }
+
     /// Knot spacings of head and tail with which the plan's centre of gravity has room for all pieces.
     fn spacing(&mut self, strides: &[Stride], head: usize, end: f64) -> (f64, f64) {
         let count = |marks: &Marks, spacing: f64| {
@@ -473,19 +502,6 @@ fn record(s: &Stride) -> Step {
         foothold: s.foothold.array(),
         landing: s.landing.array(),
     }
-}
-
-fn lay_load(from: &Origin, strides: &[Stride], end: f64, plan: &mut Plan) {
-    let path = &mut plan.load_left;
-    path.restart(0.0, [from.load_left]);
-    let mut last = from.load_left;
-    for s in strides {
-        let next = if s.stance == LEFT { 1.0 } else { 0.0 };
-        load::shift(path, last, next, s.lift);
-        load::shift(path, next, next, s.end);
-        last = next;
-    }
-    load::shift(path, last, 0.5, end);
 }
 
 /// Instants at which a trajectory has a kink, ascending.

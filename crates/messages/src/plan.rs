@@ -82,7 +82,7 @@ record! {
         /// \[m\] Zero-moment point (x, y) after modification (4.49).
         zmp: Polyline<2, 64>,
         /// \[1\] Load factor rho of the left foot (4.62); the right one carries the rest.
-        load_left: Path<1, 16>,
+        load_left: Path<1, 40>,
     }
 }
 

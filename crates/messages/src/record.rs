@@ -236,6 +236,7 @@ impl<const D: usize, const N: usize> CurveName for Path<D, N> {
     fn name() -> &'static str {
         match (D, N) {
             (1, 16) => "Path1x16",
+            (1, 40) => "Path1x40",
             (3, 16) => "Path3x16",
             (3, 96) => "Path3x96",
             (4, 32) => "Path4x32",

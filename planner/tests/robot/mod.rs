@@ -1,6 +1,8 @@
 //! Lola's gait in code, and a controller that follows every plan perfectly.
 #![allow(dead_code, reason = "each test uses its own part of it")]
 
+pub mod checks;
+
 use config::gait::{Control, Gait, Limits, Model, Step};
 use messages::{Command, ControllerState, EventCode, Plan, Record};
 use planner::Planner;
