@@ -1,0 +1,110 @@
+//! `gangwerk plot LOG`: what a walk looked like, as pictures.
+//!
+//! Everything is read from the log alone: robot, soles, joint names and link poses are in it.
+
+mod forces;
+mod inclination;
+mod paths;
+mod strip;
+#[cfg(test)]
+mod synthetic;
+mod tracking;
+mod walk;
+mod zmp;
+
+use drawing::Figure;
+use std::path::{Path, PathBuf};
+use walk::Walk;
+
+/// What was drawn.
+#[derive(Clone, Debug, Default)]
+pub struct Pictures {
+    /// PNG files.
+    pub written: Vec<PathBuf>,
+    /// Pictures the log holds no data for, each with the reason.
+    pub skipped: Vec<String>,
+}
+
+type Draw = fn(&Walk) -> Result<Figure, String>;
+
+/// File names, and who draws them.
+const PICTURES: [(&str, Draw); 6] = [
+    ("inclination.png", inclination::draw),
+    ("zmp.png", zmp::draw),
+    ("foot_forces.png", forces::draw),
+    ("joint_tracking.png", tracking::draw),
+    ("paths.png", paths::draw),
+    ("stick_figures.png", strip::draw),
+];
+
+/// Draws all pictures of a log into a directory, which is made if it does not exist.
+pub fn run(log: &Path, out: &Path) -> Result<Pictures, String> {
+    let walk = Walk::load(log)?;
+    std::fs::create_dir_all(out).map_err(|e| {
+        format!("{}: cannot make the directory: {e}; choose another with --out", out.display())
+    })?;
+    let mut pictures = Pictures::default();
+    for (name, draw) in PICTURES {
+        match draw(&walk) {
+            Ok(figure) => {
+                let path = out.join(name);
+                figure.save(&path)?;
+                pictures.written.push(path);
+            }
+            Err(why) => pictures.skipped.push(format!("{name}: {why}")),
+        }
+    }
+    Ok(pictures)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn directory(name: &str) -> PathBuf {
+        let directory = std::env::temp_dir().join(format!("gangwerk-plot-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&directory).expect("temporary directory");
+        directory
+    }
+
+    #[test]
+    fn a_walk_gives_all_pictures() {
+        let out = directory("walk");
+        let log = out.join("walk.mcap");
+        synthetic::write(&log, true);
+        let pictures = run(&log, &out).expect("pictures");
+        assert_eq!(pictures.skipped, Vec::<String>::new());
+        assert_eq!(pictures.written.len(), PICTURES.len());
+        for path in pictures.written {
+            let bytes = std::fs::read(&path).expect("picture");
+            assert!(
+                bytes.starts_with(b"\x89PNG") && bytes.len() > 20_000,
+                "{}: {}",
+                path.display(),
+                bytes.len()
+            );
+        }
+        std::fs::remove_dir_all(out).expect("temporary directory");
+    }
+
+    #[test]
+    fn a_log_without_links_has_no_stick_figures() {
+        let out = directory("no-links");
+        let log = out.join("walk.mcap");
+        synthetic::write(&log, false);
+        let pictures = run(&log, &out).expect("pictures");
+        assert_eq!(pictures.skipped.len(), 1);
+        assert!(pictures.skipped[0].starts_with("stick_figures.png: "), "{:?}", pictures.skipped);
+        std::fs::remove_dir_all(out).expect("temporary directory");
+    }
+
+    #[test]
+    fn what_is_not_a_log_is_named() {
+        let out = directory("not-a-log");
+        let log = out.join("walk.csv");
+        std::fs::write(&log, "t,x\n0,1\n").expect("file");
+        let error = run(&log, &out).unwrap_err();
+        assert!(error.contains("walk.csv") && error.contains("not an MCAP file"), "{error}");
+        std::fs::remove_dir_all(out).expect("temporary directory");
+    }
+}
