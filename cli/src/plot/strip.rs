@@ -47,11 +47,11 @@ pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
         for (k, tree) in row.iter().enumerate() {
             draw_robot(&mut chart, walk, tree, SPACING * k as f64);
             let time = format!("{:.1} s", seconds(tree.stamp_ns, walk.start_ns));
-            chart.note([SPACING * k as f64, -0.13], &time, GREY);
+            chart.note([SPACING * k as f64, -0.2], &time, GREY);
         }
         chart.styled(
             "",
-            vec![[-0.45, -0.16], [-0.45, -0.16]],
+            vec![[-0.45, -0.22], [-0.45, -0.22]],
             Pen { color: LIGHT, width: 0.1, dashed: false },
         );
         figure = figure.with(chart);

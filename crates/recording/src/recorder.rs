@@ -12,9 +12,7 @@ use crate::error::RecordingError;
 use crate::links::{LinkPoses, Pose};
 use crate::robot::{METADATA, RobotInfo, RunInfo, to_metadata};
 use crate::standard;
-use crate::standard_definitions::{
-    FOOT_WRENCH, IMU, JOINT_STATES, MARKERS, ROBOT_DESCRIPTION, STANDARD, Standard, TF,
-};
+use crate::standard_definitions::{FOOT_WRENCH, IMU, JOINT_STATES, MARKERS, ROBOT_DESCRIPTION, STANDARD, TF};
 use mcap::records::{MessageHeader, Metadata};
 use messages::topics::{ForType, with_type};
 use messages::{Record, Sensors, SimState, TOPICS, Topic};
