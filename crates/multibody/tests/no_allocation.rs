@@ -1,0 +1,75 @@
+//! Nothing allocates after the model and its data are made.
+#![allow(
+    unsafe_code,
+    reason = "a counting allocator can only be written with GlobalAlloc, which is unsafe to implement"
+)]
+
+mod tree;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use multibody::Data;
+use nalgebra::{Matrix3xX, Matrix6xX, Vector3};
+
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: every call goes unchanged to the system's allocator; counting touches a plain thread-local number.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.set(COUNT.get() + 1);
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        // SAFETY: the block came from `System.alloc` with this layout.
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn every_function_works_in_the_memory_made_at_the_start() {
+    let mut dice = tree::Dice(11);
+    let model = tree::random(&mut dice, 20);
+    let mut d = Data::new(&model);
+    let q = tree::configuration(&mut dice, &model);
+    let (v, a) = (dice.list(model.nv(), 1.0), dice.list(model.nv(), 1.0));
+    let (mut next, mut rate, mut out) = (q.clone(), q.clone(), v.clone());
+    let (mut j, mut joints) = (Matrix6xX::zeros(model.nv()), Matrix6xX::zeros(model.n()));
+    let (mut c, mut c_joints) = (Matrix3xX::zeros(model.nv()), Matrix3xX::zeros(model.n()));
+    let frame = model.frame("link 20", [0.1, 0.2, 0.3]).expect("the link exists");
+
+    let before = COUNT.get();
+    model.integrate(&q, &v, 1e-3, &mut next);
+    model.configuration_rate(&q, &v, &mut rate);
+    model.forward_kinematics(&mut d, &q);
+    model.forward_motion(&mut d, &q, &v);
+    let seen = (model.frame_pose(&d, &frame), model.frame_velocity(&d, &frame), model.frame_bias(&d, &frame));
+    model.frame_jacobian(&d, &frame, &mut j);
+    model.frame_jacobian_of_joints(&d, &frame, &mut joints);
+    model.add_wrench(&d, &frame, &Vector3::x(), &Vector3::y(), &mut out);
+    let whole = (model.cog(&mut d), model.cog_motion(&d), model.momentum(&d), model.energy(&d));
+    model.cog_jacobian(&d, &mut c);
+    model.cog_jacobian_of_joints(&d, &mut c_joints);
+    model.mass_matrix(&mut d, &q);
+    model.nonlinear_terms(&mut d, &q, &v, &mut out);
+    model.inverse_dynamics(&mut d, &q, &v, &a, &mut out);
+    model.forward_dynamics(&mut d, &q, &v, &a, &mut out);
+    model.forward_dynamics_articulated(&mut d, &q, &v, &a, &mut out);
+    model.solve_mass_matrix(&mut d, &mut out);
+    let base = model.base_dynamics(&mut d, &q, &v, &a[6..]);
+    let allocations = COUNT.get() - before;
+    std::hint::black_box((seen, whole, base, next, rate));
+    assert_eq!(allocations, 0);
+
+    drop(Box::new(std::hint::black_box(1)));
+    assert!(COUNT.get() > before, "the counter counts");
+}
