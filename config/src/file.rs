@@ -10,8 +10,7 @@ pub fn root(asked: Option<&Path>) -> PathBuf {
 }
 
 /// FNV-1a, 64 bits, over the bytes of all files that went into a configuration, in the order they were read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Hash(u64);
+pub(crate) struct Hash(pub(crate) u64);
 
 impl Default for Hash {
     fn default() -> Self {
@@ -20,24 +19,19 @@ impl Default for Hash {
 }
 
 impl Hash {
-    /// Continues with `bytes`.
-    #[must_use]
-    pub fn with(self, bytes: &[u8]) -> Self {
-        Self(bytes.iter().fold(self.0, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3)))
-    }
-
-    /// The number.
-    pub fn value(self) -> u64 {
-        self.0
+    fn add(&mut self, bytes: &[u8]) {
+        self.0 = bytes.iter().fold(self.0, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3));
     }
 }
 
 /// The text of a file; an error says what lies beside it instead.
-pub(crate) fn text(path: &Path) -> Result<String, ConfigError> {
-    std::fs::read_to_string(path).map_err(|e| {
+pub(crate) fn text(path: &Path, hash: &mut Hash) -> Result<String, ConfigError> {
+    let text = std::fs::read_to_string(path).map_err(|e| {
         let hint = if e.kind() == std::io::ErrorKind::NotFound { neighbours(path) } else { String::new() };
         ConfigError::of_file(path, format!("cannot be read: {e}{hint}"))
-    })
+    })?;
+    hash.add(text.as_bytes());
+    Ok(text)
 }
 
 fn neighbours(path: &Path) -> String {
@@ -54,4 +48,22 @@ fn neighbours(path: &Path) -> String {
         .collect();
     names.sort();
     if names.is_empty() { String::new() } else { format!("; there is {}", names.join(", ")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Hash;
+
+    /// Published test vectors of FNV-1a, 64 bits.
+    #[test]
+    fn hash_of_known_strings() {
+        let hash = |text: &str| {
+            let mut hash = Hash::default();
+            hash.add(text.as_bytes());
+            hash.0
+        };
+        assert_eq!(hash(""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(hash("a"), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(hash("foobar"), 0x8594_4171_f739_67e8);
+    }
 }

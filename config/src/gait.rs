@@ -1,5 +1,11 @@
 //! How a robot walks (planner) and how it is stabilized (controller).
 
+use std::path::Path;
+
+use crate::error::ConfigError;
+use crate::file::{self, Hash};
+use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
+
 /// `gaits/NAME.toml`.
 #[derive(Clone, Debug)]
 pub struct Gait {
@@ -14,7 +20,7 @@ pub struct Gait {
 }
 
 /// Steps and feet.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Step {
     /// \[m\] Lateral distance of the sole frames W_step.
     pub width: f64,
@@ -41,7 +47,7 @@ pub struct Step {
 }
 
 /// The three-mass model (4.38).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Model {
     /// \[m\] Height of the centre of gravity while walking.
     pub com_height: f64,
@@ -60,7 +66,7 @@ pub struct Model {
 }
 
 /// Ranges of walking commands (thesis 4.6.1); outside of them a command is refused.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Limits {
     /// \[m\] Step length.
     pub length: [f64; 2],
@@ -73,7 +79,7 @@ pub struct Limits {
 }
 
 /// Gains of the stabilizer (thesis chapter 5).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Control {
     /// \[N m/rad\] K_P of the inclinations phi_x, phi_y (5.2), (5.3).
     pub inclination_p: [f64; 2],
@@ -103,4 +109,145 @@ pub struct Control {
     pub null_space_gain: f64,
     /// \[s\] Time constant of the force sensor filter.
     pub force_filter: f64,
+}
+
+/// \[1\] How far a row of `by_speed` may be from length = speed * duration.
+const SPEED_TOLERANCE: f64 = 0.05;
+
+impl Gait {
+    /// Reads a gait file.
+    pub fn load(path: &Path) -> Result<Self, ConfigError> {
+        Self::load_hashed(path, &mut Hash::default())
+    }
+
+    pub(crate) fn load_hashed(path: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
+        let text = file::text(path, hash)?;
+        section::read(path, &text, |top| {
+            let gait = Self {
+                step: top.table("step", Step::build).unwrap_or_default(),
+                model: top.table("model", Model::build).unwrap_or_default(),
+                limits: top.table("limits", Limits::build).unwrap_or_default(),
+                control: top.table("control", Control::build).unwrap_or_default(),
+            };
+            gait.check(top);
+            gait
+        })
+    }
+
+    /// Rules between tables.
+    fn check(&self, top: &Section<'_, '_>) {
+        let (step, limits) = (&self.step, &self.limits);
+        if step.first_length > limits.length[1] {
+            let [_, most] = limits.length;
+            top.problem(
+                "step",
+                format!("first_length {} is above limits.length {most} m", step.first_length),
+            );
+        }
+        let swing = limits.duration[0] * (1.0 - step.double_support);
+        if step.swing_lag + step.swing_lead >= swing {
+            let sum = step.swing_lag + step.swing_lead;
+            top.problem(
+                "step",
+                format!("swing_lag + swing_lead = {sum} s leave nothing of a swing of {swing:.3} s"),
+            );
+        }
+        for (i, [speed, length, duration]) in step.by_speed.iter().enumerate() {
+            if *length < limits.length[0] || *length > limits.length[1] {
+                top.problem(
+                    "step",
+                    format!("by_speed[{i}]: length {length} m lies outside of limits.length"),
+                );
+            }
+            if *duration < limits.duration[0] || *duration > limits.duration[1] {
+                top.problem(
+                    "step",
+                    format!("by_speed[{i}]: duration {duration} s lies outside of limits.duration"),
+                );
+            }
+            if (length - speed * duration).abs() > SPEED_TOLERANCE * length.abs() {
+                let is = length / duration;
+                top.problem(
+                    "step",
+                    format!("by_speed[{i}]: {length} m in {duration} s are {is:.3} m/s, not {speed}"),
+                );
+            }
+        }
+    }
+}
+
+impl Step {
+    fn build(table: &Section<'_, '_>) -> Self {
+        let by_speed: Vec<[f64; 3]> = table.rows("by_speed", "[speed in m/s, length in m, duration in s]");
+        if by_speed.first().is_some_and(|row| row[0] > 0.0) {
+            table.problem("by_speed", "its first row must be for speed 0 m/s");
+        }
+        if by_speed.windows(2).any(|pair| pair[0][0] >= pair[1][0]) {
+            table.problem("by_speed", "its speeds must ascend");
+        }
+        let step = Self {
+            width: table.number("width", "m", POSITIVE),
+            width_min: table.number("width_min", "m", POSITIVE),
+            swing_height: table.number("swing_height", "m", 0.0..=0.5),
+            double_support: table.number("double_support", "", 0.02..=0.9),
+            start_time: table.number("start_time", "s", POSITIVE),
+            swing_lag: table.number("swing_lag", "s", NOT_NEGATIVE),
+            swing_lead: table.number("swing_lead", "s", NOT_NEGATIVE),
+            first_length: table.number("first_length", "m", POSITIVE),
+            change: table.numbers("change", "m, m, rad", POSITIVE),
+            change_duration: table.number("change_duration", "s", POSITIVE),
+            by_speed,
+        };
+        if step.width < step.width_min {
+            let (width, least) = (step.width, step.width_min);
+            table.problem("width", format!("{width} m must not be below width_min = {least} m"));
+        }
+        step
+    }
+}
+
+impl Model {
+    fn build(table: &Section<'_, '_>) -> Self {
+        Self {
+            com_height: table.number("com_height", "m", 0.1..=3.0),
+            com_forward: table.number("com_forward", "m", -0.5..=0.5),
+            leg_mass: table.number("leg_mass", "", 0.0..=0.4),
+            leg_height: table.number("leg_height", "m", 0.0..=1.0),
+            zmp_margin: table.number("zmp_margin", "m", 0.0..=0.2),
+            spacing: table.number("spacing", "s", 0.005..=0.5),
+            stand_time: table.number("stand_time", "s", 0.1..=20.0),
+        }
+    }
+}
+
+impl Limits {
+    fn build(table: &Section<'_, '_>) -> Self {
+        Self {
+            length: table.interval("length", "m", -1.5..=1.5),
+            side: table.interval("side", "m", -1.0..=1.0),
+            turn: table.interval("turn", "rad", -1.0..=1.0),
+            duration: table.interval("duration", "s", 0.2..=20.0),
+        }
+    }
+}
+
+impl Control {
+    fn build(table: &Section<'_, '_>) -> Self {
+        Self {
+            inclination_p: table.numbers("inclination_p", "N m/rad", NOT_NEGATIVE),
+            inclination_d: table.numbers("inclination_d", "N m s/rad", NOT_NEGATIVE),
+            height_p: table.number("height_p", "N/m", NOT_NEGATIVE),
+            height_d: table.number("height_d", "N s/m", NOT_NEGATIVE),
+            force_max: table.number("force_max", "times the weight", 1.0..=5.0),
+            force_gain: table.numbers("force_gain", "1/s", 0.0..=500.0),
+            force_feed_forward: table.number("force_feed_forward", "", 0.0..=1.0),
+            force_blend: table.interval("force_blend", "N", NOT_NEGATIVE),
+            position_gain: table.number("position_gain", "1/s", 0.0..=500.0),
+            modification_limit: table.numbers("modification_limit", "m, rad, rad", 0.0..=1.0),
+            modification_rate: table.numbers("modification_rate", "m/s, rad/s, rad/s", 0.0..=20.0),
+            drift_gain: table.number("drift_gain", "1/s", 0.0..=500.0),
+            null_space_gain: table.number("null_space_gain", "", 0.0..=1e3),
+            force_filter: table.number("force_filter", "s", 0.0..=1.0),
+        }
+    }
 }

@@ -5,6 +5,8 @@
 //! - [`scene::Scene`]: `scenes/NAME.toml`: what is simulated.
 //! - [`system::System`]: `system.toml`: processes, cores, priorities, deadlines, limits of the run-time system.
 //!
+//! [`Setup`] reads all four for a scene, checks what they say about each other, and hashes them.
+//!
 //! Only this crate names TOML.
 
 mod error;
@@ -13,11 +15,15 @@ pub mod gait;
 pub mod robot;
 pub mod scene;
 mod section;
+mod setup;
 pub mod system;
+pub mod timeline;
 
 pub use error::{ConfigError, Problem};
-pub use file::{Hash, root};
+pub use file::root;
 pub use gait::Gait;
 pub use robot::Robot;
 pub use scene::Scene;
+pub use setup::Setup;
 pub use system::System;
+pub use timeline::Timeline;

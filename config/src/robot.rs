@@ -16,8 +16,6 @@ pub struct Robot {
     pub name: String,
     /// Text of the URDF.
     pub urdf: String,
-    /// Hash of the robot's files.
-    pub hash: Hash,
     /// \[kg\] Sum of all masses, which the URDF must meet within 1 g.
     pub total_mass: f64,
     /// Link that is the floating base: the upper body.
@@ -91,13 +89,16 @@ const MASS_TOLERANCE: f64 = 1e-3;
 impl Robot {
     /// Reads `robot.toml` in a robot's directory, and the URDF it names.
     pub fn load(directory: &Path) -> Result<Self, ConfigError> {
+        Self::load_hashed(directory, &mut Hash::default())
+    }
+
+    pub(crate) fn load_hashed(directory: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
         let path = directory.join("robot.toml");
-        let text = file::text(&path)?;
+        let text = file::text(&path, hash)?;
         let name = directory.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let mut robot = section::read(&path, &text, |top| Self::build(top, name))?;
         let urdf_path = directory.join(&robot.urdf);
-        robot.urdf = file::text(&urdf_path)?;
-        robot.hash = Hash::default().with(text.as_bytes()).with(robot.urdf.as_bytes());
+        robot.urdf = file::text(&urdf_path, hash)?;
         let masses = masses(&robot.urdf).map_err(|text| ConfigError::of_file(&urdf_path, text))?;
         if (masses - robot.total_mass).abs() > MASS_TOLERANCE {
             let wanted = robot.total_mass;
@@ -126,7 +127,6 @@ impl Robot {
         Self {
             name,
             urdf: top.text("urdf"),
-            hash: Hash::default(),
             total_mass: top.number("total_mass", "kg", POSITIVE),
             torso: top.text("torso"),
             feet: feet(top, &names),

@@ -1,7 +1,14 @@
 //! What is simulated: nothing that a scene does not name is computed.
 
+use std::path::Path;
+
 use messages::Command;
 use messages::command::PushCommand;
+use messages::command_text::{COMMANDS, CommandInfo};
+
+use crate::error::ConfigError;
+use crate::file::{self, Hash};
+use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 
 /// `scenes/NAME.toml`.
 #[derive(Clone, Debug)]
@@ -34,6 +41,9 @@ pub struct Scene {
     pub pushes: Vec<(f64, PushCommand)>,
 }
 
+/// When a scene's operator presses reset and enable \[s\].
+const ARMING: [f64; 2] = [0.02, 0.04];
+
 /// How the equations of motion are integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
@@ -41,4 +51,96 @@ pub enum Integrator {
     Euler,
     /// Classical Runge-Kutta, fourth order between contact changes.
     RungeKutta4,
+}
+
+impl Scene {
+    /// Reads a scene file.
+    pub fn load(path: &Path) -> Result<Self, ConfigError> {
+        Self::load_hashed(path, &mut Hash::default())
+    }
+
+    pub(crate) fn load_hashed(path: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
+        let text = file::text(path, hash)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        section::read(path, &text, |top| Self::build(top, name))
+    }
+
+    fn build(top: &Section<'_, '_>, name: String) -> Self {
+        let scene = Self {
+            name,
+            about: top.text("about"),
+            robot: top.text("robot"),
+            gait: top.text("gait"),
+            depth: top.integer("depth", 1..=5) as u8,
+            integrator: [Integrator::Euler, Integrator::RungeKutta4]
+                [top.word("integrator", &["euler", "rk4"])],
+            substeps: top.integer("substeps", 1..=1000) as u32,
+            cycle: top.number("cycle", "s", 1e-4..=0.02),
+            start_pose: top.text("start_pose"),
+            duration: top.number("duration", "s", POSITIVE),
+            seed: top.integer("seed", 0..=u64::MAX),
+            commands: top.tables("command", command),
+            pushes: top.tables("push", push),
+        };
+        scene.check_times(top, "command", scene.commands.iter().map(|(time, _)| *time));
+        scene.check_times(top, "push", scene.pushes.iter().map(|(time, _)| *time));
+        scene
+    }
+
+    /// All commands of the scene by tick: those that arm the robot, then its own.
+    pub fn timeline(&self) -> Vec<(u64, Command)> {
+        let tick = |time: f64| (time / self.cycle).round() as u64 + 1;
+        let arming = [(ARMING[0], Command::Reset), (ARMING[1], Command::Enable)];
+        let mut all: Vec<_> = arming.into_iter().chain(self.commands.iter().copied()).map(|(t, c)| (tick(t), c)).collect();
+        all.sort_by_key(|(tick, _)| *tick);
+        all
+    }
+
+    fn check_times(&self, top: &Section<'_, '_>, key: &str, times: impl Iterator<Item = f64>) {
+        let mut last = 0.0;
+        for (i, time) in times.enumerate() {
+            if time < last {
+                top.problem(
+                    key,
+                    format!("{key}[{i}]: its time {time} s lies before {last} s of the one above it"),
+                );
+            }
+            if time > self.duration {
+                let end = self.duration;
+                top.problem(
+                    key,
+                    format!("{key}[{i}]: its time {time} s lies after the end of the scene, {end} s"),
+                );
+            }
+            last = time;
+        }
+    }
+}
+
+/// One `[[command]]`: `time`, the topic as `gangwerk topic` names it, and the topic's fields.
+fn command(row: &Section<'_, '_>) -> (f64, Command) {
+    let time = row.number("time", "s", NOT_NEGATIVE);
+    let scripted: Vec<&CommandInfo> = COMMANDS.iter().filter(|info| info.name != "sim/push").collect();
+    let names: Vec<&str> = scripted.iter().map(|info| info.name).collect();
+    let info = scripted[row.word("topic", &names)];
+    let mut text = String::new();
+    for field in info.fields {
+        if field.default.is_none() || row.has(field.name) {
+            let [lo, hi] = field.range;
+            text += &format!("{}={} ", field.name, row.number(field.name, field.unit, lo..=hi));
+        }
+    }
+    let command = Command::parse(info.name, &text).unwrap_or_else(|problem| {
+        if !text.contains("NaN") {
+            row.problem("topic", problem);
+        }
+        Command::Stop
+    });
+    (time, command)
+}
+
+fn push(row: &Section<'_, '_>) -> (f64, PushCommand) {
+    let force = row.numbers("force", "N", -5000.0..=5000.0);
+    let push = PushCommand { force, duration: row.number("duration", "s", 0.0..=10.0) };
+    (row.number("time", "s", NOT_NEGATIVE), push)
 }

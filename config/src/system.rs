@@ -1,6 +1,12 @@
 //! The run-time system: one table of processes, and the limits that keep it safe.
 
+use std::path::Path;
+
 use messages::Process;
+
+use crate::error::ConfigError;
+use crate::file::{self, Hash};
+use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 
 /// `system.toml`.
 #[derive(Clone, Debug)]
@@ -34,4 +40,47 @@ pub struct ProcessRow {
     pub priority: u8,
     /// \[ns\] Time after the start of a cycle by which the process must have answered; 0: none.
     pub deadline_ns: u64,
+}
+
+impl System {
+    /// Reads `system.toml`.
+    pub fn load(path: &Path) -> Result<Self, ConfigError> {
+        Self::load_hashed(path, &mut Hash::default())
+    }
+
+    pub(crate) fn load_hashed(path: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
+        let text = file::text(path, hash)?;
+        section::read(path, &text, |top| Self {
+            processes: top.table("process", processes).unwrap_or_default(),
+            watchdog_missed: top.integer("watchdog_missed", 1..=1000) as u32,
+            targets_missed: top.integer("targets_missed", 1..=1000) as u32,
+            overrun_bucket: top.integer("overrun_bucket", 1..=100_000) as u32,
+            following_error: top.number("following_error", "rad", POSITIVE),
+            following_time: top.number("following_time", "s", NOT_NEGATIVE),
+            tcp_port: top.integer("tcp_port", 0..=65_535) as u16,
+            peer_timeout: top.number("peer_timeout", "s", POSITIVE),
+        })
+    }
+
+    /// The row of a process; none for observers.
+    pub fn process(&self, process: Process) -> Option<&ProcessRow> {
+        self.processes.iter().find(|row| row.process == process)
+    }
+}
+
+/// One table `[process.NAME]` for each process.
+fn processes(table: &Section<'_, '_>) -> Vec<ProcessRow> {
+    let row = |process: Process| table.table(process.name(), |row| ProcessRow::build(row, process));
+    Process::ALL.into_iter().filter_map(row).collect()
+}
+
+impl ProcessRow {
+    fn build(row: &Section<'_, '_>, process: Process) -> Self {
+        Self {
+            process,
+            core: row.has("core").then(|| row.integer("core", 0..=1023) as usize),
+            priority: row.integer("priority", 0..=98) as u8,
+            deadline_ns: row.integer("deadline_ns", 0..=1_000_000_000),
+        }
+    }
 }

@@ -1,0 +1,82 @@
+//! Everything a run needs: a scene and the files it names.
+
+use std::path::Path;
+
+use messages::Command;
+
+use crate::error::{ConfigError, Problem};
+use crate::file::Hash;
+use crate::section::{listed, nearest};
+use crate::{Gait, Robot, Scene, System};
+
+/// A scene, the robot and gait it names, and the run-time system; each fits the others.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// What is simulated.
+    pub scene: Scene,
+    /// The robot of the scene.
+    pub robot: Robot,
+    /// The gait of the scene.
+    pub gait: Gait,
+    /// The run-time system.
+    pub system: System,
+    /// FNV-1a, 64 bits, over the bytes of all files that were read.
+    pub hash: u64,
+}
+
+impl Setup {
+    /// Reads `scenes/SCENE.toml` in the configuration directory `root`, and all it names; see [`crate::root`].
+    pub fn load(root: &Path, scene: &str) -> Result<Self, ConfigError> {
+        let mut hash = Hash::default();
+        let path = root.join("scenes").join(scene).with_extension("toml");
+        let scene = Scene::load_hashed(&path, &mut hash)?;
+        let robot = Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut hash)?;
+        let gait =
+            Gait::load_hashed(&root.join("gaits").join(&scene.gait).with_extension("toml"), &mut hash)?;
+        let system = System::load_hashed(&root.join("system.toml"), &mut hash)?;
+        let setup = Self { scene, robot, gait, system, hash: hash.0 };
+        let problems = setup.problems();
+        if problems.is_empty() { Ok(setup) } else { Err(ConfigError { file: path, problems }) }
+    }
+
+    /// What the scene says that robot or gait cannot do.
+    fn problems(&self) -> Vec<Problem> {
+        let (scene, poses) = (&self.scene, &self.robot.poses);
+        let mut problems = Vec::new();
+        let mut note = |key: String, text: String| problems.push(Problem { line: 0, key, text });
+        if !poses.contains_key(&scene.start_pose) {
+            let names: Vec<&str> = poses.keys().map(String::as_str).collect();
+            let (pose, robot) = (&scene.start_pose, &scene.robot);
+            let near =
+                nearest(pose, &names).map_or(String::new(), |name| format!("; the nearest is `{name}`"));
+            let text = format!("robot {robot} has no pose `{pose}`{near}; there is {}", listed(&names));
+            note("start_pose".to_owned(), text);
+        }
+        for (i, (time, command)) in scene.commands.iter().enumerate() {
+            if let Some(text) = self.beyond_gait(command) {
+                note(format!("command[{i}]"), format!("at {time} s: {text} of gait {}", scene.gait));
+            }
+        }
+        problems
+    }
+
+    /// Why the gait would refuse a command.
+    fn beyond_gait(&self, command: &Command) -> Option<String> {
+        let limits = &self.gait.limits;
+        let outside = |name: &str, x: f64, [lo, hi]: [f64; 2]| {
+            (x < lo || x > hi).then(|| format!("{name} = {x} lies outside of limits.{name} [{lo}, {hi}]"))
+        };
+        match command {
+            Command::Step(step) => outside("length", step.length, limits.length)
+                .or_else(|| outside("side", step.side, limits.side))
+                .or_else(|| outside("turn", step.turn, limits.turn))
+                .or_else(|| outside("duration", step.duration, limits.duration)),
+            Command::Velocity(v) => {
+                let most = self.gait.step.by_speed.last().map_or(0.0, |row| row[0]);
+                (v.forward.abs() > most)
+                    .then(|| format!("forward = {} is beyond by_speed's {most} m/s", v.forward))
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! The commands of a scene by bus cycle: so that every process, and every repetition, sees them at the same tick.
+
+use messages::Command;
+use messages::command::Domain;
+
+use crate::Scene;
+
+/// What is still to come, for one process.
+#[derive(Clone, Debug)]
+pub struct Timeline {
+    /// (first tick at or after the command's time, command), ascending.
+    entries: Vec<(u64, Command)>,
+    next: usize,
+}
+
+impl Timeline {
+    /// The scene's commands of these domains.
+    pub fn new(scene: &Scene, domains: &[Domain]) -> Self {
+        // A time that is a whole number of cycles but for rounding belongs to that cycle.
+        let tick = |time: f64| (time / scene.cycle - 1e-6).ceil().max(0.0) as u64;
+        let own = scene.commands.iter().filter(|(_, command)| domains.contains(&command.address().0));
+        Self { entries: own.map(|(time, command)| (tick(*time), *command)).collect(), next: 0 }
+    }
+
+    /// For a process that was started again: what lies before `tick` has been done, or shall not be done late.
+    pub fn skip_before(&mut self, tick: u64) {
+        self.next = self.entries.partition_point(|(t, _)| *t < tick);
+    }
+
+    /// The next command that is due at `tick`; to be called until there is none.
+    pub fn due(&mut self, tick: u64) -> Option<Command> {
+        let (at, command) = *self.entries.get(self.next)?;
+        (at <= tick).then(|| {
+            self.next += 1;
+            command
+        })
+    }
+}
