@@ -1,0 +1,88 @@
+// Times Pinocchio's mass matrix, nonlinear terms and forward dynamics on given states, and writes its results.
+//
+// usage: pinocchio_bench URDF STATES RESULTS
+// STATES: names of the joints on one line, then one line of q, v, force per state in the order of those names.
+// RESULTS: per state M (lower triangle by rows), h, forward dynamics, in the same order, as raw doubles.
+// Prints: name, then for the time of one call in us the minimum, median, and 90th percentile over batches.
+#include <pinocchio/multibody.hpp>
+#include <pinocchio/parsers/urdf.hpp>
+#include <pinocchio/algorithm/aba.hpp>
+#include <pinocchio/algorithm/cholesky.hpp>
+#include <pinocchio/algorithm/crba.hpp>
+#include <pinocchio/algorithm/rnea.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+namespace pin = pinocchio;
+using Eigen::VectorXd;
+
+struct State { VectorXd q, v, force; };
+
+template <class Call> void measure(const char* name, const std::vector<State>& states, Call call) {
+  constexpr int batches = 301;
+  std::vector<double> us;
+  for (int b = -20; b < batches; ++b) {
+    auto start = std::chrono::steady_clock::now();
+    for (const State& s : states) call(s);
+    std::chrono::duration<double, std::micro> d = std::chrono::steady_clock::now() - start;
+    if (b >= 0) us.push_back(d.count() / states.size());
+  }
+  std::sort(us.begin(), us.end());
+  std::printf("%s %.4f %.4f %.4f\n", name, us[0], us[batches / 2], us[batches * 9 / 10]);
+}
+
+int main(int argc, char** argv) {
+  if (argc != 4) return std::fprintf(stderr, "usage: pinocchio_bench URDF STATES RESULTS\n"), 2;
+  pin::Model model;
+  pin::urdf::buildModel(argv[1], pin::JointModelFreeFlyer(), model);
+  pin::Data data(model);
+
+  std::ifstream in(argv[2]);
+  std::string line, name;
+  std::getline(in, line);
+  std::vector<int> at = {0, 1, 2, 3, 4, 5};  // their v index of our v index
+  for (std::istringstream names(line); names >> name;) at.push_back(model.joints[model.getJointId(name)].idx_v());
+  const int nv = model.nv;
+  if (int(at.size()) != nv || model.nq != nv + 1) return std::fprintf(stderr, "joints do not match\n"), 1;
+  std::vector<State> states;
+  while (std::getline(in, line)) {
+    std::istringstream numbers(line);
+    State s{VectorXd(nv + 1), VectorXd(nv), VectorXd(nv)};
+    for (int k = 0; k < 7; ++k) numbers >> s.q[k];
+    for (int k = 6; k < nv; ++k) numbers >> s.q[at[k] + 1];
+    for (int k = 0; k < nv; ++k) numbers >> s.v[at[k]];
+    for (int k = 0; k < nv; ++k) numbers >> s.force[at[k]];
+    states.push_back(s);
+  }
+
+  measure("mass_matrix", states, [&](const State& s) { pin::crba(model, data, s.q, pin::Convention::LOCAL); });
+  measure("nonlinear_terms", states, [&](const State& s) { pin::nonLinearEffects(model, data, s.q, s.v); });
+  VectorXd x(nv);
+  measure("forward_matrix", states, [&](const State& s) {
+    pin::crba(model, data, s.q, pin::Convention::LOCAL);
+    x = s.force - pin::nonLinearEffects(model, data, s.q, s.v);
+    pin::cholesky::decompose(model, data);
+    pin::cholesky::solve(model, data, x);
+  });
+  measure("forward_articulated", states, [&](const State& s) {
+    pin::aba(model, data, s.q, s.v, s.force, pin::Convention::LOCAL);
+  });
+
+  std::ofstream out(argv[3], std::ios::binary);
+  auto put = [&](double d) { out.write(reinterpret_cast<const char*>(&d), sizeof d); };
+  for (const State& s : states) {
+    pin::crba(model, data, s.q);
+    for (int i = 0; i < nv; ++i)
+      for (int j = 0; j <= i; ++j) put(data.M(std::min(at[i], at[j]), std::max(at[i], at[j])));
+    pin::nonLinearEffects(model, data, s.q, s.v);
+    for (int i = 0; i < nv; ++i) put(data.nle[at[i]]);
+    pin::aba(model, data, s.q, s.v, s.force);
+    for (int i = 0; i < nv; ++i) put(data.ddq[at[i]]);
+  }
+  return out.good() ? 0 : 1;
+}
