@@ -1,1 +1,9 @@
-//! (being written)
+//! Cuts the motor supply when the joint loop stops resetting it, when a process asks, or when it dies itself.
+//!
+//! The watchdog shares no cycle with the processes it guards. [`Watchdog::step`] is all it knows; [`daemon`] is the
+//! process around it.
+
+pub mod daemon;
+mod supply;
+
+pub use supply::{Inputs, PAUSE, Supply, Watchdog};

@@ -16,6 +16,9 @@ const MAX_NOTIFIERS: usize = 128;
 const MAX_LISTENERS: usize = 16;
 const MAX_NODES: usize = 64;
 
+/// How often a long wait looks whether it shall end.
+const LOOK: Duration = Duration::from_millis(20);
+
 pub(crate) type RealTime = ipc::Service;
 type Events<S> = iceoryx2::service::port_factory::event::PortFactory<S>;
 
@@ -131,6 +134,17 @@ impl Bell {
     }
 }
 
+/// How a wait for something ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Woken {
+    /// What was waited for is there.
+    Ready,
+    /// The process was asked to end.
+    Stopped,
+    /// Nobody rang for as long as the patience lasted.
+    Silent,
+}
+
 /// Where one process sleeps.
 #[derive(Debug)]
 pub struct Waiter {
@@ -151,5 +165,26 @@ impl Waiter {
     /// `true`: somebody rang since the last wait; `false`: time is up.
     pub fn wait(&self, timeout: Duration) -> bool {
         self.bell.wait(timeout, self.spins)
+    }
+
+    /// Sleeps until `ready` is true; looks first, and then after every ring. For lockstep: a missing peer is named
+    /// after `patience`, never waited for in silence, and a request to end is seen within 20 ms.
+    pub fn wait_until(
+        &self,
+        patience: Duration,
+        stopped: impl Fn() -> bool,
+        mut ready: impl FnMut() -> bool,
+    ) -> Woken {
+        let mut quiet = Duration::ZERO;
+        while !ready() {
+            if stopped() {
+                return Woken::Stopped;
+            }
+            if quiet >= patience {
+                return Woken::Silent;
+            }
+            quiet = if self.wait(LOOK) { Duration::ZERO } else { quiet + LOOK };
+        }
+        Woken::Ready
     }
 }

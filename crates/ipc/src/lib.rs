@@ -21,7 +21,7 @@ mod slot;
 mod space;
 mod writer;
 
-pub use bell::{Bell, Waiter};
+pub use bell::{Bell, Waiter, Woken};
 pub use error::IpcError;
 pub use queue::{MAX_MESSAGE, QueueReceiver, QueueSender, QueueWaiter};
 pub use reader::Reader;

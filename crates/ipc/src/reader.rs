@@ -58,7 +58,7 @@ impl<T: Record> Reader<T> {
     /// The newest record; none before the first one was written.
     pub fn latest(&mut self) -> Option<&T> {
         self.refresh();
-        (self.held.number > 0).then_some(&self.held.record)
+        self.held()
     }
 
     /// The newest record if it is another one than last time.
@@ -66,18 +66,25 @@ impl<T: Record> Reader<T> {
         self.refresh().then_some(&self.held.record)
     }
 
+    /// Fetches the newest record; `true` if it is another one than last time. It is then [`Reader::held`].
+    pub fn refresh(&mut self) -> bool {
+        let Some(count) = self.count_of_newest() else { return false };
+        *self.held = *self.slots[self.slot].entry(count).get();
+        self.number = self.held.number;
+        true
+    }
+
+    /// The record fetched last; none before the first one.
+    pub fn held(&self) -> Option<&T> {
+        (self.held.number > 0).then_some(&self.held.record)
+    }
+
     /// The next record in the order of writing; none if there is no more yet.
     ///
     /// What a reader first sees is the oldest record the ring still holds. Records overwritten before they were read
     /// are counted, see [`Reader::lost`].
     pub fn follow(&mut self) -> Option<&T> {
-        let mut count = self.slots[self.slot].head.get().count;
-        if count == self.number || self.epoch == 0 {
-            if !self.find_writer() {
-                return None;
-            }
-            count = self.slots[self.slot].head.get().count;
-        }
+        let count = self.count_of_newest()?;
         let slot = &self.slots[self.slot];
         let depth = slot.ring.len() as u64;
         let mut next = self.number + 1;
@@ -102,18 +109,14 @@ impl<T: Record> Reader<T> {
         self.lost
     }
 
-    /// Copies the newest record if it is not yet the one held.
-    fn refresh(&mut self) -> bool {
-        let mut count = self.slots[self.slot].head.get().count;
-        if count == self.number || self.epoch == 0 {
-            if !self.find_writer() {
-                return false;
-            }
-            count = self.slots[self.slot].head.get().count;
+    /// How many records the present writer has written, if that is news. A slot that stands still is left for the
+    /// one of a newer writer, if there is one.
+    fn count_of_newest(&mut self) -> Option<u64> {
+        let count = self.slots[self.slot].head.get().count;
+        if self.epoch > 0 && count != self.number {
+            return Some(count);
         }
-        *self.held = *self.slots[self.slot].entry(count).get();
-        self.number = self.held.number;
-        true
+        self.find_writer().then(|| self.slots[self.slot].head.get().count)
     }
 
     /// Goes to the slot of a newer writer that has written something; `false` if there is none.

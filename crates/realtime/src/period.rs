@@ -21,6 +21,16 @@ pub enum Verdict {
     },
 }
 
+impl Verdict {
+    /// Whole periods skipped.
+    pub const fn skipped(self) -> u64 {
+        match self {
+            Self::InTime => 0,
+            Self::Overrun { skipped } | Self::TooMany { skipped } => skipped,
+        }
+    }
+}
+
 /// Wake-ups at `start + k * period`.
 #[derive(Clone, Debug)]
 pub struct Period {

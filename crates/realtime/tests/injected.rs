@@ -26,10 +26,7 @@ fn measure(delay: u64, mut work: impl FnMut(u64)) -> CycleStats {
             if round == 1 {
                 work(n);
             }
-            let skipped = match period.finish(clock::now()) {
-                realtime::Verdict::InTime => 0,
-                realtime::Verdict::Overrun { skipped } | realtime::Verdict::TooMany { skipped } => skipped,
-            };
+            let skipped = period.finish(clock::now()).skipped();
             meter.end(clock::now(), skipped);
         }
         stats = *meter.stats();
