@@ -123,9 +123,15 @@ pub fn required_distance(turn: f64, width_min: f64, sole: &Sole) -> f64 {
 
 /// Width W_n of the next foothold (4.4): at least `step.width`, wide enough for this step (errata 2.2), and at least
 /// half of what two equal steps need, so that widths of a steady turn do not alternate.
+///
+/// The foot left behind becomes the swing foot: seen from the new one it must not stand in its own way either, which
+/// (4.4) does not look at. It turns back while it passes, so parallel feet are what counts then.
 pub fn next_width(p: &Parameters, w_c: f64, nu: f64, step: &gait::Step, sole: &Sole) -> f64 {
+    let (s, c) = p.turn.sin_cos();
     let need = required_distance(p.turn, step.width_min, sole);
-    let bound = |w_c: f64| 2.0 * (need - nu * displacement(p, w_c, 0.0, nu)[1]) / p.turn.cos(); // (4.4)
-    let together = bound(0.0) / (1.0 + 1.0 / p.turn.cos());
-    step.width.max(bound(w_c)).max(together)
+    let bound = |w_c: f64| 2.0 * (need - nu * displacement(p, w_c, 0.0, nu)[1]) / c; // (4.4)
+    let together = bound(0.0) / (1.0 + 1.0 / c);
+    let [x, y] = displacement(p, w_c, 0.0, nu);
+    let behind = 2.0 * (step.width_min - nu * (c * y - s * x));
+    step.width.max(bound(w_c)).max(together).max(behind)
 }
