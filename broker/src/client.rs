@@ -12,6 +12,7 @@ use std::time::Duration;
 use ipc::{QueueReceiver, QueueSender, QueueWaiter, Space};
 use messages::Command;
 use messages::command::{Domain, Priority};
+use realtime::clock::{SECOND, now};
 use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::message::{
@@ -23,8 +24,8 @@ use crate::message::{
 const RING: usize = 128;
 /// How often the thread looks for what the control cycle publishes; what comes in wakes it.
 const POLL: Duration = Duration::from_millis(2);
-/// Polls from one renewal of the registration to the next.
-const RENEW: u32 = 100;
+/// Time from one renewal of the registration to the next \[ns\].
+const RENEW: u64 = SECOND / 5;
 /// Renewals without an answer after which the broker counts as gone.
 const SILENT: u32 = 4;
 
@@ -99,6 +100,8 @@ impl Client {
             inbox: space.queue_receiver(&inbox)?,
             bell: space.queue_waiter(&inbox)?,
             no_room: 0,
+            link: Link::Unknown,
+            unanswered: 0,
             name,
         };
         let thread = std::thread::Builder::new().name("courier".into()).spawn(move || courier.run())?;
@@ -185,23 +188,31 @@ struct Courier {
     bell: QueueWaiter,
     /// Messages for which the rings had no room.
     no_room: u64,
+    link: Link,
+    /// Renewals since the broker's last answer.
+    unanswered: u32,
+}
+
+/// Whether the broker answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Link {
+    /// It has not had the time.
+    Unknown,
+    Up,
+    Down,
 }
 
 impl Courier {
     fn run(mut self) {
-        let (mut until_renewal, mut unanswered) = (0, SILENT);
+        let mut next_renewal = 0;
         while !self.counts.end.load(Relaxed) {
-            if until_renewal == 0 {
+            if now() >= next_renewal {
+                next_renewal = now() + RENEW;
                 self.register();
-                until_renewal = RENEW;
-                unanswered += 1;
             }
-            until_renewal -= 1;
-            if self.bring_in() {
-                unanswered = 0;
-            }
+            self.bring_in();
             self.carry_out();
-            self.counts.connected.store(unanswered < SILENT, Relaxed);
+            self.counts.connected.store(self.link == Link::Up, Relaxed);
             self.bell.wait(POLL);
         }
         self.carry_out();
@@ -209,6 +220,10 @@ impl Courier {
     }
 
     fn register(&mut self) {
+        self.unanswered += 1;
+        if self.unanswered > SILENT {
+            self.link = Link::Down;
+        }
         let lost = self.counts.lost_in.load(Relaxed) as u32;
         let numbers = [token(&self.name), self.domains, lost];
         let mut payload: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
@@ -216,29 +231,31 @@ impl Courier {
         self.registration.send(&service_message(service::REGISTER, &payload));
     }
 
-    /// From the rings to the broker.
+    /// From the rings to the broker. While there is none, nothing is kept for later: an old command must not move the
+    /// robot. An emergency stop is sent in any case.
     fn carry_out(&mut self) {
-        let mut buffer = [0; MAX_BYTES];
-        for ring in &mut self.rings {
+        for (ring, urgent) in self.rings.iter_mut().zip([true, false]) {
+            if self.link == Link::Unknown && !urgent {
+                continue;
+            }
             for _ in 0..RING {
                 let Ok((command, priority)) = ring.out.pop() else { break };
-                let sent = write_command(&command, priority, token(&self.name), &mut buffer)
-                    .is_ok_and(|bytes| self.publish[priority as usize].send(bytes));
-                if !sent {
-                    self.counts.lost_out.fetch_add(1, Relaxed);
-                }
+                let mut buffer = [0; MAX_BYTES];
+                let sent = (urgent || self.link == Link::Up)
+                    && write_command(&command, priority, token(&self.name), &mut buffer)
+                        .is_ok_and(|bytes| self.publish[priority as usize].send(bytes));
+                self.counts.lost_out.fetch_add(u64::from(!sent), Relaxed);
             }
         }
     }
 
-    /// From the broker to the rings; true if the broker confirmed the registration.
-    fn bring_in(&mut self) -> bool {
-        let mut confirmed = false;
+    /// From the broker to the rings.
+    fn bring_in(&mut self) {
         for _ in 0..2 * RING {
             let Some(bytes) = self.inbox.receive() else { break };
             let message = Message::parse(bytes);
             if message.as_ref().is_ok_and(|m| m.domain == SERVICE) {
-                confirmed = true;
+                (self.link, self.unanswered) = (Link::Up, 0);
                 continue;
             }
             let Ok(command) = message.and_then(|m| m.command()) else {
@@ -249,6 +266,5 @@ impl Courier {
             self.no_room += u64::from(ring.received.push(command).is_err());
         }
         self.counts.lost_in.store(self.no_room + self.inbox.lost(), Relaxed);
-        confirmed
     }
 }

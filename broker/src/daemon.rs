@@ -4,8 +4,9 @@
 
 use std::time::Duration;
 
-use ipc::{Run, Space, Writer};
+use ipc::{Reader, Run, Space, Writer};
 use messages::{Event, EventCode, Process, Sensors, topics};
+use realtime::Stop;
 
 use crate::exchange::{Exchange, Report};
 use crate::tcp;
@@ -13,29 +14,20 @@ use crate::tcp;
 /// Longest time a message of a TCP connection waits while nothing else happens.
 const POLL: Duration = Duration::from_millis(1);
 
-/// Runs the broker until the process is ended. `tcp_port` 0: no TCP.
+/// Runs the broker until it is asked to stop. `tcp_port` 0: no TCP.
 ///
 /// # Errors
 /// Another broker serves this run, a queue cannot be made, or the port is taken.
-pub fn run(run: &Run, tcp_port: u16) -> Result<(), String> {
+pub fn run(run: &Run, tcp_port: u16, stop: &Stop) -> Result<(), String> {
     let space = run.enter(Process::Broker).map_err(|e| e.to_string())?;
     let (gate, inlet) = tcp::gate();
+    let mut exchange = Exchange::new(&space, inlet).map_err(|e| e.to_string())?;
+    let mut events = Events::open(&space).map_err(|e| e.to_string())?;
     if tcp_port != 0 {
         tcp::serve(tcp::bind(tcp_port)?, gate)?;
     }
-    serve(&space, inlet)
-}
-
-/// Forwards messages until the process is ended.
-///
-/// # Errors
-/// A queue or the topic of events cannot be opened.
-pub fn serve(space: &Space, inlet: tcp::Inlet) -> Result<(), String> {
-    let mut exchange = Exchange::new(space, inlet).map_err(|e| e.to_string())?;
-    let mut events = Events::open(space).map_err(|e| e.to_string())?;
     events.write(EventCode::Started, 0);
-    tracing::info!("broker started");
-    loop {
+    while !stop.asked() {
         let busy = exchange.turn(&mut |report| match report {
             Report::Refused(address) => events.write(EventCode::CommandRefused, address.into()),
             Report::Lost(messages) => events.write(EventCode::MessagesLost, messages),
@@ -44,12 +36,14 @@ pub fn serve(space: &Space, inlet: tcp::Inlet) -> Result<(), String> {
             exchange.wait(POLL);
         }
     }
+    events.write(EventCode::Ended, 0);
+    Ok(())
 }
 
 /// Writes `events/broker`, stamped with the newest tick.
 struct Events {
     writer: Writer<Event>,
-    sensors: ipc::Reader<Sensors>,
+    sensors: Reader<Sensors>,
 }
 
 impl Events {

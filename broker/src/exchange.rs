@@ -7,22 +7,22 @@ use std::time::Duration;
 
 use ipc::{IpcError, QueueReceiver, QueueSender, QueueWaiter, Space};
 use messages::command::{Domain, Priority};
+use realtime::clock::{SECOND, now};
 use tokio::sync::mpsc;
-use tokio::time::Instant;
 
 use crate::message::{
     BROKER_BELL, Message, PUBLISH, REGISTRATION, Refusal, client_queue, service, service_message, split_u32,
 };
 use crate::tcp::{FIRST_TOKEN, Inlet, Request};
 
-/// Clients by queue that have not renewed their registration for this long are let go.
-const LEASE: Duration = Duration::from_secs(2);
+/// Clients by queue that have not renewed their registration for this long are let go \[ns\].
+const LEASE: u64 = 2 * SECOND;
 /// Clients by queue, at most.
 const MAX_CLIENTS: usize = 32;
 /// Messages forwarded before the service queue and the leases get their turn, and the other way round.
 const AT_ONCE: usize = 64;
-/// How often leases and losses are looked at.
-const ROUND: Duration = Duration::from_millis(250);
+/// How often leases and losses are looked at \[ns\].
+const ROUND: u64 = SECOND / 4;
 
 /// What the broker has to report, for the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ pub enum Report {
 
 /// The way to a client.
 enum Exit {
-    Queue { sender: Box<QueueSender>, renewed: Instant },
+    Queue { sender: Box<QueueSender>, renewed: u64 },
     Tcp(mpsc::Sender<Vec<u8>>),
 }
 
@@ -77,7 +77,7 @@ pub struct Exchange<'a> {
     forwarded: [u64; 3],
     refused: u64,
     reported_lost: u64,
-    next_round: Instant,
+    next_round: u64,
 }
 
 impl<'a> Exchange<'a> {
@@ -97,7 +97,7 @@ impl<'a> Exchange<'a> {
             forwarded: [0; 3],
             refused: 0,
             reported_lost: 0,
-            next_round: Instant::now(),
+            next_round: now(),
         })
     }
 
@@ -122,10 +122,10 @@ impl<'a> Exchange<'a> {
             }
             busy = true;
         }
-        let now = Instant::now();
-        if now >= self.next_round {
-            self.next_round = now + ROUND;
-            self.release_silent(now);
+        let time = now();
+        if time >= self.next_round {
+            self.next_round = time + ROUND;
+            self.release_silent(time);
             self.report_losses(report);
         }
         busy
@@ -218,7 +218,7 @@ impl<'a> Exchange<'a> {
         let member = &mut self.members[index];
         (member.domains, member.lost) = (domains, lost.into());
         if let Exit::Queue { sender, renewed } = &mut member.exit {
-            *renewed = Instant::now();
+            *renewed = now();
             sender.send(&service_message(service::ACCEPTED, &[]));
         }
         Some(())
@@ -235,15 +235,15 @@ impl<'a> Exchange<'a> {
         let sender = self.space.queue_sender(&queue, &queue);
         let sender = sender.map(Box::new).map_err(|e| tracing::warn!("{name} cannot join: {e}")).ok()?;
         tracing::info!("{name} joined");
-        let exit = Exit::Queue { sender, renewed: Instant::now() };
+        let exit = Exit::Queue { sender, renewed: now() };
         self.members.push(Member { token, name: name.into(), domains: 0, exit, sent: 0, lost: 0 });
         Some(self.members.len() - 1)
     }
 
     /// Lets go of clients that were killed or hang; one that comes back registers again.
-    fn release_silent(&mut self, now: Instant) {
+    fn release_silent(&mut self, time: u64) {
         self.members.retain(|m| match &m.exit {
-            Exit::Queue { renewed, .. } if now.duration_since(*renewed) > LEASE => {
+            Exit::Queue { renewed, .. } if time.saturating_sub(*renewed) > LEASE => {
                 tracing::warn!("{} is silent: its queue is released", m.name);
                 false
             }

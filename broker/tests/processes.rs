@@ -5,7 +5,7 @@ mod harness;
 use std::time::Duration;
 
 use broker::Client;
-use harness::{System, kill, pause, play_role, wait_for};
+use harness::{Killed, System, pause, play_role, wait_for};
 use messages::command::{Domain, Priority, StepCommand, VelocityCommand};
 use messages::topics::EVENTS_BROKER;
 use messages::{Command, Event, EventCode};
@@ -36,7 +36,7 @@ fn process() {
     });
 }
 
-fn signal(process: &std::process::Child, signal: Signal) {
+fn signal(Killed(process): &Killed, signal: Signal) {
     kill_process(Pid::from_child(process), signal).expect("signal");
 }
 
@@ -53,7 +53,7 @@ fn a_command_goes_to_another_process_and_back() {
         heard.extend(client.received());
         !heard.is_empty()
     });
-    kill(echo);
+    drop(echo);
     assert_eq!(heard, [step(0.25)], "its own message must not come back");
     assert_eq!(other.received().count(), 0, "not its domain");
 }
@@ -114,7 +114,7 @@ fn a_stopped_process_loses_its_own_messages_only() {
     wait_for("the event", || {
         events.follow().is_some_and(|e| e.code == EventCode::MessagesLost as u64 && e.detail > 0)
     });
-    kill(sleeper);
+    drop(sleeper);
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn a_killed_client_is_let_go() {
     let mut sender = system.client("sender", &[]);
     let victim = system.spawn("victim");
     wait_for("the victim", || system.line_about("victim").is_some());
-    kill(victim);
+    drop(victim);
     for n in 0..100 {
         assert!(sender.publish(&velocity(n)));
     }
@@ -136,7 +136,7 @@ fn a_killed_client_is_let_go() {
     wait_for("the end of the victim's registration", || system.line_about("victim").is_none());
     let again = system.spawn("victim");
     wait_for("the next victim", || system.line_about("victim").is_some());
-    kill(again);
+    drop(again);
 }
 
 #[test]
@@ -182,8 +182,8 @@ fn without_a_broker_publishing_never_waits() {
 #[test]
 fn a_second_broker_is_refused() {
     let system = System::start("second");
-    let second = system.spawn("broker").wait_with_output().unwrap();
-    assert_eq!(second.status.code(), Some(2));
+    let second = system.spawn("broker").0.wait().unwrap();
+    assert_eq!(second.code(), Some(2));
     let mut client = system.tcp();
     client.subscribe(&[Domain::Walk]).unwrap();
     assert_eq!(system.tcp().publish(&Command::Stop), Ok(1));

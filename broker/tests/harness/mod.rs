@@ -1,5 +1,7 @@
 //! A run directory with a broker process in it. The processes are this test program, started again in another role.
 
+#![allow(dead_code, reason = "each test file uses its part")]
+
 use std::path::PathBuf;
 use std::process::{Child, Stdio};
 use std::time::Duration;
@@ -17,12 +19,22 @@ const DIR: &str = "GANGWERK_TEST_DIR";
 pub(crate) struct System {
     run: Run,
     pub(crate) port: u16,
-    broker: Option<Child>,
+    broker: Option<Killed>,
     pub(crate) space: Space,
     _dir: RemoveDir,
 }
 
 struct RemoveDir(PathBuf);
+
+/// A process that does not outlive its test.
+pub(crate) struct Killed(pub(crate) Child);
+
+impl Drop for Killed {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
 
 impl Drop for RemoveDir {
     fn drop(&mut self) {
@@ -64,20 +76,21 @@ impl System {
 
     /// SIGKILL, and what the supervisor does after it.
     pub(crate) fn kill_broker(&mut self) {
-        kill(self.broker.take().expect("running"));
+        drop(self.broker.take());
         self.space.clear_dead();
     }
 
     /// This program in another role.
-    pub(crate) fn spawn(&self, role: &str) -> Child {
-        std::process::Command::new(std::env::current_exe().expect("own path"))
+    pub(crate) fn spawn(&self, role: &str) -> Killed {
+        let child = std::process::Command::new(std::env::current_exe().expect("own path"))
             .args(["--exact", "process", "--nocapture"])
             .env(ROLE, role)
             .env(PORT, self.port.to_string())
             .env(DIR, &self.run.dir)
             .stdout(Stdio::null())
             .spawn()
-            .expect("process")
+            .expect("process");
+        Killed(child)
     }
 
     /// A client of this process, once the broker knows it.
@@ -95,19 +108,6 @@ impl System {
     pub(crate) fn line_about(&self, name: &str) -> Option<String> {
         self.tcp().statistics().expect("statistics").into_iter().find(|line| line.starts_with(name))
     }
-}
-
-impl Drop for System {
-    fn drop(&mut self) {
-        if let Some(broker) = self.broker.take() {
-            kill(broker);
-        }
-    }
-}
-
-pub(crate) fn kill(mut process: Child) {
-    let _ = process.kill();
-    let _ = process.wait();
 }
 
 pub(crate) fn pause(ms: u64) {
@@ -132,9 +132,12 @@ pub(crate) fn play_role(other: impl Fn(&str, &Space)) {
     let run = Run::load(var(DIR).as_ref()).expect("run");
     if role == "broker" {
         let port = var(PORT).parse().expect("port");
-        let end = broker::daemon::run(&run, port).expect_err("runs until it is killed");
-        eprintln!("{end}");
-        std::process::exit(2);
+        let stop = realtime::Stop::on_signals().expect("signals");
+        if let Err(reason) = broker::daemon::run(&run, port, &stop) {
+            eprintln!("{reason}");
+            std::process::exit(2);
+        }
+        return;
     }
     other(&role, &run.enter(Process::Observer).expect("space"));
 }

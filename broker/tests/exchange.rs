@@ -1,0 +1,186 @@
+//! The broker's turns, one by one: order, limits, bad registrations.
+
+mod harness;
+
+use std::cell::RefCell;
+
+use broker::Client;
+use broker::exchange::{Exchange, Report};
+use broker::message::{MAX_BYTES, Message, domain_mask, service, service_message, write_command};
+use harness::{System, pause, play_role};
+use ipc::{QueueReceiver, QueueSender, Space};
+use messages::Command;
+use messages::command::{Domain, Priority, VelocityCommand};
+use proptest::prelude::*;
+
+#[test]
+fn process() {
+    play_role(|role, _| panic!("no role {role}"));
+}
+
+fn velocity(n: u32) -> Command {
+    Command::Velocity(VelocityCommand { forward: f64::from(n) / 4096.0, left: 0.0, turn: 0.0 })
+}
+
+/// A client without a thread: its queues by hand.
+struct ByHand {
+    publish: [QueueSender; 3],
+    registration: QueueSender,
+    inbox: QueueReceiver,
+}
+
+impl ByHand {
+    fn new(space: &Space) -> Self {
+        let sender = |queue| space.queue_sender(queue, "broker-queues").unwrap();
+        Self {
+            publish: ["broker-high", "broker-normal", "broker-low"].map(sender),
+            registration: sender("broker-service"),
+            inbox: space.queue_receiver("client-hand").unwrap(),
+        }
+    }
+
+    fn register(&mut self, token: u32) {
+        let numbers = [token, domain_mask(&Domain::ALL), 0];
+        let mut payload: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
+        payload.extend(b"hand");
+        assert!(self.registration.send(&service_message(service::REGISTER, &payload)));
+    }
+
+    fn publish(&mut self, command: &Command, priority: Priority) {
+        let mut buffer = [0; MAX_BYTES];
+        assert!(
+            self.publish[priority as usize]
+                .send(write_command(command, priority, 4711, &mut buffer).unwrap())
+        );
+    }
+
+    /// The commands that came.
+    fn heard(&mut self) -> Vec<Command> {
+        let mut heard = Vec::new();
+        while let Some(bytes) = self.inbox.receive() {
+            heard.extend(Message::parse(bytes).unwrap().command());
+        }
+        heard
+    }
+}
+
+fn exchange(space: &Space) -> Exchange<'_> {
+    Exchange::new(space, broker::tcp::gate().1).unwrap()
+}
+
+/// However many messages of a lower class wait, or come in between, none is forwarded before a higher one that waits.
+#[test]
+fn a_higher_class_passes_a_lower_one() {
+    let system = System::without_broker("order");
+    let mut exchange = exchange(&system.space);
+    let mut hand = ByHand::new(&system.space);
+    hand.register(1);
+    exchange.turn(&mut |_| {});
+    for n in 0..200 {
+        hand.publish(&velocity(n), Priority::Low);
+    }
+    exchange.turn(&mut |_| {});
+    assert_eq!(hand.heard().len(), 64, "one turn is bounded");
+    hand.publish(&Command::Stop, Priority::Normal);
+    hand.publish(&Command::EmergencyStop, Priority::High);
+    hand.publish(&Command::EmergencyStop, Priority::High);
+    exchange.turn(&mut |_| {});
+    let heard = hand.heard();
+    assert_eq!(heard[..4], [Command::EmergencyStop, Command::EmergencyStop, Command::Stop, velocity(64)]);
+    while exchange.turn(&mut |_| {}) {}
+    assert_eq!(hand.heard().last(), Some(&velocity(199)));
+}
+
+#[test]
+fn a_class_is_not_a_matter_of_taste() {
+    let system = System::without_broker("class");
+    let mut exchange = exchange(&system.space);
+    let mut hand = ByHand::new(&system.space);
+    hand.register(1);
+    exchange.turn(&mut |_| {});
+    let mut reports = Vec::new();
+    hand.publish(&Command::Stop, Priority::High);
+    hand.publish(&Command::EmergencyStop, Priority::Low);
+    let mut buffer = [0; MAX_BYTES];
+    let low = write_command(&velocity(1), Priority::Low, 1, &mut buffer).unwrap().to_vec();
+    assert!(hand.publish[0].send(&low), "a low message in the high queue");
+    assert!(hand.publish[1].send(&[1, 2]), "less than a head");
+    exchange.turn(&mut |report| reports.push(report));
+    assert_eq!(hand.heard(), []);
+    let address = |(d, i): (Domain, u16)| (d as u32) << 16 | u32::from(i);
+    let velocity = address(velocity(1).address());
+    for expected in [address(Command::Stop.address()), 0, velocity, u32::MAX] {
+        assert!(reports.contains(&Report::Refused(expected)), "{expected:#x} is not in {reports:x?}");
+    }
+    assert!(exchange.statistics()[0].contains("refused 4;"));
+}
+
+/// A control cycle that does not look for a while loses what has no room, and still gets the emergency stop first.
+#[test]
+fn a_cycle_that_does_not_look_loses_its_own_messages() {
+    let system = System::start("blind");
+    let mut blind = system.client("blind", &[Domain::Walk, Domain::System]);
+    let mut seeing = system.client("seeing", &[Domain::Walk]);
+    let mut sender = system.client("sender", &[]);
+    let mut seen = 0;
+    for n in 0..500 {
+        while !sender.publish(&velocity(n)) {
+            pause(1);
+        }
+        if n % 50 == 49 {
+            harness::wait_for("what was sent", || {
+                seen += seeing.received().count();
+                seen == n as usize + 1
+            });
+        }
+    }
+    sender.publish(&Command::EmergencyStop);
+    harness::wait_for("the count", || blind.waiting() == 129 && blind.statistics().lost_in == 372);
+    let heard: Vec<_> = blind.received().collect();
+    assert_eq!(heard[..2], [Command::EmergencyStop, velocity(0)]);
+    assert_eq!(heard.len(), 129);
+    assert_eq!((seen, seeing.statistics().lost_in), (500, 0));
+}
+
+/// Before the broker is there for the first time, commands wait a moment for it.
+#[test]
+fn a_command_at_the_start_is_not_lost() {
+    let system = System::start("early");
+    let mut receiver = system.client("receiver", &[Domain::Walk]);
+    let mut sender = Client::start("sender", &[], &system.space).unwrap();
+    assert!(sender.publish(&Command::Start));
+    let mut heard = Vec::new();
+    harness::wait_for("the command", || {
+        heard.extend(receiver.received());
+        !heard.is_empty()
+    });
+    assert_eq!(heard, [Command::Start]);
+}
+
+#[test]
+fn noise_in_the_queues_never_panics() {
+    let system = System::without_broker("noise");
+    let both = RefCell::new((exchange(&system.space), ByHand::new(&system.space)));
+    proptest!(ProptestConfig::with_cases(2000), |(
+        mut noise in prop::collection::vec(any::<u8>(), 0..MAX_BYTES),
+        place in 0usize..4,
+        service in any::<bool>(),
+        id in 0u8..8,
+    )| {
+        if service && noise.len() > 5 {
+            noise[..5].copy_from_slice(&[0xff, 0xff, id, 0, 2]);
+        }
+        let (exchange, hand) = &mut *both.borrow_mut();
+        let queue = if place == 3 { &mut hand.registration } else { &mut hand.publish[place] };
+        prop_assert!(queue.send(&noise));
+        while exchange.turn(&mut |_| {}) {}
+    });
+    let (mut exchange, mut hand) = both.into_inner();
+    hand.register(1);
+    hand.publish(&Command::Stop, Priority::Normal);
+    while exchange.turn(&mut |_| {}) {}
+    hand.publish(&Command::Stop, Priority::Normal);
+    while exchange.turn(&mut |_| {}) {}
+    assert!(hand.heard().contains(&Command::Stop));
+    assert!(exchange.statistics().len() <= 33, "no more clients than there is room for");
+}
