@@ -1,0 +1,274 @@
+//! What a person reads who made a mistake: the whole text, because the text is what is promised.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use config::{ConfigError, Gait, Robot, Scene, Setup, System};
+
+/// A copy of the shipped configuration that a test may spoil; gone when dropped.
+struct Copy(PathBuf);
+
+impl Copy {
+    fn new(test: &str) -> Self {
+        let to = std::env::temp_dir().join(format!("gangwerk-config-{test}-{}", std::process::id()));
+        let from = config::root(None);
+        for directory in ["gaits", "scenes", "robots/lola"] {
+            fs::create_dir_all(to.join(directory)).unwrap();
+            for entry in fs::read_dir(from.join(directory)).unwrap() {
+                let entry = entry.unwrap();
+                fs::copy(entry.path(), to.join(directory).join(entry.file_name())).unwrap();
+            }
+        }
+        fs::copy(from.join("system.toml"), to.join("system.toml")).unwrap();
+        Self(to)
+    }
+
+    fn path(&self, file: &str) -> PathBuf {
+        self.0.join(file)
+    }
+
+    /// Replaces the first `from` in a file; it must be there.
+    fn spoil(self, file: &str, from: &str, to: &str) -> Self {
+        let text = fs::read_to_string(self.path(file)).unwrap();
+        assert!(text.contains(from), "{file} does not contain {from}");
+        fs::write(self.path(file), text.replacen(from, to, 1)).unwrap();
+        self
+    }
+
+    fn gait(&self) -> ConfigError {
+        Gait::load(&self.path("gaits/lola.toml")).unwrap_err()
+    }
+
+    fn scene(&self, name: &str) -> ConfigError {
+        Setup::load(&self.0, name).unwrap_err()
+    }
+
+    fn robot(&self) -> ConfigError {
+        Robot::load(&self.path("robots/lola")).unwrap_err()
+    }
+}
+
+impl Drop for Copy {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The text of an error without the directory, which differs from run to run.
+fn text(error: &ConfigError) -> String {
+    let directory = error.file.parent().unwrap_or(Path::new("")).display().to_string();
+    error.to_string().replace(&format!("{directory}/"), "")
+}
+
+#[test]
+fn misspelt_key() {
+    let copy = Copy::new("misspelt").spoil("gaits/lola.toml", "swing_height", "swing_heigth");
+    assert_eq!(
+        text(&copy.gait()),
+        "lola.toml: 2 problems\n  \
+         line 3: step.swing_height: missing; it takes a number from 0 to 0.5 m\n  \
+         line 6: step.swing_heigth: unknown key; the nearest known one is `swing_height`"
+    );
+}
+
+#[test]
+fn surplus_key() {
+    let copy = Copy::new("surplus").spoil("gaits/lola.toml", "[model]", "[model]\nleg_heigt = 0.2");
+    assert_eq!(
+        text(&copy.gait()),
+        "lola.toml: line 23: model.leg_heigt: unknown key; the nearest known one is `leg_height`"
+    );
+}
+
+#[test]
+fn wrong_type() {
+    let copy = Copy::new("type").spoil("gaits/lola.toml", "width = 0.21", "width = \"0.21\"");
+    assert_eq!(
+        text(&copy.gait()),
+        "lola.toml: line 4: step.width: is of type string; it takes a number above 0 m"
+    );
+}
+
+#[test]
+fn out_of_range() {
+    let copy = Copy::new("range").spoil("gaits/lola.toml", "swing_height = 0.055", "swing_height = 55");
+    assert_eq!(
+        text(&copy.gait()),
+        "lola.toml: line 6: step.swing_height: 55 is not allowed; it takes a number from 0 to 0.5 m"
+    );
+}
+
+#[test]
+fn nan_and_infinity() {
+    let copy = Copy::new("nan").spoil("gaits/lola.toml", "com_height = 0.79", "com_height = nan").spoil(
+        "gaits/lola.toml",
+        "height_p = 1500.0",
+        "height_p = inf",
+    );
+    assert_eq!(
+        text(&copy.gait()),
+        "lola.toml: 2 problems\n  \
+         line 23: model.com_height: NaN is not allowed; it takes a number from 0.1 to 3 m\n  \
+         line 40: control.height_p: inf is not allowed; it takes a number of at least 0 N/m"
+    );
+}
+
+#[test]
+fn all_problems_at_once_in_the_order_of_lines() {
+    let copy = Copy::new("all")
+        .spoil("gaits/lola.toml", "force_filter = 0.02", "force_filter = true")
+        .spoil("gaits/lola.toml", "width = 0.21", "width = 0.1")
+        .spoil("gaits/lola.toml", "[0.12, 0.1, 0.1]", "[0.12, 0.1]")
+        .spoil("gaits/lola.toml", "side = [-0.2, 0.2]", "side = [0.2, -0.2]")
+        .spoil("gaits/lola.toml", "stand_time = 2.0", "");
+    assert_eq!(
+        text(&copy.gait()),
+        "lola.toml: 5 problems\n  \
+         line 4: step.width: 0.1 m must not be below width_min = 0.16 m\n  \
+         line 12: step.change: has 2 entries; it takes 3 numbers, each a number above 0 m, m, rad\n  \
+         line 22: model.stand_time: missing; it takes a number from 0.1 to 20 s\n  \
+         line 33: limits.side: its lower end 0.2 must lie below its upper end -0.2 m\n  \
+         line 51: control.force_filter: is of type boolean; it takes a number from 0 to 1 s"
+    );
+}
+
+#[test]
+fn rules_of_a_gait() {
+    let copy = Copy::new("rules")
+        .spoil("gaits/lola.toml", "first_length = 0.3", "first_length = 0.7")
+        .spoil("gaits/lola.toml", "[0.2833, 0.34, 1.2]", "[0.6, 0.34, 1.2]")
+        .spoil("gaits/lola.toml", "swing_lag = 0.05", "swing_lag = 0.6");
+    assert_eq!(
+        text(&copy.gait()),
+        "lola.toml: 4 problems\n  \
+         line 3: step: first_length 0.7 is above limits.length 0.66 m\n  \
+         line 3: step: swing_lag + swing_lead = 0.65 s leave nothing of a swing of 0.560 s\n  \
+         line 3: step: by_speed[1]: 0.34 m in 1.2 s are 0.283 m/s, not 0.6\n  \
+         line 14: step.by_speed: its speeds must ascend"
+    );
+}
+
+#[test]
+fn not_toml() {
+    let copy = Copy::new("syntax").spoil("gaits/lola.toml", "width = 0.21", "width 0.21");
+    let error = copy.gait();
+    assert_eq!(error.problems[0].line, 4);
+    assert!(text(&error).starts_with("lola.toml: line 4: not TOML: "), "{error}");
+}
+
+#[test]
+fn missing_files() {
+    let copy = Copy::new("missing");
+    assert_eq!(
+        text(&copy.scene("dmeo")),
+        "dmeo.toml: cannot be read: No such file or directory (os error 2); there is demo, push, stand, \
+         walk_1kmh, walk_2kmh, walk_curve, walk_sideways"
+    );
+    let copy = copy.spoil("robots/lola/robot.toml", "lola.urdf", "lolita.urdf");
+    assert_eq!(
+        text(&copy.robot()),
+        "lolita.urdf: cannot be read: No such file or directory (os error 2); there is lola"
+    );
+    let error = System::load(&copy.path("nowhere/system.toml")).unwrap_err();
+    assert!(text(&error).ends_with("is no directory either, so check --config"), "{error}");
+}
+
+#[test]
+fn robot_and_its_joints() {
+    let file = "robots/lola/robot.toml";
+    let copy = Copy::new("joints")
+        .spoil(file, "toe = \"right_toe_flexion\"", "toe = \"right_toe_flexoin\"")
+        .spoil(file, "right_knee_flexion = 40", "right_knee_flexion = 140")
+        .spoil(file, "[\"head_pan\", \"head_tilt\"]", "[\"head_pan\", \"head_pan\"]");
+    let wanted = [
+        "foot.right.toe: there is no joint `right_toe_flexoin`; the nearest is `right_toe_flexion`",
+        "pose_deg.stand.right_knee_flexion: 140 lies outside of the joint's range_deg [0.5, 115.0]",
+        "node: joint `head_pan` is on 2 nodes; it must be on exactly one",
+        "node: joint `head_tilt` is on 0 nodes; it must be on exactly one",
+    ];
+    let error = text(&copy.robot());
+    for line in wanted {
+        assert!(error.contains(line), "{line}\nis not in\n{error}");
+    }
+    assert!(error.starts_with("robot.toml: 4 problems"), "{error}");
+}
+
+#[test]
+fn mass_that_the_urdf_does_not_have() {
+    let copy = Copy::new("mass").spoil(
+        "robots/lola/lola.urdf",
+        "<mass value=\"0.138\"/>",
+        "<mass value=\"13.80\"/>",
+    );
+    assert_eq!(
+        text(&copy.robot()),
+        "lola.urdf: its masses sum to 74.547 kg, but total_mass in robot.toml is 60.885 kg"
+    );
+}
+
+#[test]
+fn scene_and_its_commands() {
+    let copy = Copy::new("scene")
+        .spoil("scenes/demo.toml", "integrator = \"euler\"", "integrator = \"heun\"")
+        .spoil("scenes/demo.toml", "time = 3.0", "time = 35.0")
+        .spoil("scenes/demo.toml", "forward = 0.278", "forwards = 0.278")
+        .spoil("scenes/demo.toml", "\"walk/stop\"", "\"walk/halt\"");
+    assert_eq!(
+        text(&copy.scene("demo")),
+        "demo.toml: 6 problems\n  \
+         line 5: integrator: `heun` is not known; it takes one of `euler`, `rk4`\n  \
+         line 12: command: command[1]: its time 35 s lies after the end of the scene, 34 s\n  \
+         line 12: command: command[2]: its time 10 s lies before 35 s of the one above it\n  \
+         line 18: command[1].topic: walk/velocity: give it numbers, for example forward=<m/s> left=<m/s> turn=<rad/s>\n  \
+         line 19: command[1].forwards: unknown key; the nearest known one is `forward`\n  \
+         line 34: command[4].topic: `walk/halt` is not known; it takes one of `system/emergency_stop`, \
+         `system/reset`, `system/enable`, `system/end`, `walk/stand`, `walk/start`, `walk/stop`, `walk/step`, \
+         `walk/velocity`"
+    );
+}
+
+#[test]
+fn scene_that_robot_and_gait_cannot_do() {
+    let copy = Copy::new("fit")
+        .spoil("scenes/demo.toml", "start_pose = \"stand\"", "start_pose = \"stadn\"")
+        .spoil("scenes/demo.toml", "forward = 0.555", "forward = 1.5");
+    assert_eq!(
+        text(&copy.scene("demo")),
+        "demo.toml: 2 problems\n  \
+         start_pose: robot lola has no pose `stadn`; the nearest is `stand`; there is `crouch`, `stand`, `straight`\n  \
+         command[2]: at 10 s: forward = 1.5 is beyond by_speed's 0.9429 m/s of gait lola"
+    );
+}
+
+#[test]
+fn system_row_of_no_process() {
+    let copy = Copy::new("system").spoil("system.toml", "[process.planner]", "[process.planer]");
+    let error = System::load(&copy.path("system.toml")).unwrap_err();
+    let error = text(&error);
+    assert!(error.contains("process.planner: missing; it takes a table"), "{error}");
+    assert!(error.contains("process.planer: unknown key; the nearest known one is `planner`"), "{error}");
+}
+
+#[test]
+fn hash_changes_with_every_file() {
+    let hash = |copy: &Copy| Setup::load(&copy.0, "stand").unwrap().hash;
+    let untouched = hash(&Copy::new("hash"));
+    assert_eq!(untouched, Setup::load(&config::root(None), "stand").unwrap().hash);
+    for (file, from) in [
+        ("scenes/stand.toml", "seed = 1"),
+        ("gaits/lola.toml", "[step]"),
+        ("system.toml", "[process.broker]"),
+        ("robots/lola/robot.toml", "[contact]"),
+        ("robots/lola/lola.urdf", "<robot"),
+    ] {
+        let spoilt = Copy::new("hash").spoil(file, from, &format!(" {from}"));
+        assert_ne!(hash(&spoilt), untouched, "{file}");
+    }
+}
+
+#[test]
+fn a_scene_alone() {
+    let scene = Scene::load(&config::root(None).join("scenes/push.toml")).unwrap();
+    assert_eq!(scene.name, "push");
+    assert_eq!(scene.pushes.len(), 1);
+}
