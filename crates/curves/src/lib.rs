@@ -5,6 +5,8 @@
 
 mod path;
 mod polyline;
+mod spline;
 
 pub use path::{Path, Sample};
 pub use polyline::Polyline;
+pub use spline::{Gradient, Spline, SplineSample};
