@@ -1,1 +1,43 @@
-//! (being written)
+//! Stabilizing control: plan and sensors to joint targets (thesis chapter 5).
+//!
+//! The stages of thesis figure 5.8, in the order in which [`Controller::step`] runs them:
+//!
+//! | stage | equations | where |
+//! |---|---|---|
+//! | which plan, and what it wants now | | [`following`] |
+//! | measured task space, inclination, zero-moment point | (4.11)-(4.17), (3.5) | [`estimate`], [`torso`] |
+//! | contact force modification | (5.2)-(5.22) | [`contact_force`] |
+//! | hybrid position/force control | (5.23)-(5.33) | [`force_control`] |
+//! | inverse kinematics with null-space optimization | (5.34)-(5.39) | [`inverse_kinematics`] |
+//! | direct kinematics of the desired joints (feedback path 1) | (4.5)-(4.10) | [`task_space`] |
+
+pub mod contact_force;
+pub mod estimate;
+pub mod following;
+pub mod force_control;
+pub mod inverse_kinematics;
+mod stabilizer;
+pub mod task_space;
+pub mod torso;
+
+pub use stabilizer::Controller;
+
+#[cfg(test)]
+pub(crate) fn test_gains() -> config::gait::Control {
+    config::gait::Control {
+        inclination_p: [1350.0; 2],
+        inclination_d: [250.0; 2],
+        height_p: 2000.0,
+        height_d: 400.0,
+        force_max: 2.0,
+        force_gain: [20.0; 3],
+        force_feed_forward: 1.0,
+        force_blend: [5.0, 50.0],
+        position_gain: 10.0,
+        modification_limit: [0.03, 0.15, 0.15],
+        modification_rate: [0.5, 2.0, 2.0],
+        drift_gain: 50.0,
+        null_space_gain: 1.0,
+        force_filter: 0.005,
+    }
+}

@@ -1,0 +1,110 @@
+//! All steps of the chain in one process: lockstep without processes.
+//!
+//! The order of a cycle is the order in which data flow, and the same as between processes in lockstep:
+//! sensors → planner → controller → joint loop → watchdog → simulated robot → sensors.
+
+use config::scene::Timeline;
+use config::{Gait, Robot, Scene, System};
+use controller::Controller;
+use lowlevel::JointLoop;
+use messages::command::Domain;
+use messages::{
+    BusFrames, ControllerState, EventCode, JointTargets, Plan, Power, Process, Sensors, SimState,
+};
+use multibody::ModelError;
+use planner::Planner;
+use sim_backend::SimBackend;
+use watchdog::{Inputs, Watchdog};
+
+/// Everything one cycle wrote, by topic.
+#[derive(Clone, Debug, Default)]
+pub struct Cycle {
+    /// `sensors`
+    pub sensors: Sensors,
+    /// `plan`, in the cycle in which it was made.
+    pub plan: Option<Box<Plan>>,
+    /// `joint_targets`
+    pub joint_targets: JointTargets,
+    /// `controller_state`
+    pub controller_state: ControllerState,
+    /// `power`
+    pub power: Power,
+    /// `sim_state`
+    pub sim_state: SimState,
+    /// `events/PROCESS`
+    pub events: Vec<(Process, EventCode, u64)>,
+}
+
+/// The processes of a scene, each a library's step.
+pub struct Chain {
+    dt: f64,
+    walk: Timeline,
+    system: Timeline,
+    planner: Planner,
+    controller: Controller,
+    joint_loop: JointLoop,
+    watchdog: Watchdog,
+    sim: SimBackend,
+    tick: u64,
+    answer: BusFrames,
+    cycle: Cycle,
+    plan: Box<Plan>,
+}
+
+impl Chain {
+    /// Builds every part of a scene.
+    pub fn new(robot: &Robot, gait: &Gait, scene: &Scene, system: &System) -> Result<Self, ModelError> {
+        let mut sim = SimBackend::new(robot, scene)?;
+        let answer = *sim.step(None, None).0;
+        Ok(Self {
+            dt: scene.cycle,
+            walk: scene.timeline(Domain::Walk),
+            system: scene.timeline(Domain::System),
+            planner: Planner::new(gait, [robot.feet[0].support, robot.feet[1].support]),
+            controller: Controller::new(robot, gait, scene.cycle)?,
+            joint_loop: JointLoop::new(robot, system, scene.cycle),
+            watchdog: Watchdog::new(system.watchdog_missed),
+            sim,
+            tick: 0,
+            answer,
+            cycle: Cycle::default(),
+            plan: Box::default(),
+        })
+    }
+
+    /// Begins a push of the simulated robot now.
+    pub fn push(&mut self, push: &messages::command::PushCommand) {
+        self.sim.push(push);
+    }
+
+    /// One bus cycle.
+    pub fn step(&mut self) -> &Cycle {
+        self.tick += 1;
+        let (tick, stamp) = (self.tick, (self.tick as f64 * self.dt * 1e9).round() as u64);
+        let c = &mut self.cycle;
+        c.events.clear();
+
+        c.sensors = *self.joint_loop.receive(tick, stamp, Some(&self.answer));
+        c.plan = None;
+        let seen = (tick > 1).then_some(&c.controller_state);
+        let output = self.planner.step(tick, self.dt, seen, self.walk.due(tick));
+        if let Some(plan) = output.plan {
+            *self.plan = *plan;
+            self.plan.header = c.sensors.header;
+            c.plan = Some(self.plan.clone());
+        }
+        c.events.extend(output.events.iter().map(|&(code, detail)| (Process::Planner, code, detail)));
+
+        let (targets, state) = self.controller.step(&c.sensors, (self.plan.id > 0).then_some(&*self.plan));
+        (c.joint_targets, c.controller_state) = (*targets, *state);
+        c.events.extend(self.controller.take_event().map(|(code, detail)| (Process::Controller, code, detail)));
+
+        let (frames, reset) = self.joint_loop.send(Some(&c.joint_targets), None);
+        c.power = *self.watchdog.step(&Inputs { reset: Some(reset), commands: self.system.due(tick) });
+        let (answer, sim_state) = self.sim.step(Some(frames), Some(&c.power));
+        (self.answer, c.sim_state) = (*answer, *sim_state);
+        c.events.extend(self.joint_loop.take_event().map(|(code, detail)| (Process::Lowlevel, code, detail)));
+        c.events.extend(self.sim.take_event().map(|(code, detail)| (Process::SimBackend, code, detail)));
+        c
+    }
+}

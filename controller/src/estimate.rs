@@ -1,0 +1,160 @@
+//! What the sensors say about the task space.
+//!
+//! The inclination comes from the inertial measurement unit; heading and position from the foot that carries more,
+//! which is taken to stand where the plan wants it.
+
+use config::Robot;
+use messages::{ControllerState, Sensors};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector2, Vector3, Vector6};
+
+use crate::following::Desired;
+use crate::task_space::TaskSpace;
+use crate::torso::{self, TorsoAngles};
+
+/// Measured upper body, centre of gravity and feet in the planning frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimate {
+    /// phi_x, phi_y from the IMU, alpha from the anchor foot \[rad\].
+    pub angles: TorsoAngles,
+    /// Their rates \[rad/s\].
+    pub rates: Vector3<f64>,
+    /// world_from_torso with that heading.
+    pub rotation: Matrix3<f64>,
+    /// \[m\] Torso's origin.
+    pub torso: Vector3<f64>,
+    /// \[m\] Centre of gravity.
+    pub com: Vector3<f64>,
+    /// \[m/s\] Its velocity, the anchor foot being at rest.
+    pub com_velocity: Vector3<f64>,
+    /// \[m, rad\] Sole frames: x, y, z, heading.
+    pub feet: [[f64; 4]; 2],
+    /// \[m\] Zero-moment point of the measured wrenches on the ground, NaN without load.
+    pub zmp: Vector2<f64>,
+    /// \[m\] Its distance to the edge of the support polygon, negative outside, NaN without load.
+    pub zmp_margin: f64,
+}
+
+/// A foot counts as loaded from this normal force on \[N\].
+pub const LOADED: f64 = 20.0;
+
+impl Estimate {
+    /// From the sensors, the kinematics of the measured joints and what is desired. Without load the heavier planned
+    /// foot is the anchor.
+    pub fn new(robot: &Robot, sensors: &Sensors, measured: &TaskSpace, desired: &Desired) -> Self {
+        let [x, y, z, w] = sensors.imu.orientation;
+        let imu = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)).to_rotation_matrix();
+        let force = |i: usize| sensors.foot_wrench[i].force[2];
+        let loaded = force(0).max(force(1)) > LOADED;
+        let anchor = usize::from(if loaded { force(1) > force(0) } else { desired.load[1] > desired.load[0] });
+
+        let sole = measured.sole(anchor);
+        let seen = imu.matrix() * sole.rotation;
+        let planned = desired.feet[anchor].position;
+        let turn = planned[3] - seen[(1, 0)].atan2(seen[(0, 0)]);
+        let rotation = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), turn).matrix() * imu.matrix();
+        let torso = Vector3::new(planned[0], planned[1], planned[2]) - rotation * sole.position;
+        let omega = rotation * Vector3::from(sensors.imu.angular_velocity);
+        let mut estimate = Self {
+            angles: torso::angles(&rotation),
+            rates: torso::rates_from_omega(&rotation) * omega,
+            rotation,
+            torso,
+            com: torso + rotation * measured.com(),
+            com_velocity: rotation * measured.com_velocity(anchor),
+            feet: std::array::from_fn(|i| {
+                let s = measured.sole(i);
+                let (p, r) = (torso + rotation * s.position, rotation * s.rotation);
+                [p.x, p.y, p.z, r[(1, 0)].atan2(r[(0, 0)])]
+            }),
+            zmp: Vector2::repeat(f64::NAN),
+            zmp_margin: f64::NAN,
+        };
+        estimate.find_zmp(robot, sensors, measured);
+        estimate
+    }
+
+    /// (3.5), (3.6) about the ground under the soles, both feet.
+    fn find_zmp(&mut self, robot: &Robot, sensors: &Sensors, measured: &TaskSpace) {
+        let (mut moment, mut normal) = (Vector2::zeros(), 0.0);
+        let mut corners = [Vector2::zeros(); 8];
+        let mut count = 0;
+        for foot in 0..2 {
+            let place = measured.sensor(foot);
+            let r = self.rotation * place.rotation;
+            let f = r * Vector3::from(sensors.foot_wrench[foot].force);
+            let m = r * Vector3::from(sensors.foot_wrench[foot].moment);
+            let p = self.torso + self.rotation * place.position;
+            let t = m + p.cross(&f);
+            moment += Vector2::new(-t.y, t.x);
+            normal += f.z;
+            if f.z > LOADED {
+                let [back, front, right, left] = robot.feet[foot].support;
+                let [x, y, _, heading] = self.feet[foot];
+                let (s, c) = heading.sin_cos();
+                for (dx, dy) in [(back, right), (front, right), (front, left), (back, left)] {
+                    corners[count] = Vector2::new(x + c * dx - s * dy, y + s * dx + c * dy);
+                    count += 1;
+                }
+            }
+        }
+        if count > 0 {
+            self.zmp = moment / normal;
+            self.zmp_margin = depth_in_hull(&corners[..count], &self.zmp);
+        }
+    }
+
+    /// Writes the measured part of the record.
+    pub fn report(&self, desired: &Desired, state: &mut ControllerState) {
+        state.com = self.com.into();
+        state.feet = self.feet;
+        state.zmp = self.zmp.into();
+        state.zmp_margin = self.zmp_margin;
+        for i in 0..2 {
+            state.inclination_error[i] = desired.torso.position[i] - self.angles[i];
+            state.inclination_rate_error[i] = desired.torso.velocity[i] - self.rates[i];
+        }
+    }
+}
+
+/// Force control coordinates (F_z, T_x, T_y) of both sensors.
+pub fn force_coordinates(sensors: &Sensors) -> Vector6<f64> {
+    Vector6::from_fn(|i, _| {
+        let w = &sensors.foot_wrench[i / 3];
+        [w.force[2], w.moment[0], w.moment[1]][i % 3]
+    })
+}
+
+/// Distance of `p` to the nearest edge of the convex hull of `points`, negative outside (then the largest distance to
+/// a violated edge line).
+fn depth_in_hull(points: &[Vector2<f64>], p: &Vector2<f64>) -> f64 {
+    let mut depth = f64::INFINITY;
+    for a in points {
+        for b in points {
+            let edge = b - a;
+            let length = edge.norm();
+            if length < 1e-9 {
+                continue;
+            }
+            let left_of = |q: &Vector2<f64>| edge.perp(&(q - a)) / length;
+            // An edge of the hull has all points on its left.
+            if points.iter().all(|q| left_of(q) > -1e-9) {
+                depth = depth.min(left_of(p));
+            }
+        }
+    }
+    depth
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_in_a_square_and_in_the_hull_of_two() {
+        let square = |x: f64| [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(a, b)| Vector2::new(x + a, b));
+        assert!((depth_in_hull(&square(0.0), &Vector2::new(0.3, 0.5)) - 0.3).abs() < 1e-12);
+        assert!((depth_in_hull(&square(0.0), &Vector2::new(-0.2, 0.5)) + 0.2).abs() < 1e-12);
+        let both: Vec<_> = square(0.0).into_iter().chain(square(3.0)).collect();
+        assert!((depth_in_hull(&both, &Vector2::new(2.0, 0.1)) - 0.1).abs() < 1e-12, "between the feet");
+    }
+}
