@@ -2,7 +2,8 @@
 
 use crate::record::Record;
 use crate::{
-    BusFrames, ControllerState, CycleStats, Event, JointTargets, Plan, Power, Sensors, SimState, WatchdogReset,
+    BusFrames, ControllerState, CycleStats, Event, JointTargets, Plan, Power, Sensors, SimState,
+    WatchdogReset,
 };
 
 /// The processes of a running robot, in the order they are started.
@@ -171,6 +172,8 @@ topics! {
     EVENTS_PLANNER: Event = "events/planner", Planner -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
     /// What the stabilizer saw.
     EVENTS_CONTROLLER: Event = "events/controller", Controller -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
+    /// What the logger saw, such as losses.
+    EVENTS_LOGGER: Event = "events/logger", Logger -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
 }
 
 impl Topic {

@@ -1,0 +1,145 @@
+//! The logger process: `gangwerk logger --run DIR`.
+//!
+//! Not a real-time process: it looks at all rings again and again under the ordinary scheduler. Nobody waits for it
+//! in real time; in lockstep the joint loop does not run further ahead than half a ring.
+
+use crate::{Follower, Logging, Open, Output, Parts, Pass, recorder};
+use config::Setup;
+use ipc::{Bell, IpcError, Mode, Run, Space, Writer};
+use messages::topics::{EVENTS_LOGGER, ForType, LOG_TICK, with_type};
+use messages::{Event, EventCode, Process, Record, TOPICS, Topic};
+use realtime::{Stop, clock};
+use std::time::Duration;
+
+/// Between two looks at empty rings: a ring holds 256 cycles.
+const NAP_REAL_TIME: Duration = Duration::from_millis(5);
+const NAP_LOCKSTEP: Duration = Duration::from_micros(200);
+
+/// How much of the log the death of this very process may cost.
+const FLUSH_NS: u64 = 500_000_000;
+
+/// At the end: writers that go on writing are not waited for longer than this.
+const LAST_WORDS_NS: u64 = 2_000_000_000;
+
+/// Logs until the process is asked to end, then writes what is left and closes the log.
+///
+/// # Errors
+/// The configuration cannot be read, or another logger serves this run. A log that cannot be written is no error: it
+/// is said once and counted, and tried again every half second.
+pub fn run(run: &Run, stop: &Stop) -> Result<(), String> {
+    let space = run.enter(Process::Logger).map_err(|e| e.to_string())?;
+    let output = Output::new(open(run)?);
+    serve(&space, output, run.mode, stop).map_err(|e| e.to_string())
+}
+
+/// How the parts of the log are made.
+fn open(run: &Run) -> Result<Open, String> {
+    let setup = Setup::load(&run.config, &run.scene).map_err(|e| e.to_string())?;
+    let parts = Parts::new(run.log.as_deref().ok_or("this run has no log")?);
+    Ok(Box::new(move |part| recorder(&parts.path(part), &setup)))
+}
+
+/// Follows all logged topics of a space until asked to stop.
+///
+/// # Errors
+/// A topic cannot be opened.
+pub fn serve(space: &Space, output: Output, mode: Mode, stop: &Stop) -> Result<(), IpcError> {
+    let mut logging = Logging::new(output);
+    for topic in TOPICS.iter().filter(|t| t.logged && t.name != EVENTS_LOGGER.name) {
+        with_type(topic.name, FollowTopic { space, logging: &mut logging }).unwrap_or(Ok(()))?;
+    }
+    let mut signals = Signals::open(space)?;
+    let nap = if mode == Mode::Lockstep { NAP_LOCKSTEP } else { NAP_REAL_TIME };
+    let mut flushed = clock::now();
+    signals.say(EventCode::Started);
+    while !stop.asked() {
+        let pass = logging.pass();
+        signals.after(&pass);
+        report(&mut logging, &pass);
+        if clock::now() - flushed >= FLUSH_NS {
+            logging.output().retry();
+            logging.output().flush();
+            flushed = clock::now();
+        }
+        if pass.records == 0 {
+            std::thread::park_timeout(nap);
+        }
+    }
+    drain(&mut logging, &mut signals);
+    logging.output().finish();
+    report(&mut logging, &Pass::default());
+    Ok(())
+}
+
+/// Writes what is left in the rings.
+fn drain(logging: &mut Logging, signals: &mut Signals) {
+    let begun = clock::now();
+    loop {
+        let pass = logging.pass();
+        signals.after(&pass);
+        if pass.records == 0 || clock::now() - begun > LAST_WORDS_NS {
+            return;
+        }
+    }
+}
+
+fn report(logging: &mut Logging, pass: &Pass) {
+    if let Some(complaint) = logging.output().complaint() {
+        tracing::error!("{complaint}; the run goes on, what is not logged is counted");
+    }
+    if let Some(event) = pass.lost {
+        tracing::warn!(
+            "{} records are missing from the log, {} since the beginning",
+            event.detail,
+            logging.lost()
+        );
+    }
+}
+
+struct FollowTopic<'a> {
+    space: &'a Space,
+    logging: &'a mut Logging,
+}
+
+impl ForType<Result<(), IpcError>> for FollowTopic<'_> {
+    fn call<T: Record>(self, topic: &'static Topic) -> Result<(), IpcError> {
+        let reader = self.space.reader::<T>(topic)?;
+        self.logging.follow(Follower::new(topic, reader));
+        Ok(())
+    }
+}
+
+/// What the logger says to others.
+struct Signals {
+    tick: Writer<Event>,
+    bell: Bell,
+    events: Writer<Event>,
+    said: Option<u64>,
+}
+
+impl Signals {
+    fn open(space: &Space) -> Result<Self, IpcError> {
+        Ok(Self {
+            tick: space.writer(&LOG_TICK)?,
+            bell: space.bell(&LOG_TICK)?,
+            events: space.writer(&EVENTS_LOGGER)?,
+            said: None,
+        })
+    }
+
+    fn say(&mut self, code: EventCode) {
+        self.events.write(&Event { code: code as u64, ..Event::default() });
+    }
+
+    /// How far the log has come, and what was lost.
+    fn after(&mut self, pass: &Pass) {
+        if let Some(header) = pass.caught_up.filter(|h| self.said != Some(h.tick)) {
+            self.said = Some(header.tick);
+            self.tick.write(&Event { header, ..Event::default() });
+            self.bell.ring();
+        }
+        if let Some(event) = pass.lost {
+            self.events.write(&event);
+        }
+    }
+}
