@@ -22,7 +22,7 @@ def same(what, a, b, tolerance=TOLERANCE):
     """Largest difference of two arrays; ends the program if it is too large."""
     difference = float(np.max(np.abs(np.asarray(a) - np.asarray(b))))
     if not difference <= tolerance:
-        sys.exit(f"{what}: Pinocchio and MuJoCo differ by {difference:g}")
+        sys.exit(f"{what}: differs by {difference:g}")
     return difference
 
 

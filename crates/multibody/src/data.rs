@@ -4,12 +4,15 @@ use nalgebra::DMatrix;
 
 use crate::model::{Kind, Model};
 use crate::space::{Mat3, Sym3, V3, ZERO, v3};
+use crate::trigonometry::sin_cos;
 
 /// Results and scratch for one [`Model`]. Nothing allocates after [`Data::new`].
 ///
 /// What a function leaves here it says in its documentation; a query reads what the last update left.
 #[derive(Clone, Debug)]
 pub struct Data {
+    pub(crate) sin: Vec<f64>,
+    pub(crate) cos: Vec<f64>,
     pub(crate) joints: Vec<Position>,
     /// parent_from_body of joints about oblique axes; others unused.
     pub(crate) oblique: Vec<Mat3>,
@@ -97,6 +100,8 @@ impl Data {
         let joints = model.bodies.iter().map(|b| Position { c: 1.0, s: 0.0, r: b.r }).collect();
         let entries = model.paths.column.len();
         Data {
+            sin: vec![0.0; model.n()],
+            cos: vec![0.0; model.n()],
             joints,
             oblique: vec![Mat3::IDENTITY; nb],
             base: Mat3::IDENTITY,
@@ -116,14 +121,15 @@ impl Data {
     pub(crate) fn set_position(&mut self, model: &Model, q: &[f64]) {
         assert_eq!(q.len(), model.nq(), "length of q");
         self.base = Mat3::from_quaternion([q[3], q[4], q[5], q[6]]);
-        for (k, ((body, joint), &q)) in
-            model.bodies.iter().zip(&mut self.joints).skip(1).zip(&q[7..]).enumerate()
+        sin_cos(&q[7..], &mut self.sin, &mut self.cos);
+        let turned = self.sin.iter().zip(&self.cos).zip(&q[7..]);
+        for (k, ((body, joint), ((s, c), q))) in
+            model.bodies.iter().zip(&mut self.joints).skip(1).zip(turned).enumerate()
         {
             match body.kind {
-                Kind::Along(e) => joint.r = body.r + e * q,
+                Kind::Along(e) => joint.r = body.r + e * *q,
                 kind => {
-                    let (s, c) = q.sin_cos();
-                    (joint.s, joint.c) = (s * body.sign, c);
+                    (joint.s, joint.c) = (s * body.sign, *c);
                     if let Kind::About(e) = kind {
                         self.oblique[k + 1] = Mat3::about(e, joint.c, joint.s);
                     }

@@ -39,43 +39,109 @@ impl Model {
 }
 
 /// L^T D L in place; the diagonal holds 1/D.
+///
+/// Every row begins with the six columns of the base, which are updated at their fixed length.
 fn factor(paths: &Paths, l: &mut [f64]) {
-    for k in (0..paths.start.len() - 1).rev() {
+    let nv = paths.start.len() - 1;
+    let mut base = [[0.0; 6]; 6];
+    for k in (6..nv).rev() {
         let range = paths.row(k);
         let columns = &paths.column[range.clone()];
         let (before, row) = l.split_at_mut(range.start);
-        let row = &mut row[..columns.len()];
-        let (last, off) = row.split_last_mut().expect("a row holds its diagonal");
+        let Some((last, off)) = row[..columns.len()].split_last_mut() else { continue };
+        let Some((six, joints)) = off.split_first_chunk_mut::<6>() else { continue };
         let d = 1.0 / *last;
         *last = d;
-        for t in (0..off.len()).rev() {
-            let a = off[t] * d;
-            let at = paths.start[columns[t]];
-            for (x, y) in before[at..=at + t].iter_mut().zip(&off[..=t]) {
+        for t in (0..joints.len()).rev() {
+            let a = joints[t] * d;
+            let at = paths.start[columns[6 + t]];
+            let Some((to_six, to_joints)) = before[at..].split_first_chunk_mut::<6>() else { continue };
+            subtract(to_six, six, a);
+            for (x, y) in to_joints.iter_mut().zip(&joints[..=t]) {
                 *x -= a * y;
             }
-            off[t] = a;
+            joints[t] = a;
         }
+        let scaled = six.map(|x| x * d);
+        for (to, a) in base.iter_mut().zip(scaled) {
+            subtract(to, six, a);
+        }
+        *six = scaled;
+    }
+    for k in 0..6 {
+        for (x, y) in l[paths.row(k)].iter_mut().zip(&base[k]) {
+            *x += y;
+        }
+    }
+    for k in (0..6).rev() {
+        let at = k * (k + 1) / 2;
+        let d = 1.0 / l[at + k];
+        l[at + k] = d;
+        for t in (0..k).rev() {
+            let (a, to) = (l[at + t] * d, t * (t + 1) / 2);
+            for s in 0..=t {
+                l[to + s] -= a * l[at + s];
+            }
+            l[at + t] = a;
+        }
+    }
+}
+
+/// x <- x - a y
+#[inline(always)]
+fn subtract(x: &mut [f64; 6], y: &[f64; 6], a: f64) {
+    for k in 0..6 {
+        x[k] -= a * y[k];
     }
 }
 
 /// x <- L^-1 D^-1 L^-T x
 fn solve(paths: &Paths, l: &[f64], x: &mut [f64]) {
     let nv = paths.start.len() - 1;
-    for k in (0..nv).rev() {
-        let range = paths.row(k);
-        let xk = x[k];
-        for (&a, &c) in l[range.clone()].iter().zip(&paths.column[range]).rev().skip(1) {
-            x[c] -= a * xk;
+    let Some((base, joints)) = x.split_first_chunk_mut::<6>() else { return };
+    for k in (6..nv).rev() {
+        let (six, off, _, columns) = row_of(paths, l, k);
+        let xk = joints[k - 6];
+        subtract(base, six, xk);
+        for (&a, &c) in off.iter().zip(columns) {
+            joints[c - 6] -= a * xk;
         }
     }
-    for k in 0..nv {
-        let range = paths.row(k);
-        let (&d, off) = l[range.clone()].split_last().expect("a row holds its diagonal");
-        let mut s = x[k] * d;
-        for (&a, &c) in off.iter().zip(&paths.column[range]) {
-            s -= a * x[c];
+    solve_base(l, base);
+    for k in 6..nv {
+        let (six, off, d, columns) = row_of(paths, l, k);
+        let mut s = joints[k - 6] * d;
+        for (a, b) in six.iter().zip(base.iter()) {
+            s -= a * b;
         }
-        x[k] = s;
+        for (&a, &c) in off.iter().zip(columns) {
+            s -= a * joints[c - 6];
+        }
+        joints[k - 6] = s;
+    }
+}
+
+/// Row of a joint: the base's columns, the joints' entries before the diagonal, 1/D, the joints' columns.
+#[inline(always)]
+fn row_of<'a>(paths: &'a Paths, l: &'a [f64], k: usize) -> (&'a [f64; 6], &'a [f64], f64, &'a [usize]) {
+    const NONE: (&[f64; 6], &[f64], f64, &[usize]) = (&[0.0; 6], &[], 0.0, &[]);
+    let range = paths.row(k);
+    let Some((six, rest)) = l[range.clone()].split_first_chunk::<6>() else { return NONE };
+    let Some((&d, off)) = rest.split_last() else { return NONE };
+    (six, off, d, &paths.column[range.start + 6..range.end])
+}
+
+fn solve_base(l: &[f64], x: &mut [f64; 6]) {
+    for k in (0..6).rev() {
+        for t in 0..k {
+            x[t] -= l[k * (k + 1) / 2 + t] * x[k];
+        }
+    }
+    for k in 0..6 {
+        let at = k * (k + 1) / 2;
+        x[k] *= l[at + k];
+        for t in 0..k {
+            x[k] -= l[at + t] * x[t];
+        }
     }
 }

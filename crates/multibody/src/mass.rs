@@ -20,12 +20,10 @@ impl Model {
         self.composites(data);
         self.rows(data);
         let Data { m, mass_matrix, .. } = data;
-        for k in 0..self.nv() {
-            let row = self.paths.row(k);
-            for (&x, &c) in m[row.clone()].iter().zip(&self.paths.column[row]) {
-                mass_matrix[(k, c)] = x;
-                mass_matrix[(c, k)] = x;
-            }
+        let full = mass_matrix.as_mut_slice();
+        for (&x, &[at, mirror]) in m.iter().zip(&self.paths.full) {
+            full[at as usize] = x;
+            full[mirror as usize] = x;
         }
         &data.mass_matrix
     }

@@ -103,6 +103,8 @@ pub(crate) struct Paths {
     /// First entry of each row; one more at the end.
     pub start: Vec<usize>,
     pub column: Vec<usize>,
+    /// Where an entry and its mirror image lie in the full matrix.
+    pub full: Vec<[u32; 2]>,
 }
 
 impl Paths {
@@ -119,6 +121,15 @@ impl Paths {
             p.column.extend(row);
         }
         p.start.push(p.column.len());
+        let nv = p.start.len() - 1;
+        for k in 0..nv {
+            p.full.extend(
+                p.column[p.start[k]..]
+                    .iter()
+                    .take(p.row(k).len())
+                    .map(|c| [k + nv * c, c + nv * k].map(|i| i as u32)),
+            );
+        }
         p
     }
 
