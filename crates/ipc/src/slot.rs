@@ -120,3 +120,40 @@ pub(crate) fn open<T: Record>(
 fn attribute(text: &str) -> Result<iceoryx2::service::attribute::AttributeValue, IpcError> {
     text.try_into().map_err(|e| because(text, e))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::place::Place;
+    use messages::topics::EVENTS_PLANNER;
+    use messages::{Event, Header};
+
+    messages::record! {
+        /// As `Event`, with two fields of the same size exchanged.
+        record Swapped {
+            /// When.
+            header: Header,
+            /// \[1\] First there, second here.
+            detail: u64,
+            /// \[1\] Second there, first here.
+            code: u64,
+        }
+    }
+
+    #[test]
+    fn another_layout_of_the_same_size_is_refused() {
+        let dir = std::env::temp_dir().join(format!("gangwerk-ipc-{}-schema", std::process::id()));
+        std::fs::create_dir_all(&dir).unwrap();
+        let place = Place::of(&dir).unwrap();
+        let node = crate::space::node::<RealTime>(&place, "test").unwrap();
+        let made = create::<Event>(&node, &EVENTS_PLANNER, 0).unwrap();
+        assert_eq!(size_of::<Event>(), size_of::<Swapped>());
+        assert!(open::<Event>(&node, &EVENTS_PLANNER, 0).is_ok());
+        let error = open::<Swapped>(&node, &EVENTS_PLANNER, 0).err().unwrap();
+        assert!(matches!(&error, IpcError::Schema { topic, .. } if topic == "events/planner"), "{error}");
+        assert!(error.to_string().contains("start all processes from one build"));
+        drop((made, node));
+        place.wipe().unwrap();
+        std::fs::remove_dir_all(dir).unwrap();
+    }
+}

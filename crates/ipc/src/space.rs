@@ -16,6 +16,8 @@ use std::os::unix::fs::DirBuilderExt;
 use std::path::Path as StdPath;
 use std::time::Duration;
 
+/// Name of the supervisor's lock and node.
+const SUPERVISOR: &str = "supervisor";
 /// Room kept free in shared memory for queues, bells and rings of other programs \[B\].
 const SPARE: u64 = 8 << 20;
 
@@ -64,7 +66,7 @@ impl Space {
             .create(dir)
             .map_err(|e| IpcError::Other(format!("run directory {}: {e}", dir.display())))?;
         let place = Place::of(dir)?;
-        let lock = Lock::take(&place.dir, "supervisor")?;
+        let lock = Lock::take(&place.dir, SUPERVISOR)?;
         for process in Process::ALL {
             if let Some(pid) = Lock::owner(&place.dir, process.name()) {
                 let dir = place.dir.display().to_string();
@@ -77,7 +79,7 @@ impl Space {
         if free < needed {
             return Err(IpcError::NoRoom { needed, free });
         }
-        let node = node::<RealTime>(&place, "supervisor")?;
+        let node = node::<RealTime>(&place, SUPERVISOR)?;
         let mut made = Vec::new();
         for topic in topics {
             made.extend(with_type(topic.name, Create { node: &node }).unwrap_or_else(|| Ok(Vec::new()))?);
@@ -92,6 +94,10 @@ impl Space {
     /// For a process: enters the space in `dir`. Each process but the observer may enter once at a time.
     pub fn open(dir: &StdPath, process: Process) -> Result<Self, IpcError> {
         let place = Place::of(dir)?;
+        if Lock::owner(&place.dir, SUPERVISOR).is_none() {
+            let dir = place.dir.display();
+            return Err(IpcError::Other(format!("no run in {dir}: start one with `gangwerk run SCENE`")));
+        }
         let lock = match process {
             Process::Observer => None,
             _ => Some(Lock::take(&place.dir, process.name())?),
@@ -161,7 +167,7 @@ impl Space {
 
     fn commands(&self) -> Result<&Node<Plane>, IpcError> {
         if self.commands.get().is_none() {
-            let name = self.process.map_or("supervisor", Process::name);
+            let name = self.process.map_or(SUPERVISOR, Process::name);
             let _ = self.commands.set(node::<Plane>(&self.place, name)?);
         }
         Ok(self.commands.get().expect("set above"))
@@ -169,7 +175,7 @@ impl Space {
 }
 
 /// A node of one process, which touches no signal handler and prints errors only.
-fn node<S: Service>(place: &Place, name: &str) -> Result<Node<S>, IpcError> {
+pub(crate) fn node<S: Service>(place: &Place, name: &str) -> Result<Node<S>, IpcError> {
     set_log_level(LogLevel::Error);
     NodeBuilder::new()
         .name(&name.try_into().map_err(|e| because(name, e))?)
@@ -201,5 +207,32 @@ struct Create<'a> {
 impl ForType<Result<Vec<SlotService>, IpcError>> for Create<'_> {
     fn call<T: Record>(self, topic: &'static Topic) -> Result<Vec<SlotService>, IpcError> {
         (0..SLOTS).map(|k| slot::create::<T>(self.node, topic, k)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use messages::Sensors;
+    use messages::topics::SENSORS;
+
+    fn left(place: &Place) -> usize {
+        let names = std::fs::read_dir("/dev/shm").unwrap().map(|e| e.unwrap().file_name());
+        names.filter(|name| name.to_string_lossy().starts_with(&place.prefix)).count()
+    }
+
+    #[test]
+    fn nothing_is_left_behind() {
+        let dir = std::env::temp_dir().join(format!("gangwerk-ipc-{}-left", std::process::id()));
+        let system = Space::create(&dir).unwrap();
+        let place = system.place.clone();
+        let observer = Space::open(&dir, Process::Observer).unwrap();
+        let reader = observer.reader::<Sensors>(&SENSORS).unwrap();
+        drop(observer.queue_receiver("x").unwrap());
+        assert!(left(&place) > TOPICS.len() * SLOTS);
+        drop((reader, observer));
+        drop(system);
+        assert_eq!(left(&place), 0);
+        std::fs::remove_dir_all(dir).unwrap();
     }
 }

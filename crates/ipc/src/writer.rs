@@ -2,7 +2,7 @@
 
 use crate::error::{IpcError, because};
 use crate::slot::{self, HEAD, Head, Numbered, RealTime, SLOTS, SlotService};
-use iceoryx2::port::writer::{EntryHandleMut, EntryHandleMutError};
+use iceoryx2::port::writer::{EntryHandleMut, EntryHandleMutError, WriterCreateError};
 use iceoryx2::prelude::*;
 use messages::{Record, Topic};
 
@@ -43,7 +43,11 @@ impl<T: Record> Writer<T> {
     fn lock(slot: SlotService, topic: &Topic, count: u64) -> Result<Option<Self>, IpcError> {
         let what = || format!("writer of topic {}", topic.name);
         // The only writer port is counted until a killed node is cleared away, the entries for ever.
-        let Ok(port) = slot.writer_builder().create() else { return Ok(None) };
+        let port = match slot.writer_builder().create() {
+            Ok(port) => port,
+            Err(WriterCreateError::ExceedsMaxSupportedWriters) => return Ok(None),
+            Err(e) => return Err(because(what(), e)),
+        };
         let head = match port.entry::<Head>(&HEAD) {
             Ok(head) => head,
             Err(EntryHandleMutError::HandleAlreadyExists) => return Ok(None),
