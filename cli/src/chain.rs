@@ -3,13 +3,12 @@
 //! The order of a cycle is the order in which data flow, and the same as between processes in lockstep:
 //! sensors → planner → controller → joint loop → watchdog → simulated robot → sensors.
 
-use config::scene::Timeline;
-use config::{Gait, Robot, Scene, System};
+use config::{Setup, Timeline};
 use controller::Controller;
 use lowlevel::JointLoop;
 use messages::command::Domain;
 use messages::{
-    BusFrames, ControllerState, EventCode, JointTargets, Plan, Power, Process, Sensors, SimState,
+    BusFrames, Command, ControllerState, EventCode, JointTargets, Plan, Power, Process, Sensors, SimState,
 };
 use multibody::ModelError;
 use planner::Planner;
@@ -40,6 +39,7 @@ pub struct Chain {
     dt: f64,
     walk: Timeline,
     system: Timeline,
+    due: Vec<Command>,
     planner: Planner,
     controller: Controller,
     joint_loop: JointLoop,
@@ -53,13 +53,15 @@ pub struct Chain {
 
 impl Chain {
     /// Builds every part of a scene.
-    pub fn new(robot: &Robot, gait: &Gait, scene: &Scene, system: &System) -> Result<Self, ModelError> {
+    pub fn new(setup: &Setup) -> Result<Self, ModelError> {
+        let Setup { scene, robot, gait, system, .. } = setup;
         let mut sim = SimBackend::new(robot, scene)?;
         let answer = *sim.step(None, None).0;
         Ok(Self {
             dt: scene.cycle,
-            walk: scene.timeline(Domain::Walk),
-            system: scene.timeline(Domain::System),
+            walk: Timeline::new(scene, &[Domain::Walk]),
+            system: Timeline::new(scene, &[Domain::System]),
+            due: Vec::with_capacity(64),
             planner: Planner::new(gait, [robot.feet[0].support, robot.feet[1].support]),
             controller: Controller::new(robot, gait, scene.cycle)?,
             joint_loop: JointLoop::new(robot, system, scene.cycle),
@@ -87,7 +89,8 @@ impl Chain {
         c.sensors = *self.joint_loop.receive(tick, stamp, Some(&self.answer));
         c.plan = None;
         let seen = (tick > 1).then_some(&c.controller_state);
-        let output = self.planner.step(tick, self.dt, seen, self.walk.due(tick));
+        take_due(&mut self.walk, tick, &mut self.due);
+        let output = self.planner.step(tick, self.dt, seen, &self.due);
         if let Some(plan) = output.plan {
             *self.plan = *plan;
             self.plan.header = c.sensors.header;
@@ -100,11 +103,17 @@ impl Chain {
         c.events.extend(self.controller.take_event().map(|(code, detail)| (Process::Controller, code, detail)));
 
         let (frames, reset) = self.joint_loop.send(Some(&c.joint_targets), None);
-        c.power = *self.watchdog.step(&Inputs { reset: Some(reset), commands: self.system.due(tick) });
+        take_due(&mut self.system, tick, &mut self.due);
+        c.power = *self.watchdog.step(&Inputs { reset: Some(reset), commands: &self.due });
         let (answer, sim_state) = self.sim.step(Some(frames), Some(&c.power));
         (self.answer, c.sim_state) = (*answer, *sim_state);
         c.events.extend(self.joint_loop.take_event().map(|(code, detail)| (Process::Lowlevel, code, detail)));
         c.events.extend(self.sim.take_event().map(|(code, detail)| (Process::SimBackend, code, detail)));
         c
     }
+}
+
+fn take_due(timeline: &mut Timeline, tick: u64, due: &mut Vec<Command>) {
+    due.clear();
+    due.extend(std::iter::from_fn(|| timeline.due(tick)));
 }

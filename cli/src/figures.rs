@@ -16,9 +16,9 @@ pub struct Figures {
     pub fell: bool,
     /// \[s\] Simulated time.
     pub duration_s: f64,
-    /// \[m\] Length of the path from foothold to foothold while walking periodically.
+    /// \[m\] Way of the torso from the first to the last periodic step.
     pub distance_m: f64,
-    /// \[m/s\] Mean speed along that path; zero without two periodic steps.
+    /// \[m/s\] Mean speed over that way; zero without two periodic steps.
     pub mean_speed_m_s: f64,
     /// Steps taken.
     pub steps: u64,
@@ -56,10 +56,8 @@ pub struct Gatherer {
     margin: Option<f64>,
     /// Stance foot of the last cycle.
     stance: Option<usize>,
-    /// When and where the torso was at the first and at the last periodic step.
-    first: Option<(f64, [f64; 2])>,
-    last: Option<(f64, [f64; 2])>,
-    distance: f64,
+    /// When and where the torso was each time the right foot took over while walking.
+    strides: Vec<(f64, [f64; 2])>,
     end_pose: [f64; 3],
 }
 
@@ -105,22 +103,38 @@ impl Gatherer {
         self.steps += 1;
         let here = (sim.time, [sim.position[0], sim.position[1]]);
         // Every second step: the torso sways from side to side, and the sway is no way made.
-        if gait != GaitState::Walking || stance != RIGHT {
-            return;
+        if gait == GaitState::Walking && stance == RIGHT {
+            self.strides.push((sim.time, [sim.position[0], sim.position[1]]));
         }
-        match self.last {
-            Some((_, p)) => self.distance += (here.1[0] - p[0]).hypot(here.1[1] - p[1]),
-            None => self.first = Some(here),
+    }
+
+    /// (time, distance) from the first to the last periodic step: the longest run of strides that are alike, each
+    /// within 1 % of the duration and 3 % of the length of the one before.
+    fn periodic(&self) -> (f64, f64) {
+        let stride = |pair: &[(f64, [f64; 2])]| {
+            let ((t0, a), (t1, b)) = (pair[0], pair[1]);
+            (t1 - t0, (b[0] - a[0]).hypot(b[1] - a[1]))
+        };
+        let alike = |a: (f64, f64), b: (f64, f64)| {
+            (a.0 - b.0).abs() <= 0.01 * a.0 && (a.1 - b.1).abs() <= 0.03 * a.1.max(0.1)
+        };
+        let (mut best, mut run, mut last) = ((0.0, 0.0), (0.0, 0.0), None);
+        for now in self.strides.windows(2).map(stride) {
+            run = match last {
+                Some(before) if alike(before, now) => (run.0 + now.0, run.1 + now.1),
+                _ => now,
+            };
+            if run.0 > best.0 {
+                best = run;
+            }
+            last = Some(now);
         }
-        self.last = Some(here);
+        best
     }
 
     /// The figures so far.
     pub fn figures(&self, scene: &config::Scene, cpu_s: f64, log: Option<String>) -> Figures {
-        let span = match (self.first, self.last) {
-            (Some(a), Some(b)) => b.0 - a.0,
-            _ => 0.0,
-        };
+        let (span, distance) = self.periodic();
         let n = self.cycles.max(1.0);
         Figures {
             scene: scene.name.clone(),
@@ -128,8 +142,8 @@ impl Gatherer {
             depth: format!("type {}, {:?} x {}", scene.depth, scene.integrator, scene.substeps),
             fell: self.fell,
             duration_s: self.time,
-            distance_m: self.distance,
-            mean_speed_m_s: if span > 0.0 { self.distance / span } else { 0.0 },
+            distance_m: distance,
+            mean_speed_m_s: if span > 0.0 { distance / span } else { 0.0 },
             steps: self.steps,
             inclination_error_max_rad: self.error_max,
             inclination_error_rms_rad: self.error_square.map(|s| (s / n).sqrt()),

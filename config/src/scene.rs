@@ -41,9 +41,6 @@ pub struct Scene {
     pub pushes: Vec<(f64, PushCommand)>,
 }
 
-/// When a scene's operator presses reset and enable \[s\].
-const ARMING: [f64; 2] = [0.02, 0.04];
-
 /// How the equations of motion are integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
@@ -85,15 +82,6 @@ impl Scene {
         scene.check_times(top, "command", scene.commands.iter().map(|(time, _)| *time));
         scene.check_times(top, "push", scene.pushes.iter().map(|(time, _)| *time));
         scene
-    }
-
-    /// All commands of the scene by tick: those that arm the robot, then its own.
-    pub fn timeline(&self) -> Vec<(u64, Command)> {
-        let tick = |time: f64| (time / self.cycle).round() as u64 + 1;
-        let arming = [(ARMING[0], Command::Reset), (ARMING[1], Command::Enable)];
-        let mut all: Vec<_> = arming.into_iter().chain(self.commands.iter().copied()).map(|(t, c)| (tick(t), c)).collect();
-        all.sort_by_key(|(tick, _)| *tick);
-        all
     }
 
     fn check_times(&self, top: &Section<'_, '_>, key: &str, times: impl Iterator<Item = f64>) {

@@ -13,13 +13,20 @@ pub struct Timeline {
     next: usize,
 }
 
+/// When the operator of a scene that does not say so itself presses reset and enable \[s\].
+const ARMING: [(f64, Command); 2] = [(0.02, Command::Reset), (0.04, Command::Enable)];
+
 impl Timeline {
-    /// The scene's commands of these domains.
+    /// The scene's commands of these domains. A scene that never enables the motors is armed at its beginning.
     pub fn new(scene: &Scene, domains: &[Domain]) -> Self {
         // A time that is a whole number of cycles but for rounding belongs to that cycle.
         let tick = |time: f64| (time / scene.cycle - 1e-6).ceil().max(0.0) as u64;
-        let own = scene.commands.iter().filter(|(_, command)| domains.contains(&command.address().0));
-        Self { entries: own.map(|(time, command)| (tick(*time), *command)).collect(), next: 0 }
+        let armed = scene.commands.iter().any(|(_, command)| *command == Command::Enable);
+        let arming = ARMING.iter().filter(|_| !armed);
+        let own = arming.chain(&scene.commands).filter(|(_, command)| domains.contains(&command.address().0));
+        let mut entries: Vec<_> = own.map(|(time, command)| (tick(*time), *command)).collect();
+        entries.sort_by_key(|(tick, _)| *tick);
+        Self { entries, next: 0 }
     }
 
     /// For a process that was started again: what lies before `tick` has been done, or shall not be done late.

@@ -36,6 +36,8 @@ pub struct Estimate {
 
 /// A foot counts as loaded from this normal force on \[N\].
 pub const LOADED: f64 = 20.0;
+/// Its sole counts as part of the support polygon from this one on \[N\].
+const TOUCHING: f64 = 1.0;
 
 impl Estimate {
     /// From the sensors, the kinematics of the measured joints and what is desired. Without load the heavier planned
@@ -87,7 +89,7 @@ impl Estimate {
             let t = m + p.cross(&f);
             moment += Vector2::new(-t.y, t.x);
             normal += f.z;
-            if f.z > LOADED {
+            if f.z > TOUCHING {
                 let [back, front, right, left] = robot.feet[foot].support;
                 let [x, y, _, heading] = self.feet[foot];
                 let (s, c) = heading.sin_cos();
