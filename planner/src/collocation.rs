@@ -12,6 +12,9 @@
 //! | u | columns: the same, then unit value at the left end, unit value at the right end | m |
 //! | a, c | lengths of the intervals before and after a knot | s |
 
+use crate::pose::{Pose, rotate};
+use curves::Sample;
+
 /// Most knots of one problem.
 pub const MAX_KNOTS: usize = 97;
 /// Columns of right-hand sides: r_x, r_y, q_0, q_1.
@@ -22,6 +25,22 @@ pub const U: usize = 6;
 pub const LEFT: usize = 4;
 /// Column of the unit value at the right end.
 pub const RIGHT: usize = 5;
+
+/// Position and velocity in the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// \[m\]
+    pub r: [f64; 2],
+    /// \[m/s\]
+    pub v: [f64; 2],
+}
+
+impl State {
+    /// The horizontal part of a motion.
+    pub fn of(s: &Sample<3>) -> Self {
+        Self { r: [s.position[0], s.position[1]], v: [s.velocity[0], s.velocity[1]] }
+    }
+}
 
 /// A problem and its solution.
 pub struct Collocation {
@@ -39,6 +58,12 @@ pub struct Collocation {
     pub u: [[f64; U]; MAX_KNOTS],
     /// Eliminated upper diagonal.
     upper: [f64; MAX_KNOTS],
+}
+
+impl Default for Collocation {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Collocation {
@@ -112,6 +137,41 @@ impl Collocation {
             let f = if k < F { h / 6.0 * (self.f[from][k] + 2.0 * middle[k]) } else { 0.0 };
             sign * ((u1 - u0) / h - g / h - f)
         })
+    }
+
+    /// The start state of the periodic solution whose end is its start, moved as `from` is moved to `to`
+    /// ((4.31), errata 2.9). Complex numbers stand for vectors in the plane: x + i y.
+    pub fn periodic_state(&self, from: &Pose, to: &Pose) -> State {
+        let (a, b) = (self.slope(0), self.slope(self.n - 1));
+        let angle = to.heading - from.heading;
+        let turn = |v: [f64; 2]| rotate(angle, v);
+        let moved = turn([from.x, from.y]);
+        let d = [to.x - moved[0], to.y - moved[1]]; // r_b = R r_a + d
+        // (a_l R + a_r R^2 - b_l - b_r R) r_a = b_r d + P_b - R (a_r d + P_a)
+        let (s, c) = angle.sin_cos();
+        let (s2, c2) = (2.0 * angle).sin_cos();
+        let (l, r) = (LEFT, RIGHT);
+        let m = [a[l] * c + a[r] * c2 - b[l] - b[r] * c, a[l] * s + a[r] * s2 - b[r] * s];
+        let at_a = turn([0, 1].map(|k| a[r] * d[k] + a[k]));
+        let rhs = [0, 1].map(|k| b[r] * d[k] + b[k] - at_a[k]);
+        let det = m[0] * m[0] + m[1] * m[1];
+        let r_a = [(m[0] * rhs[0] + m[1] * rhs[1]) / det, (m[0] * rhs[1] - m[1] * rhs[0]) / det];
+        let turned = turn(r_a);
+        State { r: r_a, v: [0, 1].map(|k| a[l] * r_a[k] + a[r] * (turned[k] + d[k]) + a[k]) }
+    }
+
+    /// Amplitudes gamma_0, gamma_1 per axis that meet position and velocity at both ends (4.51)-(4.54).
+    pub fn amplitudes(&self, begin: &State, end: &State) -> [[f64; 2]; 2] {
+        let (a, b) = (self.slope(0), self.slope(self.n - 1));
+        let det = a[2] * b[3] - a[3] * b[2];
+        let mut gamma = [[0.0; 2]; 2];
+        for d in 0..2 {
+            let va = begin.v[d] - a[d] - a[LEFT] * begin.r[d] - a[RIGHT] * end.r[d];
+            let vb = end.v[d] - b[d] - b[LEFT] * begin.r[d] - b[RIGHT] * end.r[d];
+            gamma[0][d] = (va * b[3] - a[3] * vb) / det;
+            gamma[1][d] = (a[2] * vb - va * b[2]) / det;
+        }
+        gamma
     }
 }
 

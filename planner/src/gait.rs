@@ -1,6 +1,5 @@
 //! Gait coordination: standing, starting, walking, stopping (thesis 4.2, figure 4.5), and the planner itself.
 
-use crate::com::GRAVITY;
 use crate::commands::{self, Wish};
 use crate::pose::{Pose, rotate};
 use crate::sole::Sole;
@@ -221,7 +220,7 @@ impl Planner {
         plan.header.tick = tick;
         plan.id = self.last_id;
         plan.start_tick = start_tick;
-        if !(self.next.margin >= 0.0) {
+        if self.next.margin.is_nan() || self.next.margin < 0.0 {
             self.event(EventCode::ControlLimited, self.last_id);
         }
         true
@@ -252,11 +251,9 @@ impl Planner {
         let at = frame.local([com.position[0], com.position[1]]);
         let v = rotate(-frame.heading, [com.velocity[0], com.velocity[1]]);
         let a = rotate(-frame.heading, [com.acceleration[0], com.acceleration[1]]);
-        for d in 0..2 {
-            com.position[d] = at[d];
-            com.velocity[d] = v[d];
-            com.acceleration[d] = a[d];
-        }
+        com.position[..2].copy_from_slice(&at);
+        com.velocity[..2].copy_from_slice(&v);
+        com.acceleration[..2].copy_from_slice(&a);
         let mut torso = plan.torso.sample(t);
         torso.position[2] -= frame.heading;
         let [x, y, heading] = plan.origin;
@@ -284,7 +281,7 @@ impl Planner {
 /// measurement is not finite.
 fn measured(state: &ControllerState) -> Option<(Origin, [f64; 2])> {
     let all = state.feet.iter().flatten().chain(&state.com).chain(&state.origin);
-    if !all.into_iter().all(|x| x.is_finite()) || !(GRAVITY > 0.0) {
+    if !all.into_iter().all(|x| x.is_finite()) {
         return None;
     }
     let feet = state.feet.map(|f| Pose::new(f[0], f[1], f[3]));

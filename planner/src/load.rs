@@ -68,7 +68,7 @@ impl DoubleSupport<'_> {
     /// Appends the load over this double support to `path`.
     pub fn lay(&self, path: &mut LoadPath) {
         let n = self.kinks.len();
-        if n < 2 || n > 4 {
+        if !(2..=4).contains(&n) {
             return;
         }
         let corners = self.corners();

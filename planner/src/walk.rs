@@ -4,8 +4,8 @@
 //! which step 2 begins (4.31). The *head*, steps 0 and 1, leads there from where the robot is (4.32). The *tail* leads
 //! from there to rest, so that a plan that is never replaced ends standing. A stopping plan is a tail alone.
 
-use crate::collocation::MAX_KNOTS;
-use crate::com::{ComSolver, Drive, HeightPath, State, pieces};
+use crate::collocation::{MAX_KNOTS, State};
+use crate::com::{ComSolver, Drive, HeightPath, pieces};
 use crate::feet::{self, FootPath, Swing};
 use crate::load::{self, DoubleSupport};
 use crate::pose::{Pose, rotate};
@@ -51,6 +51,12 @@ pub struct Walk {
     pub end_cycle: u64,
     /// \[m\] Least distance of the modified zero-moment point from the edge of the support polygon.
     pub margin: f64,
+}
+
+impl Default for Walk {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Walk {
@@ -408,7 +414,7 @@ impl Builder {
         self.chain.solve();
         let drive = Drive { feet: &plan.feet, height: &self.height, zmp: &self.chain, shapes };
         self.com.solve(&drive, self.marks.as_slice(), spacing);
-        let gamma = self.com.amplitudes(begin, end);
+        let gamma = self.com.problem().amplitudes(begin, end);
         self.com.write(begin, end, &gamma, &self.height, &mut plan.com);
         let zmp = |t: f64| {
             let p = self.chain.at(t);
@@ -473,7 +479,7 @@ impl Builder {
         let drive =
             Drive { feet: &self.periodic_feet, height: &self.height, zmp: &self.chain, shapes: [none, none] };
         self.com.solve(&drive, self.marks.as_slice(), spacing);
-        (self.com.periodic_state(&f1, &f3), self.chain.nodes()[0].p)
+        (self.com.problem().periodic_state(&f1, &f3), self.chain.nodes()[0].p)
     }
 }
 

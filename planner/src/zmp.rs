@@ -36,6 +36,12 @@ pub struct Chain {
     nodes: [Node; MAX_NODES],
 }
 
+impl Default for Chain {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Chain {
     /// No boundaries yet.
     pub const fn new() -> Self {
@@ -77,7 +83,7 @@ impl Chain {
                 let (before, after) = (self.nodes[k - 1], self.nodes[k + 1]);
                 change = change.max(self.nodes[k].relax((before.time, before.p), (after.time, after.p)));
             }
-            if !(change > TOLERANCE) {
+            if change <= TOLERANCE {
                 break;
             }
         }
@@ -101,7 +107,7 @@ impl Chain {
                 let (before, after) = (self.nodes[k - 1], self.nodes[k + 1]);
                 change = change.max(self.nodes[k].relax((before.time, before.p), (after.time, after.p)));
             }
-            if !(change > TOLERANCE) {
+            if change <= TOLERANCE {
                 break;
             }
         }

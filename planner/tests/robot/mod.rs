@@ -1,5 +1,5 @@
 //! Lola's gait in code, and a controller that follows every plan perfectly.
-#![allow(dead_code, reason = "each test uses its own part of it")]
+#![allow(dead_code, unreachable_pub, missing_docs, reason = "each test uses its own part of it")]
 
 pub mod checks;
 
@@ -63,6 +63,31 @@ pub fn gait() -> Gait {
             null_space_gain: 0.0,
             force_filter: 0.0,
         },
+    }
+}
+
+/// Numbers that are the same in every run.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self((seed + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15))
+    }
+
+    /// In [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn range(&mut self, [lo, hi]: [f64; 2]) -> f64 {
+        lo + (hi - lo) * self.unit()
+    }
+
+    pub fn below(&mut self, n: u64) -> u64 {
+        (self.unit() * n as f64) as u64
     }
 }
 
