@@ -4,7 +4,7 @@
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 venv="$here/.venv"
-wanted="pin==4.1.0 cmeel-eigen==3.4.1 cmeel-urdfdom-headers example-robot-data==6.0.0 mujoco rosbags mcap numpy"
+wanted="pin==4.1.0 cmeel-eigen==3.4.1 example-robot-data==6.0.0 mujoco rosbags mcap mcap-ros2-support numpy"
 
 [ -x "$venv/bin/python" ] || python3 -m venv "$venv"
 stamp="$venv/installed"

@@ -1,0 +1,117 @@
+//! Writes a log with something in every channel, and beside it the values that another reader must find there:
+//! `cargo run -p recording --example peers_log -- DIR` makes `peers.mcap` and `peers.txt`, whose lines hold a channel
+//! and all scalars of one message in the order of declaration. Used by `tests/peers/rosbags.sh`.
+
+use messages::record::{Read, Visit};
+use messages::topics::{ForType, with_type};
+use messages::{Record, SimState, TOPICS, Topic};
+use recording::{
+    FootInfo, Link, LinkPoses, Pose, Recorder, RecordingError, RobotInfo, RunInfo, channel_name,
+};
+use std::fmt::Write;
+use std::path::Path;
+
+const CYCLES: u64 = 30;
+
+/// Numbers of all sizes that a reader can print and compare exactly.
+struct Numbers(u64);
+impl Numbers {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 >> 16
+    }
+}
+impl Read for Numbers {
+    fn f64(&mut self) -> f64 {
+        self.next() as f64 / 1e9 - 1e5
+    }
+    fn u64(&mut self) -> u64 {
+        self.next()
+    }
+    fn u32(&mut self) -> u32 {
+        self.next() as u32
+    }
+    fn u8(&mut self) -> u8 {
+        self.next() as u8
+    }
+}
+
+/// Lists every scalar of a record in the order of declaration.
+struct Scalars(String);
+impl Visit for Scalars {
+    fn f64(&mut self, value: f64) {
+        let _ = write!(self.0, " {value:?}");
+    }
+    fn u64(&mut self, value: u64) {
+        let _ = write!(self.0, " {value}");
+    }
+    fn u32(&mut self, value: u32) {
+        let _ = write!(self.0, " {value}");
+    }
+    fn u8(&mut self, value: u8) {
+        let _ = write!(self.0, " {value}");
+    }
+}
+
+/// Writes one record of a topic.
+struct WriteOne<'a> {
+    recorder: &'a mut Recorder,
+    tick: u64,
+    expected: &'a mut String,
+}
+impl ForType<Result<(), RecordingError>> for WriteOne<'_> {
+    fn call<T: Record>(self, topic: &'static Topic) -> Result<(), RecordingError> {
+        let mut record = T::read(&mut Numbers(self.tick * 1000 + topic.name.len() as u64));
+        record.header_mut().tick = self.tick;
+        record.header_mut().stamp_ns = 1_000_000_000 + self.tick * 1_000_000;
+        let mut scalars = Scalars(String::new());
+        record.visit(&mut scalars);
+        let _ = writeln!(self.expected, "{}{}", channel_name(topic.name), scalars.0);
+        self.recorder.write(topic, &record)
+    }
+}
+
+struct Hopper([Link; 3]);
+impl LinkPoses for Hopper {
+    fn links(&self) -> &[Link] {
+        &self.0
+    }
+    fn poses(&mut self, _: &SimState, out: &mut [Pose]) {
+        out[0] = Pose::moved([0.0, 0.0, 1.0]);
+        out[1] = Pose::moved([0.0, -0.1, 0.1]);
+        out[2] = Pose::moved([0.0, 0.1, 0.1]);
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let directory = std::env::args().nth(1).ok_or("usage: peers_log DIR")?;
+    let directory = Path::new(&directory);
+    let foot = |side: &str| FootInfo {
+        link: format!("{side}_foot"),
+        support: [-0.1, 0.2, -0.05, 0.05],
+        sensor_link: format!("{side}_foot"),
+        ..FootInfo::default()
+    };
+    let robot = RobotInfo {
+        name: "hopper".into(),
+        joints: vec!["right_leg".into(), "left_leg".into(), "neck".into()],
+        urdf: "<robot name=\"hopper\"/>".into(),
+        torso: "torso".into(),
+        imu: [0.0; 3],
+        feet: [foot("right"), foot("left")],
+    };
+    let link = |name: &str, parent| Link { name: name.into(), parent };
+    let hopper = Hopper([link("torso", None), link("right_foot", Some(0)), link("left_foot", Some(0))]);
+    let mut recorder = Recorder::create(&directory.join("peers.mcap"), &robot, &RunInfo::default())?
+        .with_links(Box::new(hopper));
+    let mut expected = String::new();
+    for tick in 0..CYCLES {
+        for topic in TOPICS.iter().filter(|t| t.logged) {
+            let write = WriteOne { recorder: &mut recorder, tick, expected: &mut expected };
+            with_type(topic.name, write).unwrap_or(Ok(()))?;
+        }
+    }
+    recorder.finish()?;
+    std::fs::write(directory.join("peers.txt"), expected)?;
+    Ok(())
+}
