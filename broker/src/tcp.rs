@@ -1,8 +1,8 @@
 //! TCP on the loopback interface: the same messages for programs that do not share memory with the broker.
 //!
 //! A frame is its length as u32, little endian, and then a message as in [`crate::message`], 5 to 512 bytes. Every
-//! frame of a client is answered by one frame of the domain [`SERVICE`](crate::message::SERVICE) (accepted or refused), in order; commands of
-//! the domains that it subscribed to come in between.
+//! frame of a client is answered by one frame of the domain `SERVICE` (accepted or refused), in order; commands of the
+//! domains that it subscribed to come in between.
 //!
 //! Limits: [`CONNECTIONS`] connections; beyond them a few more are heard for an emergency stop and nothing else. A frame
 //! must be complete [`FRAME_TIME`] after its first byte, the first one as soon after connecting; a connection that says
@@ -16,6 +16,7 @@ use std::sync::Arc;
 use std::sync::mpsc as queue;
 use std::time::Duration;
 
+use messages::Command;
 use messages::command::{Domain, Priority};
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -191,28 +192,36 @@ enum Entry {
 }
 
 /// One connection, from its first byte to its end.
-async fn connection(mut stream: TcpStream, gate: Gate, token: u32, entry: Entry) {
+async fn connection(stream: TcpStream, gate: Gate, token: u32, entry: Entry) {
     let _ = stream.set_nodelay(true);
-    let (mut read, mut write) = stream.split();
-    let (frames, mut outgoing) = mpsc::channel(WAITING);
+    let (mut read, write) = stream.into_split();
+    let (frames, outgoing) = mpsc::channel(WAITING);
+    let mut speaking = std::pin::pin!(speak(write, outgoing));
     let session = Session { gate: &gate, token, entry, frames: &frames };
-    let farewell = tokio::select! {
-        end = listen(&mut read, &session) => end.err(),
-        () = speak(&mut write, &mut outgoing) => Some(Refusal::TimedOut("the reading of an answer")),
+    let end = tokio::select! {
+        end = listen(&mut read, &session) => Some(end),
+        () = &mut speaking => None,
     };
     let _ = gate.requests.send(Request::Leave { token });
-    let Some(refusal) = farewell else { return };
-    tracing::warn!(code = refusal.code(), connection = token - FIRST_TOKEN, "connection closed: {refusal}");
+    let Some(end) = end else { return log_end(token, &Refusal::TimedOut("the reading of an answer")) };
+    if let Err(refusal) = &end {
+        log_end(token, refusal);
+        let _ = frames.try_send(refusal.to_message());
+    }
     // What waits goes first, then the reason. The rest of the input is read, or the system would throw both away.
-    let _ = frames.try_send(refusal.to_message());
     drop(frames);
-    let _ = timeout(FRAME_TIME, speak(&mut write, &mut outgoing)).await;
-    let _ = write.shutdown().await;
-    let _ = timeout(FAREWELL, tokio::io::copy(&mut read.take(1 << 16), &mut tokio::io::sink())).await;
+    let _ = timeout(FRAME_TIME, speaking).await;
+    if end.is_err() {
+        let _ = timeout(FAREWELL, tokio::io::copy(&mut read.take(1 << 16), &mut tokio::io::sink())).await;
+    }
+}
+
+fn log_end(token: u32, refusal: &Refusal) {
+    tracing::warn!(code = refusal.code(), connection = token - FIRST_TOKEN, "connection closed: {refusal}");
 }
 
 /// Writes frames until there will be no more, or the other side does not read.
-async fn speak(write: &mut (impl AsyncWrite + Unpin), outgoing: &mut mpsc::Receiver<Vec<u8>>) {
+async fn speak(mut write: impl AsyncWrite + Unpin, mut outgoing: mpsc::Receiver<Vec<u8>>) {
     while let Some(message) = outgoing.recv().await {
         let mut frame = (message.len() as u32).to_le_bytes().to_vec();
         frame.extend(message);
@@ -220,6 +229,7 @@ async fn speak(write: &mut (impl AsyncWrite + Unpin), outgoing: &mut mpsc::Recei
             return;
         }
     }
+    let _ = write.shutdown().await;
 }
 
 /// What is needed to serve one client.
@@ -237,7 +247,7 @@ async fn listen(read: &mut (impl AsyncRead + Unpin), session: &Session<'_>) -> R
     let mut bucket = Bucket { level: RATE, at: Instant::now() };
     while let Some(bytes) = read_frame(read, &mut buffer, patience).await? {
         let message = Message::parse(bytes)?;
-        let urgent = message.priority == Priority::High;
+        let urgent = message.command() == Ok(Command::EmergencyStop);
         if session.entry == Entry::EmergencyStop && !urgent {
             return Err(Refusal::TooManyConnections);
         }

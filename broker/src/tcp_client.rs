@@ -17,7 +17,8 @@ const ANSWER_TIME: Duration = Duration::from_secs(3);
 /// A client that only listens gives a sign of life this often.
 const PING_TIME: Duration = Duration::from_secs(20);
 
-/// A connection to the broker.
+/// A connection to the broker, which closes it after a minute in which this client neither sends nor
+/// [receives](TcpClient::receive).
 #[derive(Debug)]
 pub struct TcpClient {
     stream: TcpStream,

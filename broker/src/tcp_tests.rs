@@ -87,14 +87,14 @@ fn a_slow_writer_is_cut_off() {
 #[test]
 fn a_client_that_does_not_read_loses_its_connection() {
     block_on(async {
-        let (_client, mut server) = duplex(64);
-        let (frames, mut outgoing) = mpsc::channel(WAITING);
+        let (_client, server) = duplex(64);
+        let (frames, outgoing) = mpsc::channel(WAITING);
         for _ in 0..WAITING {
             frames.try_send(vec![0; 40]).expect("room");
         }
         assert!(frames.try_send(vec![0; 40]).is_err(), "the broker must not wait for it");
         let begin = Instant::now();
-        speak(&mut server, &mut outgoing).await;
+        speak(server, outgoing).await;
         assert_eq!(begin.elapsed().as_secs(), FRAME_TIME.as_secs());
     });
 }

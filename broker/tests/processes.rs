@@ -58,31 +58,38 @@ fn a_command_goes_to_another_process_and_back() {
     assert_eq!(other.received().count(), 0, "not its domain");
 }
 
+/// Through sender, broker and receiver: of the messages published after the emergency stop, those may come before it
+/// that the sender's thread was just carrying out (at most a ring), and one in the broker and the receiver each.
 #[test]
 fn an_emergency_stop_passes_a_flood() {
-    let mut system = System::without_broker("flood");
-    // 240 messages of low priority lie in the queue before the broker even looks.
-    let mut flood = Client::start("flood", &[], &system.space).unwrap();
-    let mut watchdog = Client::start("watchdog", &[Domain::System, Domain::Walk], &system.space).unwrap();
-    let space = system.space.queue_receiver("broker-low").unwrap();
-    for n in 0..120 {
-        assert!(flood.publish_as(&velocity(n), Priority::Low));
+    let system = System::start("flood");
+    let mut flood = system.client("flood", &[]);
+    let mut watchdog = system.client("watchdog", &[Domain::System, Domain::Walk]);
+    for round in 0..20 {
+        let (mut published, mut overtaking) = (0, 0);
+        let marked = velocity(4000 + round);
+        wait_for("the emergency stop", || {
+            for n in 0..200 {
+                flood.publish_as(if published < 400 { &velocity(n) } else { &marked }, Priority::Low);
+                published += 1;
+                if published == 400 {
+                    flood.publish(&Command::EmergencyStop);
+                }
+            }
+            let heard: Vec<_> = watchdog.received().collect();
+            let stop = heard.iter().position(|c| *c == Command::EmergencyStop);
+            let before = heard[..stop.unwrap_or(heard.len())].iter().filter(|c| **c == marked).count();
+            overtaking += before;
+            stop.is_some()
+        });
+        assert!(overtaking <= 130, "{overtaking} messages came before the emergency stop");
+        // The next round begins with empty queues.
+        let mut quiet = 0;
+        wait_for("the end of the flood", || {
+            quiet = if watchdog.received().count() == 0 { quiet + 1 } else { 0 };
+            quiet > 10
+        });
     }
-    pause(50);
-    drop(space);
-    system.start_broker();
-    wait_for("the registration", || watchdog.statistics().connected);
-    for n in 0..120 {
-        assert!(flood.publish_as(&velocity(n), Priority::Low));
-    }
-    assert!(flood.publish(&Command::EmergencyStop));
-    let mut heard = Vec::new();
-    wait_for("all messages", || {
-        heard.extend(watchdog.received());
-        heard.len() >= 121
-    });
-    assert_eq!(heard.len(), 121);
-    assert!(heard.contains(&Command::EmergencyStop));
 }
 
 #[test]
@@ -153,17 +160,17 @@ fn clients_outlive_the_broker() {
         });
         assert_eq!(heard, [velocity(life)]);
         system.kill_broker();
-        assert!(sender.publish(&velocity(7)), "publishing without a broker is an ordinary call");
         wait_for("the notice of the broker's end", || !sender.statistics().connected);
         wait_for("the notice of the broker's end", || !receiver.statistics().connected);
-        assert_eq!(receiver.received().count(), 0);
+        assert!(sender.publish(&velocity(7)), "publishing without a broker is an ordinary call");
+        wait_for("the count of the loss", || sender.statistics().lost_out == u64::from(life) + 1);
+        system.space.clear_dead();
         system.start_broker();
         wait_for("the registration", || sender.statistics().connected && receiver.statistics().connected);
         // What was sent to nobody must not move the robot later.
         pause(20);
         assert_eq!(receiver.received().count(), 0);
     }
-    assert_eq!(sender.statistics().lost_out, 3);
 }
 
 /// Nothing of this test waits: the rings fill up, and that is all.

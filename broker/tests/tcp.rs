@@ -159,6 +159,18 @@ fn a_payload_that_is_no_command_is_refused() {
 }
 
 #[test]
+fn who_stops_writing_still_gets_the_answers() {
+    let system = System::start("shut");
+    let mut stream = TcpStream::connect((Ipv4Addr::LOCALHOST, system.port)).unwrap();
+    let stop = [9, 0, 0, 0, 1, 0, 2, 0, 1, 6, 0, 0, 0];
+    stream.write_all(&stop.repeat(3)).unwrap();
+    stream.shutdown(std::net::Shutdown::Write).unwrap();
+    let mut answers = Vec::new();
+    stream.read_to_end(&mut answers).unwrap();
+    assert_eq!(answers, [9, 0, 0, 0, 0xff, 0xff, 16, 0, 2, 0, 0, 0, 0].repeat(3));
+}
+
+#[test]
 fn silence_after_half_a_frame_ends_the_connection() {
     let system = System::start("half");
     let answer = answer_to(&system, &[40, 0, 0, 0, 1, 0]);
@@ -178,6 +190,9 @@ fn too_many_connections_leave_room_for_an_emergency_stop() {
     assert!(crowd.len() > CONNECTIONS + RESERVE);
     let refused = system.tcp().publish(&Command::Start).unwrap_err();
     assert!(refused.contains("too many connections"), "{refused}");
+    // Nor does anything else that calls itself urgent.
+    let answer = answer_to(&system, &[9, 0, 0, 0, 0xff, 0xff, 3, 0, 0, 0xff, 0, 0, 0]);
+    assert!(answer.contains("too many connections"), "{answer}");
     assert_eq!(system.tcp().publish(&Command::EmergencyStop), Ok(1));
     // Who was there before is served on.
     assert_eq!(first.publish(&velocity(0.2)), Ok(1));

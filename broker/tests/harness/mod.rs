@@ -74,10 +74,9 @@ impl System {
         wait_for("the broker", || TcpClient::connect(self.port).is_ok_and(|mut c| c.statistics().is_ok()));
     }
 
-    /// SIGKILL, and what the supervisor does after it.
+    /// SIGKILL. The supervisor's `clear_dead` belongs before the next start.
     pub(crate) fn kill_broker(&mut self) {
         drop(self.broker.take());
-        self.space.clear_dead();
     }
 
     /// This program in another role.
