@@ -12,6 +12,7 @@
 //! | direct kinematics of the desired joints (feedback path 1) | (4.5)-(4.10) | [`task_space`] |
 
 pub mod contact_force;
+pub mod daemon;
 pub mod estimate;
 pub mod following;
 pub mod force_control;

@@ -34,6 +34,9 @@ mod tests {
         }
         assert_eq!(cycles, 64); // 4 / 64 s, and every number here is exact in binary
         assert!((m.angle - 4.0 * 4.0 / (2.0 * 64.0)).abs() < 1e-12);
-        assert_eq!(brake(&joint, Motion { angle: 0.999, speed: 4.0 }, 1e-3), Motion { angle: 1.0, speed: 0.0 });
+        assert_eq!(
+            brake(&joint, Motion { angle: 0.999, speed: 4.0 }, 1e-3),
+            Motion { angle: 1.0, speed: 0.0 }
+        );
     }
 }

@@ -121,7 +121,9 @@ impl JointLoop {
         self.state = match self.state {
             _ if !powered => State::Off,
             State::Stop(why) => State::Stop(why),
-            State::Off | State::Hold | State::Track if mute => self.stop(EventCode::BusSilent, self.silent.into()),
+            State::Off | State::Hold | State::Track if mute => {
+                self.stop(EventCode::BusSilent, self.silent.into())
+            }
             State::Off => State::Hold,
             State::Hold if mode == JointMode::Track && !late => State::Track,
             State::Hold => State::Hold,

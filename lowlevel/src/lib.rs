@@ -10,9 +10,11 @@
 //! What is at the far end of the bus is behind the trait [`Fieldbus`]: a simulated robot, later CAN and Sercos III.
 
 pub mod braking;
+pub mod daemon;
 pub mod fieldbus;
 pub mod joint_loop;
 pub mod limits;
+mod simulated_bus;
 
 pub use fieldbus::Fieldbus;
 pub use joint_loop::JointLoop;

@@ -17,6 +17,7 @@
 pub mod collocation;
 pub mod com;
 pub mod commands;
+pub mod daemon;
 pub mod feet;
 pub mod gait;
 pub mod load;

@@ -10,6 +10,7 @@
 //! | time steps | [`integrate`] |
 
 pub mod contact;
+pub mod daemon;
 pub mod drive;
 pub mod integrate;
 pub mod plant;

@@ -135,6 +135,10 @@ macro_rules! record {
         impl $crate::record::Zero for $name {
             const ZERO: Self = Self { $($field: <$type as $crate::record::Zero>::ZERO,)* };
         }
+
+        impl Default for $name {
+            fn default() -> Self { <Self as $crate::record::Zero>::ZERO }
+        }
     };
     ($(#[$meta:meta])* record $name:ident { $($body:tt)* }) => {
         $crate::record! { $(#[$meta])* part $name { $($body)* } }
@@ -146,9 +150,6 @@ macro_rules! record {
             fn header_mut(&mut self) -> &mut $crate::record::Header { &mut self.header }
         }
 
-        impl Default for $name {
-            fn default() -> Self { <Self as $crate::record::Zero>::ZERO }
-        }
     };
 }
 

@@ -1,0 +1,65 @@
+//! The process around the stabilizer: `gangwerk controller --run DIR`.
+
+use crate::Controller;
+use daemon::Daemon;
+use ipc::Mode;
+use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, PLAN, PLANNER_TICK, SENSORS};
+use messages::{ControllerState, Event, EventCode, Header, JointTargets, Plan, Process, Sensors};
+use realtime::clock;
+use std::error::Error;
+use std::path::Path;
+
+/// Stabilizes until asked to end.
+///
+/// # Errors
+/// The process cannot start, or, in lockstep, joint loop or planner fell silent.
+pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
+    let mut d = Daemon::new(Process::Controller, dir)?;
+    let mut sensors = d.space.reader::<Sensors>(&SENSORS)?;
+    let mut plan = d.space.reader::<Plan>(&PLAN)?;
+    let mut planner_tick = d.space.reader::<Event>(&PLANNER_TICK)?;
+    let mut targets = d.space.writer::<JointTargets>(&JOINT_TARGETS)?;
+    let mut state = d.space.writer::<ControllerState>(&CONTROLLER_STATE)?;
+    let bell = d.bell(&JOINT_TARGETS)?;
+    let waiter = d.space.waiter(Process::Controller)?;
+    let mut controller = Controller::new(&d.setup.robot, &d.setup.gait, d.setup.scene.cycle)?;
+    let mut silence = PlannerSilence::default();
+    d.report(Header::default(), EventCode::Started, 0);
+
+    let mut header = Header::default();
+    while d.wait(&waiter, "lowlevel", || sensors.refresh())? {
+        let Some(measured) = sensors.held() else { continue };
+        header = measured.header;
+        if d.mode == Mode::Lockstep
+            && !d.wait(&waiter, "planner", || planner_tick.latest().is_some_and(|e| e.header.tick == header.tick))?
+        {
+            break;
+        }
+        d.begin(clock::now());
+        let (new_targets, new_state) = controller.step(measured, plan.latest());
+        state.write(new_state);
+        targets.write(new_targets);
+        d.ring(bell);
+        if let Some((code, detail)) = controller.take_event() {
+            d.report(header, code, detail);
+        }
+        if silence.begins(header.tick, planner_tick.latest()) {
+            d.report(header, EventCode::PlannerSilent, 0);
+        }
+        d.end(header, 0);
+    }
+    d.report(header, EventCode::Ended, 0);
+    Ok(())
+}
+
+/// Whether the planner has just fallen silent. The plan it left is walked to its end.
+#[derive(Default)]
+struct PlannerSilence(bool);
+
+impl PlannerSilence {
+    fn begins(&mut self, tick: u64, newest: Option<&Event>) -> bool {
+        let age = newest.map_or(0, |e| tick.saturating_sub(e.header.tick));
+        let silent = age > u64::from(PLANNER_TICK.stale_after);
+        std::mem::replace(&mut self.0, silent) != silent && silent
+    }
+}

@@ -1,0 +1,151 @@
+//! What every cyclic process does around its step.
+//!
+//! Load the configuration, prepare the thread, enter shared memory, build everything: the last allocation. Then wait,
+//! read the newest inputs, step, write; count; report what happened. [`Daemon`] is that frame; the process adds its
+//! ports and its loop.
+
+use config::Setup;
+use ipc::{Bell, IpcError, Mode, Run, Space, Waiter, Woken, Writer};
+use messages::topics::{Process, Topic};
+use messages::{Command, CycleStats, Event, EventCode, Header};
+use realtime::{CycleMeter, Schedule, Stop, clock, prepare_thread};
+use std::error::Error;
+use std::path::Path;
+use std::time::Duration;
+
+/// Where live commands come from: each call gives the next one that waits. Those of the scene come by tick.
+pub type Commands = Box<dyn FnMut() -> Option<Command>>;
+
+/// Opens the source of live commands in a space.
+pub type Connect<'a> = Box<dyn FnOnce(&Space) -> Result<Commands, String> + 'a>;
+
+/// Cycles before counting begins: everything has been touched once.
+const WARM_UP: u64 = 100;
+/// Cycles from one record of statistics to the next.
+const STATS_EVERY: u64 = 100;
+
+/// The frame of a cyclic process.
+pub struct Daemon {
+    /// Which process.
+    pub process: Process,
+    /// Lockstep or real time.
+    pub mode: Mode,
+    /// Whether the run is logged.
+    pub logged: bool,
+    /// Scene, robot, gait, run-time system.
+    pub setup: Setup,
+    /// Shared memory of the run.
+    pub space: Space,
+    /// The request to end.
+    pub stop: Stop,
+    meter: CycleMeter,
+    stats: Writer<CycleStats>,
+    events: Writer<Event>,
+    bells: Vec<Bell>,
+    cycle: u64,
+}
+
+impl Daemon {
+    /// Everything up to the ports of the process.
+    ///
+    /// # Errors
+    /// What is missing or wrong, and what to do.
+    pub fn new(process: Process, dir: &Path) -> Result<Self, Box<dyn Error>> {
+        let stop = Stop::on_signals()?;
+        let run = Run::load(dir)?;
+        let setup = Setup::load(&run.config, &run.scene)?;
+        let row = setup.system.process(process).cloned();
+        let schedule = match (run.mode, &row) {
+            (Mode::RealTime, Some(row)) => Schedule { priority: row.priority, core: row.core },
+            _ => Schedule::ORDINARY,
+        };
+        let granted = prepare_thread(&schedule);
+        for missing in &granted.missing {
+            tracing::warn!("{} degraded: {missing}", process.name());
+        }
+        let space = run.enter(process)?;
+        let deadline = row.map_or(0, |row| row.deadline_ns);
+        Ok(Self {
+            meter: CycleMeter::new(deadline, granted.degraded(), setup.hash),
+            stats: space.writer(topic(process, "cycle_stats")?)?,
+            events: space.writer(topic(process, "events")?)?,
+            bells: Vec::new(),
+            cycle: 0,
+            logged: run.log.is_some(),
+            mode: run.mode,
+            process,
+            setup,
+            space,
+            stop,
+        })
+    }
+
+    /// Bus cycle \[ns\].
+    pub fn period_ns(&self) -> u64 {
+        (self.setup.scene.cycle * 1e9).round() as u64
+    }
+
+    /// How long a missing peer is waited for.
+    pub fn patience(&self) -> Duration {
+        Duration::from_secs_f64(self.setup.system.peer_timeout)
+    }
+
+    /// The bell of a topic; its index for [`Daemon::ring`]. Bells are connected to their hearers before counting begins.
+    pub fn bell(&mut self, topic: &Topic) -> Result<usize, IpcError> {
+        self.bells.push(self.space.bell(topic)?);
+        Ok(self.bells.len() - 1)
+    }
+
+    /// Rings a bell.
+    pub fn ring(&self, bell: usize) {
+        self.bells[bell].ring();
+    }
+
+    /// Waits until `ready`; `Ok(false)`: asked to end. In lockstep a silent peer is an error that names it; in real time
+    /// it is waited for without end: its silence is seen by the age of what it wrote.
+    pub fn wait(&self, waiter: &Waiter, peer: &str, mut ready: impl FnMut() -> bool) -> Result<bool, Box<dyn Error>> {
+        loop {
+            match waiter.wait_until(self.patience(), || self.stop.asked(), &mut ready) {
+                Woken::Ready => return Ok(true),
+                Woken::Stopped => return Ok(false),
+                Woken::Silent if self.mode == Mode::RealTime => {}
+                Woken::Silent => {
+                    let seconds = self.patience().as_secs_f64();
+                    let me = self.process.name();
+                    return Err(format!("{me}: lockstep: {peer} did not answer within {seconds} s; is it running?").into());
+                }
+            }
+        }
+    }
+
+    /// A cycle that was planned for `planned_ns` begins.
+    pub fn begin(&mut self, planned_ns: u64) {
+        self.meter.begin(planned_ns, clock::now());
+    }
+
+    /// The cycle `header` ends, and `skipped` wake-ups were missed.
+    pub fn end(&mut self, header: Header, skipped: u64) {
+        self.meter.end(clock::now(), skipped);
+        self.cycle += 1;
+        if self.cycle == WARM_UP {
+            self.bells.iter().for_each(Bell::connect);
+            self.meter.arm();
+        }
+        if self.cycle.is_multiple_of(STATS_EVERY) {
+            let stats = self.meter.stats();
+            stats.header = header;
+            self.stats.write(stats);
+        }
+    }
+
+    /// Writes an event.
+    pub fn report(&mut self, header: Header, code: EventCode, detail: u64) {
+        self.events.write(&Event { header, code: code as u64, detail });
+    }
+}
+
+/// The topic `prefix/PROCESS`.
+fn topic(process: Process, prefix: &str) -> Result<&'static Topic, String> {
+    let name = format!("{prefix}/{}", process.name());
+    Topic::find(&name).ok_or_else(|| format!("there is no topic {name}"))
+}

@@ -1,0 +1,154 @@
+//! The process around the joint loop: `gangwerk lowlevel --run DIR`. It is the clock of all others.
+
+use crate::simulated_bus::SimulatedBus;
+use crate::{Fieldbus, JointLoop};
+use daemon::Daemon;
+use ipc::{Mode, Reader, Waiter, Writer};
+use messages::topics::{BUS_TX, JOINT_TARGETS, LOG_TICK, POWER, SENSORS, SIM_STATE, WATCHDOG_RESET};
+use messages::{Event, EventCode, Header, JointTargets, Power, Process, Sensors, WatchdogReset};
+use realtime::{Period, Verdict, clock};
+use std::error::Error;
+use std::path::Path;
+use std::time::Duration;
+
+/// Share of a period after which the joint loop no longer waits for the targets of the same cycle.
+const ANSWER: (u64, u64) = (7, 10);
+
+/// Runs the joint loop until the scene is over or somebody asks to end.
+///
+/// # Errors
+/// The process cannot start, or, in lockstep, a peer fell silent.
+pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
+    let mut d = Daemon::new(Process::Lowlevel, dir)?;
+    let mut ports = Ports {
+        bus: SimulatedBus::new(&d)?,
+        sensors: d.space.writer(&SENSORS)?,
+        reset: d.space.writer(&WATCHDOG_RESET)?,
+        targets: d.space.reader(&JOINT_TARGETS)?,
+        power: d.space.reader(&POWER)?,
+        logged: d.space.reader(&LOG_TICK)?,
+        bell_sensors: d.bell(&SENSORS)?,
+        bell_bus: d.bell(&BUS_TX)?,
+        bell_reset: d.bell(&WATCHDOG_RESET)?,
+        waiter: d.space.waiter(Process::Lowlevel)?,
+    };
+    let scene = &d.setup.scene;
+    let last = (scene.duration / scene.cycle).round() as u64;
+    let mut joints = JointLoop::new(&d.setup.robot, &d.setup.system, scene.cycle);
+    d.report(Header::default(), EventCode::Started, 0);
+    let header = match d.mode {
+        Mode::Lockstep => lockstep(&mut d, &mut ports, &mut joints, last)?,
+        Mode::RealTime => real_time(&mut d, &mut ports, &mut joints, last),
+    };
+    d.report(header, EventCode::Ended, 0);
+    Ok(())
+}
+
+struct Ports {
+    bus: SimulatedBus,
+    sensors: Writer<Sensors>,
+    reset: Writer<WatchdogReset>,
+    targets: Reader<JointTargets>,
+    power: Reader<Power>,
+    logged: Reader<Event>,
+    bell_sensors: usize,
+    bell_bus: usize,
+    bell_reset: usize,
+    waiter: Waiter,
+}
+
+/// Simulated time: each peer answers tick n before tick n + 1 begins.
+fn lockstep(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -> Result<Header, Box<dyn Error>> {
+    // The far end speaks first: its answer to no cycle is what the first one sees.
+    let mut header = Header::default();
+    if !p.bus.wait(d, &p.waiter, 0)? {
+        return Ok(header);
+    }
+    for tick in 1..=last {
+        d.begin(clock::now());
+        let sensors = joints.receive(tick, tick * d.period_ns(), p.bus.receive());
+        header = sensors.header;
+        p.sensors.write(sensors);
+        d.ring(p.bell_sensors);
+        let targets = &mut p.targets;
+        if !d.wait(&p.waiter, "controller", || targets.latest().is_some_and(|t| t.header.tick == tick))? {
+            break;
+        }
+        let (frames, reset) = joints.send(p.targets.held(), None);
+        p.reset.write(reset);
+        d.ring(p.bell_reset);
+        let power = &mut p.power;
+        if !d.wait(&p.waiter, "watchdog", || power.latest().is_some_and(|w| w.header.tick == tick))? {
+            break;
+        }
+        p.bus.send(frames);
+        d.ring(p.bell_bus);
+        if !p.bus.wait(d, &p.waiter, tick)? || !wait_for_log(d, p, tick)? {
+            break;
+        }
+        report(d, joints, header);
+        d.end(header, 0);
+    }
+    Ok(header)
+}
+
+/// Nobody runs ahead of the log by more than half a ring: nothing is lost.
+fn wait_for_log(d: &Daemon, p: &mut Ports, tick: u64) -> Result<bool, Box<dyn Error>> {
+    let ahead = SIM_STATE.depth as u64 / 2;
+    if !d.logged || tick <= ahead {
+        return Ok(true);
+    }
+    let logged = &mut p.logged;
+    d.wait(&p.waiter, "logger", || logged.latest().is_some_and(|e| e.header.tick + ahead >= tick))
+}
+
+/// The bus cycle is the clock.
+fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -> Header {
+    let period_ns = d.period_ns();
+    let answer_ns = period_ns * ANSWER.0 / ANSWER.1;
+    let mut period = Period::new(clock::now() + period_ns, period_ns, d.setup.system.overrun_bucket);
+    let (mut header, mut cause) = (Header::default(), None);
+    for tick in 1..=last {
+        if d.stop.asked() {
+            break;
+        }
+        clock::sleep_until(period.planned());
+        d.begin(period.planned());
+        let sensors = joints.receive(tick, clock::now(), p.bus.receive());
+        header = sensors.header;
+        p.sensors.write(sensors);
+        d.ring(p.bell_sensors);
+        wait_for_targets(p, tick, period.planned() + answer_ns);
+        let (frames, reset) = joints.send(p.targets.latest(), cause);
+        p.bus.send(frames);
+        d.ring(p.bell_bus);
+        p.reset.write(reset);
+        report(d, joints, header);
+        let verdict = period.finish(clock::now());
+        if let Verdict::TooMany { .. } = verdict {
+            cause = Some(EventCode::TooManyOverruns);
+        }
+        if verdict.skipped() > 0 {
+            d.report(header, EventCode::Overrun, verdict.skipped());
+        }
+        d.end(header, verdict.skipped());
+    }
+    header
+}
+
+/// Until the targets of this cycle are there, or it is too late for them.
+fn wait_for_targets(p: &mut Ports, tick: u64, until_ns: u64) {
+    while p.targets.latest().is_none_or(|t| t.header.tick < tick) {
+        let left = until_ns.saturating_sub(clock::now());
+        if left == 0 {
+            return;
+        }
+        p.waiter.wait(Duration::from_nanos(left));
+    }
+}
+
+fn report(d: &mut Daemon, joints: &mut JointLoop, header: Header) {
+    if let Some((code, detail)) = joints.take_event() {
+        d.report(header, code, detail);
+    }
+}

@@ -1,0 +1,100 @@
+//! The process around the simulated robot: `gangwerk sim-backend --run DIR`.
+//!
+//! It moves on with every cycle of the bus. In real time it also moves on without: the world does not wait for a dead
+//! joint loop.
+
+use crate::SimBackend;
+use daemon::{Commands, Connect, Daemon};
+use ipc::{Mode, Reader, Writer};
+use messages::topics::{BUS_RX, BUS_TX, POWER, SIM_STATE};
+use messages::{BusFrames, Command, EventCode, Header, Power, Process, SimState};
+use realtime::clock;
+use std::error::Error;
+use std::path::Path;
+use std::time::Duration;
+
+/// Periods without a cycle of the bus after which the world moves on by itself.
+const PATIENCE: u64 = 2;
+
+/// Simulates until asked to end.
+///
+/// # Errors
+/// The process cannot start, or, in lockstep, the joint loop fell silent.
+pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
+    let mut d = Daemon::new(Process::SimBackend, dir)?;
+    let mut ports = Ports {
+        tx: d.space.reader(&BUS_TX)?,
+        power: d.space.reader(&POWER)?,
+        rx: d.space.writer(&BUS_RX)?,
+        state: d.space.writer(&SIM_STATE)?,
+        bell: d.bell(&BUS_RX)?,
+        commands: connect(&d.space)?,
+    };
+    let waiter = d.space.waiter(Process::SimBackend)?;
+    let mut sim = SimBackend::new(&d.setup.robot, &d.setup.scene)?;
+    d.report(Header::default(), EventCode::Started, 0);
+    let (frames, _) = sim.step(None, None);
+    ports.rx.write(frames);
+    d.ring(ports.bell);
+
+    let mut header = Header::default();
+    match d.mode {
+        Mode::Lockstep => {
+            while d.wait(&waiter, "lowlevel", || ports.tx.refresh())? {
+                d.begin(clock::now());
+                header = cycle(&mut d, &mut sim, &mut ports);
+            }
+        }
+        Mode::RealTime => {
+            let period = d.period_ns();
+            let mut running = false;
+            let mut due = clock::now();
+            while !d.stop.asked() {
+                let patience = if running { PATIENCE * period } else { 20 * period };
+                let new = ports.tx.refresh() || {
+                    waiter.wait(Duration::from_nanos((due + patience).saturating_sub(clock::now()).max(1)));
+                    ports.tx.refresh()
+                };
+                running |= new;
+                let now = clock::now();
+                if new || (running && now >= due + patience) {
+                    due = if new { now } else { due + period };
+                    d.begin(now);
+                    header = cycle(&mut d, &mut sim, &mut ports);
+                } else if !running {
+                    due = now;
+                }
+            }
+        }
+    }
+    d.report(header, EventCode::Ended, 0);
+    Ok(())
+}
+
+struct Ports {
+    tx: Reader<BusFrames>,
+    power: Reader<Power>,
+    rx: Writer<BusFrames>,
+    state: Writer<SimState>,
+    bell: usize,
+    commands: Commands,
+}
+
+/// One bus cycle; returns its header.
+fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
+    while let Some(command) = (p.commands)() {
+        if let Command::Push(push) = command {
+            sim.push(&push);
+        }
+    }
+    let (frames, state) = sim.step(p.tx.held(), p.power.latest());
+    let header = state.header;
+    p.state.write(state);
+    p.rx.write(frames);
+    d.ring(p.bell);
+    if let Some((code, detail)) = sim.take_event() {
+        d.report(header, code, detail);
+    }
+    d.end(header, 0);
+    header
+}
