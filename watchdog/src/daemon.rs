@@ -3,7 +3,7 @@
 //! Real time: a grid of its own, one cycle per bus cycle, so that it notices what no longer happens. Lockstep: woken by
 //! the joint loop's sign of life, it answers each tick.
 
-use crate::{Inputs, Supply, Watchdog};
+use crate::{Inputs, Watchdog, supply_event};
 use config::{Setup, System, Timeline};
 use ipc::{Bell, Mode, Reader, Run, Space, Waiter, Woken, Writer};
 use messages::command::Domain;
@@ -154,10 +154,8 @@ impl Daemon {
         let power = *self.watchdog.step(&inputs);
         self.ports.power.write(&power);
         self.ports.bell.ring();
-        match (before, self.watchdog.supply()) {
-            (Supply::On, Supply::Off(reason)) => self.report(EventCode::PowerOff, reason as u64),
-            (Supply::Ready, Supply::On) | (Supply::Off(_), Supply::On) => self.report(EventCode::PowerOn, 0),
-            _ => {}
+        if let Some((code, detail)) = supply_event(before, self.watchdog.supply()) {
+            self.report(code, detail);
         }
     }
 

@@ -6,4 +6,4 @@
 pub mod daemon;
 mod supply;
 
-pub use supply::{Inputs, PAUSE, Supply, Watchdog};
+pub use supply::{Inputs, PAUSE, Supply, Watchdog, supply_event};

@@ -27,6 +27,15 @@ pub enum Supply {
     On,
 }
 
+/// What the log says of a change of the supply: code and detail.
+pub fn supply_event(before: Supply, after: Supply) -> Option<(EventCode, u64)> {
+    match (before, after) {
+        (Supply::On, Supply::Off(reason)) => Some((EventCode::PowerOff, reason as u64)),
+        (Supply::Ready | Supply::Off(_), Supply::On) => Some((EventCode::PowerOn, 0)),
+        _ => None,
+    }
+}
+
 /// What one cycle of the watchdog sees.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Inputs<'a> {

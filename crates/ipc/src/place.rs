@@ -2,6 +2,7 @@
 
 use crate::error::{IpcError, because};
 use iceoryx2::prelude::*;
+use std::os::unix::fs::DirBuilderExt;
 use std::path::{Path as StdPath, PathBuf};
 
 /// Shared memory objects appear here.
@@ -24,12 +25,20 @@ impl Place {
         for b in dir.as_os_str().as_encoded_bytes() {
             hash = (hash ^ u64::from(*b)).wrapping_mul(0x100_0000_01b3);
         }
-        Ok(Self { dir, prefix: format!("gangwerk_{hash:016x}_") })
+        // 48 bits: root, prefix, a 39-digit number and a suffix must fit into the 107 bytes of a socket's path.
+        Ok(Self { dir, prefix: format!("gangwerk_{:012x}_", hash >> 16) })
     }
 
-    /// Root of iceoryx2's own files.
+    /// Root of iceoryx2's own files: on the tmpfs, because it syncs each of them, and short, because some are sockets.
     pub(crate) fn root(&self) -> PathBuf {
-        self.dir.join("iceoryx2")
+        StdPath::new(SHM).join(self.prefix.trim_end_matches('_'))
+    }
+
+    /// Makes the root, for this user only.
+    pub(crate) fn make_root(&self) -> Result<(), IpcError> {
+        let root = self.root();
+        let made = std::fs::DirBuilder::new().mode(0o700).create(&root);
+        made.map_err(|e| IpcError::Other(format!("{}: {e}", root.display())))
     }
 
     /// Own configuration: never the process-wide one, no clean-up behind a control process's back.

@@ -145,6 +145,7 @@ mod tests {
         let dir = std::env::temp_dir().join(format!("gangwerk-ipc-{}-schema", std::process::id()));
         std::fs::create_dir_all(&dir).unwrap();
         let place = Place::of(&dir).unwrap();
+        place.make_root().unwrap();
         let node = crate::space::node::<RealTime>(&place, "test").unwrap();
         let made = create::<Event>(&node, &EVENTS_PLANNER, 0).unwrap();
         assert_eq!(size_of::<Event>(), size_of::<Swapped>());

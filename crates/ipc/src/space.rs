@@ -53,7 +53,7 @@ impl Drop for Hold {
 impl Space {
     /// For the supervisor: takes `dir` for itself, clears away what a former run left there, makes all topics.
     ///
-    /// `dir` is made with mode 0700 if it does not exist; it should lie on a tmpfs. A second supervisor is refused, and
+    /// `dir` is made with mode 0700 if it does not exist. A second supervisor is refused, and
     /// so is a first one while processes of a former run are still alive.
     pub fn create(dir: &StdPath) -> Result<Self, IpcError> {
         Self::create_topics(dir, TOPICS)
@@ -74,11 +74,12 @@ impl Space {
             }
         }
         place.wipe()?;
-        let needed = topics.iter().filter_map(|t| with_type(t.name, Bytes)).sum::<u64>() + SPARE;
+        let needed = needed(topics);
         let free = Place::free()?;
         if free < needed {
             return Err(IpcError::NoRoom { needed, free });
         }
+        place.make_root()?;
         let node = node::<RealTime>(&place, SUPERVISOR)?;
         let mut made = Vec::new();
         for topic in topics {
@@ -192,7 +193,11 @@ fn right_type<T: Record>(topic: &Topic) -> Result<(), IpcError> {
     Err(IpcError::Other(format!("topic {} holds {}, not {}", topic.name, topic.type_name, T::NAME)))
 }
 
-/// What a topic needs in shared memory.
+/// What a space with these topics needs in shared memory \[B\].
+fn needed(topics: &[Topic]) -> u64 {
+    topics.iter().filter_map(|t| with_type(t.name, Bytes)).sum::<u64>() + SPARE
+}
+
 struct Bytes;
 impl ForType<u64> for Bytes {
     fn call<T: Record>(self, topic: &'static Topic) -> u64 {
@@ -221,6 +226,14 @@ mod tests {
         names.filter(|name| name.to_string_lossy().starts_with(&place.prefix)).count()
     }
 
+    /// Memory the objects really take \[B\].
+    fn size(place: &Place) -> u64 {
+        use std::os::unix::fs::MetadataExt;
+        let files = std::fs::read_dir("/dev/shm").unwrap().map(Result::unwrap);
+        let own = files.filter(|f| f.file_name().to_string_lossy().starts_with(&place.prefix));
+        own.map(|f| f.metadata().unwrap().blocks() * 512).sum()
+    }
+
     #[test]
     fn nothing_is_left_behind() {
         let dir = std::env::temp_dir().join(format!("gangwerk-ipc-{}-left", std::process::id()));
@@ -230,6 +243,7 @@ mod tests {
         let reader = observer.reader::<Sensors>(&SENSORS).unwrap();
         drop(observer.queue_receiver("x").unwrap());
         assert!(left(&place) > TOPICS.len() * SLOTS);
+        assert!(size(&place) <= needed(TOPICS), "{} > {}", size(&place), needed(TOPICS));
         drop((reader, observer));
         drop(system);
         assert_eq!(left(&place), 0);
