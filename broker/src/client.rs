@@ -125,11 +125,15 @@ impl Client {
         sent
     }
 
-    /// What came since the last call, urgent messages first. At most what the rings hold: never waits.
+    /// The next message that waits, urgent ones first. Never waits.
+    pub fn receive(&mut self) -> Option<Command> {
+        self.urgent.received.pop().or_else(|_| self.other.received.pop()).ok()
+    }
+
+    /// What came since the last call, urgent messages first. At most what the rings hold at the time of the call.
     pub fn received(&mut self) -> impl Iterator<Item = Command> + '_ {
         let waiting = self.waiting();
-        std::iter::from_fn(|| self.urgent.received.pop().or_else(|_| self.other.received.pop()).ok())
-            .take(waiting)
+        std::iter::from_fn(|| self.receive()).take(waiting)
     }
 
     /// How many messages wait.

@@ -89,7 +89,7 @@ impl<C> LocalBroker<C> {
     pub fn deliver_received(&mut self, state: &mut C) {
         let waiting = self.client.as_ref().map_or(0, Client::waiting);
         for _ in 0..waiting {
-            let Some(command) = self.client.as_mut().and_then(|c| c.received().next()) else { return };
+            let Some(command) = self.client.as_mut().and_then(Client::receive) else { return };
             self.publish(state, &command, Reach::Local);
         }
     }

@@ -70,7 +70,8 @@ fn an_emergency_stop_passes_a_flood() {
         let marked = velocity(4000 + round);
         wait_for("the emergency stop", || {
             for n in 0..200 {
-                flood.publish_as(if published < 400 { &velocity(n) } else { &marked }, Priority::Low);
+                let command = if published < 400 { velocity(n) } else { marked };
+                flood.publish_as(&command, Priority::Low);
                 published += 1;
                 if published == 400 {
                     flood.publish(&Command::EmergencyStop);
@@ -184,6 +185,15 @@ fn without_a_broker_publishing_never_waits() {
     assert_eq!(client.received().count(), 0);
     wait_for("the count of all losses", || client.statistics().lost_out == 100_000);
     assert!(!client.statistics().connected);
+}
+
+#[test]
+fn a_broker_that_is_asked_to_end_ends() {
+    let system = System::without_broker("ends");
+    assert_eq!(system.spawn("broker that ends").0.wait().unwrap().code(), Some(0));
+    let mut events = system.space.reader::<Event>(&EVENTS_BROKER).unwrap();
+    let codes: Vec<_> = std::iter::from_fn(|| events.follow().map(|e| e.code)).collect();
+    assert_eq!(codes, [EventCode::Started as u64, EventCode::Ended as u64]);
 }
 
 #[test]

@@ -129,10 +129,17 @@ pub(crate) fn play_role(other: impl Fn(&str, &Space)) {
     let Ok(role) = std::env::var(ROLE) else { return };
     let var = |name| std::env::var(name).expect("set by the test");
     let run = Run::load(var(DIR).as_ref()).expect("run");
-    if role == "broker" {
+    if role.starts_with("broker") {
         let port = var(PORT).parse().expect("port");
-        let stop = realtime::Stop::on_signals().expect("signals");
-        if let Err(reason) = broker::daemon::run(&run, port, &stop) {
+        let stop = realtime::Stop::default();
+        if role == "broker that ends" {
+            let stop = stop.clone();
+            std::thread::spawn(move || {
+                pause(100);
+                stop.ask();
+            });
+        }
+        if let Err(reason) = broker::daemon::serve(&run, port, &stop) {
             eprintln!("{reason}");
             std::process::exit(2);
         }
