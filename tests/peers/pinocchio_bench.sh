@@ -11,7 +11,6 @@ program=tests/peers/.venv/pinocchio_bench
 if [ ! -x "$program" ] || [ "$source" -nt "$program" ]; then
     echo "compiling $source (a minute or two)" >&2
     g++ -std=c++17 -O3 -march=native -DNDEBUG -w -DBOOST_MPL_LIMIT_LIST_SIZE=30 -DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS \
-        -isystem "$prefix/include" -isystem "$prefix/include/eigen3" -isystem "$prefix/include/urdfdom" -isystem "$prefix/include/urdfdom_headers" "$source" -o "$program" \
-        -L"$prefix/lib" -Wl,-rpath,"$prefix/lib" -lpinocchio_parsers -lpinocchio_default
+        -isystem "$prefix/include" -isystem "$prefix/include/eigen3" "$source" -o "$program"
 fi
 exec cargo bench --quiet --package multibody --bench dynamics -- --peer "$PWD/$program" "$@"

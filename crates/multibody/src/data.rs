@@ -23,6 +23,8 @@ pub struct Data {
     pub(crate) moments: Vec<V3>,
     pub(crate) locals: Vec<Local>,
     pub(crate) composites: Vec<Composite>,
+    /// Momentum and moment of momentum of each composite, on its way to the base.
+    pub(crate) momenta: Vec<[V3; 2]>,
     pub(crate) articulated: Vec<Articulated>,
     /// Mass matrix and its factors as rows of [`crate::model::Paths`].
     pub(crate) m: Vec<f64>,
@@ -110,6 +112,7 @@ impl Data {
             moments: vec![ZERO; nb],
             locals: vec![Local::default(); nb],
             composites: vec![Composite::default(); nb],
+            momenta: vec![[ZERO; 2]; nb],
             articulated: vec![Articulated::NONE; nb],
             m: vec![0.0; entries],
             l: vec![0.0; entries],

@@ -18,7 +18,6 @@ impl Model {
     ) {
         assert_eq!(force.len(), self.nv(), "length of the generalized force");
         data.set_position(self, q);
-        self.composites(data);
         self.rows(data);
         self.bias(data, v, acceleration);
         for (a, f) in acceleration.iter_mut().zip(force) {

@@ -26,10 +26,11 @@ impl Model {
         force: &mut [f64],
     ) {
         assert_eq!(acceleration.len(), self.nv(), "length of the acceleration");
+        assert_eq!(force.len(), self.nv(), "length of the generalized force");
         data.set_position(self, q);
         let base = (V3::from_slice(acceleration), V3::from_slice(&acceleration[3..]));
-        self.sweeps(data, v, base, |k| acceleration[k + 5]);
-        self.collect(data, force);
+        self.sweeps(data, v, base, |k| acceleration[k + 5], |k, x| force[k + 5] = x);
+        collect(data, force);
     }
 
     /// Nonlinear terms h at `q`, `v`: Coriolis, centrifugal and weight; M v' + h = generalized force.
@@ -40,13 +41,22 @@ impl Model {
 
     /// Nonlinear terms, the position being set.
     pub(crate) fn bias(&self, data: &mut Data, v: &[f64], h: &mut [f64]) {
-        self.sweeps(data, v, (ZERO, ZERO), |_| 0.0);
-        self.collect(data, h);
+        assert_eq!(h.len(), self.nv(), "length of the generalized force");
+        self.sweeps(data, v, (ZERO, ZERO), |_| 0.0, |k, x| h[k + 5] = x);
+        collect(data, h);
     }
 
-    /// Both sweeps; leaves force and moment of every body in `data`.
+    /// Both sweeps, with the base's acceleration; leaves force and moment of every body in `data` and hands the force of
+    /// the joint of body k to `joint`.
     #[inline(always)]
-    pub(crate) fn sweeps(&self, data: &mut Data, v: &[f64], base: (V3, V3), qdd: impl Fn(usize) -> f64) {
+    pub(crate) fn sweeps(
+        &self,
+        data: &mut Data,
+        v: &[f64],
+        base: (V3, V3),
+        qdd: impl Fn(usize) -> f64,
+        mut joint: impl FnMut(usize, f64),
+    ) {
         assert_eq!(v.len(), self.nv(), "length of v");
         let Data { joints, oblique, locals, base: attitude, .. } = data;
         let w = V3::from_slice(&v[3..]);
@@ -61,26 +71,20 @@ impl Model {
             let (own, j) = (locals[k], &joints[k]);
             let p = &mut locals[body.parent];
             with_turn!(body, j, &oblique[k], t => {
+                joint(k, t.part(choose(t, own.n, own.f)) * body.sign);
                 let f = t.up(own.f);
                 p.f += f;
                 p.n += t.up(own.n) + j.r.cross(f);
             });
         }
     }
+}
 
-    /// Takes the generalized force out of the bodies' forces and moments.
-    fn collect(&self, data: &Data, force: &mut [f64]) {
-        assert_eq!(force.len(), self.nv(), "length of the generalized force");
-        let base = &data.locals[0];
-        force[..3].copy_from_slice(&base.f.array());
-        force[3..6].copy_from_slice(&base.n.array());
-        for (k, body) in self.bodies.iter().enumerate().skip(1) {
-            let (l, j) = (&data.locals[k], &data.joints[k]);
-            with_turn!(body, j, &data.oblique[k], t => {
-                force[k + 5] = t.part(choose(t, l.n, l.f)) * body.sign;
-            });
-        }
-    }
+/// The base's part of the generalized force.
+fn collect(data: &Data, force: &mut [f64]) {
+    let base = &data.locals[0];
+    force[..3].copy_from_slice(&base.f.array());
+    force[3..6].copy_from_slice(&base.n.array());
 }
 
 /// What a joint feels: the moment if it turns, the force if it slides.

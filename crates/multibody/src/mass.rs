@@ -17,7 +17,6 @@ impl Model {
     /// Mass matrix at `q`, n_v x n_v, symmetric, both triangles.
     pub fn mass_matrix<'d>(&self, data: &'d mut Data, q: &[f64]) -> &'d DMatrix<f64> {
         data.set_position(self, q);
-        self.composites(data);
         self.rows(data);
         let Data { m, mass_matrix, .. } = data;
         let full = mass_matrix.as_mut_slice();
@@ -41,35 +40,40 @@ impl Model {
         }
     }
 
-    /// Rows of the mass matrix along the paths.
+    /// Composite bodies, and the rows of the mass matrix along the paths.
+    ///
+    /// A joint's kernel is chosen once for its composite and for all momenta that pass it on their way to the base.
     pub(crate) fn rows(&self, data: &mut Data) {
-        let Data { joints, oblique, composites, m, .. } = data;
-        base_rows(self.mass(), &composites[0], m);
-        for (k, body) in self.bodies.iter().enumerate().skip(1) {
-            let row = &mut m[self.paths.row(k + 5)];
-            let mut at = row.len() - 1;
-            let (c, j) = (&composites[k], &joints[k]);
-            let (mut f, mut n) = (V3::default(), V3::default());
-            with_turn!(body, j, &oblique[k], t => {
-                (f, n) = momentum(t, c, self.carried[k]);
-                row[at] = t.part(choose(t, n, f));
-                (f, n) = (t.up(f), t.up(n));
-            });
-            n += j.r.cross(f);
-            let mut k = body.parent;
-            while k != 0 {
-                at -= 1;
-                let (ancestor, j) = (&self.bodies[k], &joints[k]);
-                with_turn!(ancestor, j, &oblique[k], t => {
-                    row[at] = t.part(choose(t, n, f)) * ancestor.sign * body.sign;
-                    (f, n) = (t.up(f), t.up(n));
-                });
-                n += j.r.cross(f);
-                k = ancestor.parent;
-            }
-            row[..3].copy_from_slice(&(f * body.sign).array());
-            row[3..6].copy_from_slice(&(n * body.sign).array());
+        let Data { joints, oblique, composites, momenta, m, .. } = data;
+        for (c, b) in composites.iter_mut().zip(&self.bodies) {
+            *c = Composite { mc: b.mc, i: b.i };
         }
+        for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
+            let (own, j) = (composites[k], &joints[k]);
+            let (p, members, mass) = (&mut composites[body.parent], self.subtrees.of(k), self.carried[k]);
+            with_turn!(body, j, &oblique[k], t => {
+                momenta[k] = momentum(t, &own, mass).map(|x| x * body.sign);
+                pass(t, j.r, body.sign, members, momenta, m);
+                carry(t, &own, mass, j.r, p);
+            });
+        }
+        base_rows(self.mass(), &composites[0], m);
+        for (k, [f, n]) in momenta.iter().enumerate().skip(1) {
+            let at = self.paths.start[k + 5];
+            m[at..at + 3].copy_from_slice(&f.array());
+            m[at + 3..at + 6].copy_from_slice(&n.array());
+        }
+    }
+}
+
+/// Takes the entries of a joint out of the momenta that pass it, and carries these to the parent's origin and axes.
+#[inline(always)]
+fn pass<T: Turn>(t: T, r: V3, sign: f64, members: &[[u32; 2]], momenta: &mut [[V3; 2]], m: &mut [f64]) {
+    for &[d, at] in members {
+        let [f, n] = momenta[d as usize];
+        m[at as usize] = t.part(choose(t, n, f)) * sign;
+        let f = t.up(f);
+        momenta[d as usize] = [f, t.up(n) + r.cross(f)];
     }
 }
 
@@ -93,11 +97,11 @@ fn carry<T: Turn>(t: T, own: &Composite, m: f64, r: V3, p: &mut Composite) {
 
 /// Momentum and moment of momentum about the body's origin for unit speed of its joint.
 #[inline(always)]
-fn momentum<T: Turn>(t: T, c: &Composite, m: f64) -> (V3, V3) {
+fn momentum<T: Turn>(t: T, c: &Composite, m: f64) -> [V3; 2] {
     if T::SLIDES {
-        (t.plus(V3::default(), m), t.across(c.mc, 1.0))
+        [t.plus(V3::default(), m), t.across(c.mc, 1.0)]
     } else {
-        (t.across(c.mc, -1.0), t.column(c.i))
+        [t.across(c.mc, -1.0), t.column(c.i)]
     }
 }
 

@@ -29,6 +29,7 @@ pub struct Model {
     /// \[kg\] Mass of the body and everything it carries.
     pub(crate) carried: Vec<f64>,
     pub(crate) paths: Paths,
+    pub(crate) subtrees: Subtrees,
 }
 
 /// One rigid body with the joint that moves it, in a frame parallel to the base at zero coordinates.
@@ -139,6 +140,35 @@ impl Paths {
     }
 }
 
+/// For every body itself and the bodies it carries, each with the place of the pair's entry in the rows of [`Paths`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Subtrees {
+    start: Vec<usize>,
+    members: Vec<[u32; 2]>,
+}
+
+impl Subtrees {
+    fn new(bodies: &[Body], paths: &Paths) -> Subtrees {
+        let mut s = Subtrees::default();
+        for k in 0..bodies.len() {
+            s.start.push(s.members.len());
+            for d in k.max(1)..bodies.len() {
+                let row = paths.row(d + 5);
+                if let Some(at) = paths.column[row.clone()].iter().position(|&c| k > 0 && c == k + 5) {
+                    s.members.push([d as u32, (row.start + at) as u32]);
+                }
+            }
+        }
+        s.start.push(s.members.len());
+        s
+    }
+
+    #[inline(always)]
+    pub(crate) fn of(&self, k: usize) -> &[[u32; 2]] {
+        &self.members[self.start[k]..self.start[k + 1]]
+    }
+}
+
 impl Model {
     pub(crate) fn new(bodies: Vec<Body>, links: Vec<Link>, joint_names: Vec<String>) -> Model {
         let mut carried: Vec<f64> = bodies.iter().map(|b| b.m).collect();
@@ -146,7 +176,8 @@ impl Model {
             carried[bodies[k].parent] += carried[k];
         }
         let paths = Paths::new(&bodies);
-        Model { bodies, links, joint_names, carried, paths }
+        let subtrees = Subtrees::new(&bodies, &paths);
+        Model { bodies, links, joint_names, carried, paths, subtrees }
     }
 
     /// Number of joints n.

@@ -22,7 +22,7 @@ impl Model {
         assert_eq!(joint_acceleration.len(), self.n(), "length of the joint acceleration");
         data.set_position(self, q);
         self.composites(data);
-        self.sweeps(data, v, (ZERO, ZERO), |k| joint_acceleration[k - 1]);
+        self.sweeps(data, v, (ZERO, ZERO), |k| joint_acceleration[k - 1], |_, _| ());
         let (c, l, m) = (&data.composites[0], &data.locals[0], self.mass());
         let (x, i) = (c.mc, c.i);
         #[rustfmt::skip]

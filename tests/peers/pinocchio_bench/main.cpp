@@ -1,11 +1,13 @@
 // Times Pinocchio's mass matrix, nonlinear terms and forward dynamics on given states, and writes its results.
 //
-// usage: pinocchio_bench URDF STATES RESULTS
+// usage: pinocchio_bench ROBOT STATES RESULTS
+// ROBOT: one line per body: name of its joint, index of the parent's line, axis (x, y or z), origin in the parent's
+// frame, mass, centre of mass, moments xx xy yy xz yz zz about it. The base comes first. No URDF: the wheel's parser is
+// compiled for other vector registers than this program and hands over memory aligned for those.
 // STATES: names of the joints on one line, then one line of q, v, force per state in the order of those names.
 // RESULTS: per state M (lower triangle by rows), h, forward dynamics, in the same order, as raw doubles.
 // Prints: name, then for the time of one call in us the minimum, median, and 90th percentile over batches.
 #include <pinocchio/multibody.hpp>
-#include <pinocchio/parsers/urdf.hpp>
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/cholesky.hpp>
 #include <pinocchio/algorithm/crba.hpp>
@@ -36,10 +38,30 @@ template <class Call> void measure(const char* name, const std::vector<State>& s
   std::printf("%s %.4f %.4f %.4f\n", name, us[0], us[batches / 2], us[batches * 9 / 10]);
 }
 
-int main(int argc, char** argv) {
-  if (argc != 4) return std::fprintf(stderr, "usage: pinocchio_bench URDF STATES RESULTS\n"), 2;
+pin::Model read(const char* path) {
   pin::Model model;
-  pin::urdf::buildModel(argv[1], pin::JointModelFreeFlyer(), model);
+  std::ifstream in(path);
+  std::vector<pin::JointIndex> joints;
+  std::string name;
+  char axis;
+  for (int parent; in >> name >> parent >> axis;) {
+    Eigen::Vector3d r, c;
+    double m, i[6];
+    in >> r[0] >> r[1] >> r[2] >> m >> c[0] >> c[1] >> c[2];
+    for (double& x : i) in >> x;
+    const pin::SE3 at(Eigen::Matrix3d::Identity(), r);
+    if (joints.empty()) joints.push_back(model.addJoint(0, pin::JointModelFreeFlyer(), at, name));
+    else if (axis == 'x') joints.push_back(model.addJoint(joints[parent], pin::JointModelRX(), at, name));
+    else if (axis == 'y') joints.push_back(model.addJoint(joints[parent], pin::JointModelRY(), at, name));
+    else joints.push_back(model.addJoint(joints[parent], pin::JointModelRZ(), at, name));
+    model.appendBodyToJoint(joints.back(), pin::Inertia(m, c, pin::Symmetric3(i[0], i[1], i[2], i[3], i[4], i[5])));
+  }
+  return model;
+}
+
+int main(int argc, char** argv) {
+  if (argc != 4) return std::fprintf(stderr, "usage: pinocchio_bench ROBOT STATES RESULTS\n"), 2;
+  const pin::Model model = read(argv[1]);
   pin::Data data(model);
 
   std::ifstream in(argv[2]);

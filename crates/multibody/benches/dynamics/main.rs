@@ -7,10 +7,10 @@
 #![allow(clippy::disallowed_methods, reason = "a benchmark reads the clock")]
 #![allow(missing_docs, reason = "not a library")]
 
+mod peer;
+
 use std::error::Error;
-use std::fmt::Write as _;
 use std::hint::black_box;
-use std::process::Command;
 use std::time::Instant;
 
 use multibody::{Data, Model};
@@ -52,11 +52,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Ok(());
     };
     // Twice each, in turn, so that a slow moment of the machine hits both.
-    let (theirs, results) = run_peer(peer, &urdf, &names, &states)?;
+    let (theirs, results) = peer::run(peer, &robot, &names, &states)?;
     let rows = best(before, measure_all(&model, &states));
-    let (again, _) = run_peer(peer, &urdf, &names, &states)?;
+    let (again, _) = peer::run(peer, &robot, &names, &states)?;
     print_table(&rows, Some(&best(theirs, again)));
-    print_differences(&model, &states, &results);
+    peer::print_differences(&model, &states, &results);
     Ok(())
 }
 
@@ -154,42 +154,6 @@ fn best(a: Vec<Row>, b: Vec<Row>) -> Vec<Row> {
     a.into_iter().zip(b).map(|(a, b)| if a.times[1] <= b.times[1] { a } else { b }).collect()
 }
 
-/// Runs the peer on the same states: its times and its results.
-fn run_peer(
-    peer: &str,
-    urdf: &str,
-    names: &[&str],
-    states: &[State],
-) -> Result<(Vec<Row>, Vec<f64>), Box<dyn Error>> {
-    let folder = std::env::temp_dir().join(format!("multibody_bench_{}", std::process::id()));
-    std::fs::create_dir_all(&folder)?;
-    let mut text = names.join(" ") + "\n";
-    for s in states {
-        for x in s.q.iter().chain(&s.v).chain(&s.force) {
-            write!(text, "{x:?} ")?;
-        }
-        text.push('\n');
-    }
-    let (robot, input, output) = (folder.join("robot.urdf"), folder.join("states"), folder.join("results"));
-    std::fs::write(&robot, urdf)?;
-    std::fs::write(&input, text)?;
-    let answer = Command::new(peer).arg(&robot).arg(&input).arg(&output).output()?;
-    if !answer.status.success() {
-        return Err(format!("peer failed: {}", String::from_utf8_lossy(&answer.stderr)).into());
-    }
-    let bytes = std::fs::read(&output)?;
-    let results =
-        bytes.chunks_exact(8).map(|b| f64::from_ne_bytes(b.try_into().expect("eight bytes"))).collect();
-    std::fs::remove_dir_all(&folder)?;
-    let mut rows = Vec::new();
-    for line in String::from_utf8(answer.stdout)?.lines() {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let time = |k: usize| words[k].parse::<f64>();
-        rows.push(Row { name: "", times: [time(1)?, time(2)?, time(3)?], error: None });
-    }
-    Ok((rows, results))
-}
-
 fn print_table(rows: &[Row], theirs: Option<&[Row]>) {
     println!("Lola, 24 joints, us per call");
     println!(
@@ -210,27 +174,4 @@ fn print_table(rows: &[Row], theirs: Option<&[Row]>) {
             None => println!(),
         }
     }
-}
-
-/// Largest differences from the peer's results.
-fn print_differences(model: &Model, states: &[State], results: &[f64]) {
-    let (mut d, nv) = (Data::new(model), model.nv());
-    let mut worst = [0.0_f64; 4];
-    let mut x = vec![0.0; nv];
-    let triangle = nv * (nv + 1) / 2;
-    for (s, theirs) in states.iter().zip(results.chunks_exact(triangle + 2 * nv)) {
-        let m = model.mass_matrix(&mut d, &s.q);
-        let lower: Vec<f64> = (0..nv).flat_map(|i| (0..=i).map(move |j| m[(i, j)])).collect();
-        worst[0] = worst[0].max(difference(&lower, &theirs[..triangle]));
-        model.nonlinear_terms(&mut d, &s.q, &s.v, &mut x);
-        worst[1] = worst[1].max(difference(&x, &theirs[triangle..triangle + nv]));
-        model.forward_dynamics(&mut d, &s.q, &s.v, &s.force, &mut x);
-        worst[2] = worst[2].max(difference(&x, &theirs[triangle + nv..]));
-        model.forward_dynamics_articulated(&mut d, &s.q, &s.v, &s.force, &mut x);
-        worst[3] = worst[3].max(difference(&x, &theirs[triangle + nv..]));
-    }
-    println!(
-        "differences from Pinocchio: M {:.1e}, h {:.1e}, forward dynamics {:.1e} (matrix), {:.1e} (articulated)",
-        worst[0], worst[1], worst[2], worst[3]
-    );
 }
