@@ -22,7 +22,7 @@ pub fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_by(|a, b| a.partial_cmp(b).expect("finite"));
     let cross =
         |o: [f64; 2], a: [f64; 2], b: [f64; 2]| (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
-    let mut chain = |points: &mut dyn Iterator<Item = [f64; 2]>| {
+    let chain = |points: &mut dyn Iterator<Item = [f64; 2]>| {
         let mut h: Vec<[f64; 2]> = Vec::new();
         for p in points {
             while h.len() > 1 && cross(h[h.len() - 2], h[h.len() - 1], p) <= 1e-12 {
