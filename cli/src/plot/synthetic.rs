@@ -145,6 +145,7 @@ fn records(header: Header, t: f64) -> (Sensors, ControllerState, SimState) {
     let mut sensors = Sensors { header, ..Sensors::default() };
     let mut controller = ControllerState {
         header,
+        plan_id: 1,
         gait: if t < 1.0 { GaitState::Standing } else { GaitState::Walking } as u64,
         com: [pace.com[0], pace.com[1] + wobble(1.0), pace.com[2] + wobble(0.3) / 4.0],
         com_desired: pace.com,

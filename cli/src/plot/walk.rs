@@ -55,15 +55,18 @@ impl Walk {
         let first =
             states.first().ok_or_else(|| format!("{}: no record of controller_state", path.display()))?;
         let start_ns = first.header.stamp_ns;
+        // Before the first plan nothing is desired and nothing has a frame.
         let cycles: Vec<Cycle> = states
             .into_iter()
+            .filter(|state| state.plan_id > 0)
             .map(|state| Cycle {
                 time: seconds(state.header.stamp_ns, start_ns),
                 force_z: forces.get(&state.header.tick).copied().unwrap_or([f64::NAN; 2]),
                 state,
             })
             .collect();
-        let duration = cycles.last().map_or(0.0, |c| c.time);
+        let duration =
+            cycles.last().ok_or_else(|| format!("{}: no plan was ever active", path.display()))?.time;
         let cut = if end == End::Complete { "" } else { "  ·  log was cut off" };
         let (robot, run) = (log.robot().clone(), log.run());
         let about = format!(
