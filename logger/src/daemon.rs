@@ -9,6 +9,8 @@ use ipc::{Bell, IpcError, Mode, Run, Space, Writer};
 use messages::topics::{EVENTS_LOGGER, ForType, LOG_TICK, with_type};
 use messages::{Event, EventCode, Process, Record, TOPICS, Topic};
 use realtime::{Stop, clock};
+use std::error::Error;
+use std::path::Path;
 use std::time::Duration;
 
 /// Between two looks at empty rings: a ring holds 256 cycles.
@@ -20,6 +22,16 @@ const FLUSH_NS: u64 = 500_000_000;
 
 /// At the end: writers that go on writing are not waited for longer than this.
 const LAST_WORDS_NS: u64 = 2_000_000_000;
+
+/// The process: to be called first in `main`.
+///
+/// # Errors
+/// See [`run`]; the run directory is not that of a run.
+pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
+    let stop = Stop::on_signals()?;
+    run(&Run::load(dir)?, &stop)?;
+    Ok(())
+}
 
 /// Logs until the process is asked to end, then writes what is left and closes the log.
 ///
