@@ -34,7 +34,7 @@ fn chart(walk: &Walk, title: &str, joints: &[usize]) -> Chart {
     let largest =
         joints.iter().flat_map(|&j| walk.cycles.iter().map(move |c| error(j)(c).abs())).fold(0.0, f64::max);
     let title = format!("{title}: largest {largest:.4} rad");
-    let mut chart = Chart::new(&title, "time [s]", "error [rad]").height(270.0).at_least(1e-4);
+    let mut chart = Chart::new(&title, "time [s]", "error [rad]").height(270.0).at_least(2e-3);
     for (&joint, color) in joints.iter().zip([VERMILION, BLUE]) {
         chart.line(&walk.robot.joints[joint].replace('_', " "), walk.over_time(error(joint)), color);
     }
