@@ -48,7 +48,6 @@ impl ModelBuilder {
     }
 
     /// Adds link `child` with its inertia in its own frame; `placement` is parent_from_child at coordinate zero.
-    /// All link frames of a body are kept in the axes of the base at zero coordinates, see [`crate::turn`].
     pub fn joint(
         &mut self,
         name: &str,

@@ -26,7 +26,7 @@ pub struct Data {
     /// Momentum and moment of momentum of each composite, on its way to the base.
     pub(crate) momenta: Vec<[V3; 2]>,
     pub(crate) articulated: Vec<Articulated>,
-    /// Mass matrix and its factors as rows of [`crate::model::Paths`].
+    /// Mass matrix and its factors as rows of [`crate::sparsity::Paths`].
     pub(crate) m: Vec<f64>,
     pub(crate) l: Vec<f64>,
     pub(crate) mass_matrix: DMatrix<f64>,

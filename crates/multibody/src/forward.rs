@@ -4,7 +4,8 @@
 //! entries where row k of M has, on the path from the base to k.
 
 use crate::data::Data;
-use crate::model::{Model, Paths};
+use crate::model::Model;
+use crate::sparsity::Paths;
 
 impl Model {
     /// Acceleration v' that the generalized force gives at `q`, `v`; n_v each.

@@ -36,6 +36,7 @@ mod mass;
 mod model;
 mod reduced;
 mod space;
+mod sparsity;
 mod trigonometry;
 mod turn;
 mod urdf;

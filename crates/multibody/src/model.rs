@@ -5,6 +5,7 @@ use nalgebra::{IsometryMatrix3, Vector3};
 use crate::builder::kernel_rotation;
 use crate::error::ModelError;
 use crate::space::{Mat3, Sym3, V3};
+use crate::sparsity::{Paths, Subtrees};
 
 /// \[m/s^2\] Gravity in the world frame.
 pub const GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
@@ -91,81 +92,6 @@ impl Frame {
     /// Joint that moves the frame's body, none if it belongs to the base.
     pub fn joint(&self) -> Option<usize> {
         self.body.checked_sub(1)
-    }
-}
-
-/// For every degree of freedom the degrees of freedom from the base to it, itself last.
-///
-/// Row k of a symmetric matrix with the sparsity of the tree holds exactly these columns, so rows of this shape, one
-/// after the other, are all there is of the mass matrix, and the row of an ancestor has the same columns as the
-/// beginning of the row of its descendant.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Paths {
-    /// First entry of each row; one more at the end.
-    pub start: Vec<usize>,
-    pub column: Vec<usize>,
-    /// Where an entry and its mirror image lie in the full matrix.
-    pub full: Vec<[u32; 2]>,
-}
-
-impl Paths {
-    fn new(bodies: &[Body]) -> Paths {
-        let mut p = Paths::default();
-        let mut rows: Vec<Vec<usize>> = (0..6).map(|k| (0..=k).collect()).collect();
-        for (k, body) in bodies.iter().enumerate().skip(1) {
-            let mut row = rows[body.parent + 5].clone();
-            row.push(k + 5);
-            rows.push(row);
-        }
-        for row in rows {
-            p.start.push(p.column.len());
-            p.column.extend(row);
-        }
-        p.start.push(p.column.len());
-        let nv = p.start.len() - 1;
-        for k in 0..nv {
-            p.full.extend(
-                p.column[p.start[k]..]
-                    .iter()
-                    .take(p.row(k).len())
-                    .map(|c| [k + nv * c, c + nv * k].map(|i| i as u32)),
-            );
-        }
-        p
-    }
-
-    #[inline(always)]
-    pub(crate) fn row(&self, k: usize) -> std::ops::Range<usize> {
-        self.start[k]..self.start[k + 1]
-    }
-}
-
-/// For every body itself and the bodies it carries, each with the place of the pair's entry in the rows of [`Paths`].
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Subtrees {
-    start: Vec<usize>,
-    members: Vec<[u32; 2]>,
-}
-
-impl Subtrees {
-    fn new(bodies: &[Body], paths: &Paths) -> Subtrees {
-        let mut s = Subtrees::default();
-        for k in 0..bodies.len() {
-            s.start.push(s.members.len());
-            for d in k.max(1)..bodies.len() {
-                let row = paths.row(d + 5);
-                if let Some(at) = paths.column[row.clone()].iter().position(|&c| k > 0 && c == k + 5) {
-                    s.members.push([d as u32, (row.start + at) as u32]);
-                }
-            }
-        }
-        s.start.push(s.members.len());
-        s
-    }
-
-    #[inline(always)]
-    pub(crate) fn of(&self, k: usize) -> &[[u32; 2]] {
-        &self.members[self.start[k]..self.start[k + 1]]
     }
 }
 
