@@ -133,6 +133,7 @@ fn ping_pong(dir: &Path, spins: u32) {
             let mut input = space.reader::<BusFrames>(&BUS_TX).unwrap();
             let mut output = space.writer::<BusFrames>(&BUS_RX).unwrap();
             let bell = space.bell(&BUS_RX).unwrap();
+            input.refresh();
             ready.wait();
             let mut frames = BusFrames::default();
             for _ in 0..ROUNDS {

@@ -20,3 +20,9 @@ pub fn sleep_until(time_ns: u64) {
     // Interrupted by a signal: sleep on, the end is where it was.
     while clock_nanosleep_absolute(ClockId::Monotonic, &t).is_err_and(|e| e == rustix::io::Errno::INTR) {}
 }
+
+/// Processor time of this process so far \[ns\].
+pub fn processor_time() -> u64 {
+    let t = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    t.tv_sec as u64 * SECOND + t.tv_nsec as u64
+}

@@ -123,7 +123,7 @@ fn shared_memory() -> Check {
     let advice = "mount -o remount,size=256m /dev/shm (containers: --shm-size=256m)";
     match rustix::fs::statvfs("/dev/shm") {
         Ok(s) => {
-            let free = s.f_bavail * s.f_frsize >> 20;
+            let free = (s.f_bavail * s.f_frsize) >> 20;
             let grade = if free >= 64 { Grade::Good } else { Grade::Missing };
             check(what, format!("{free} MiB free"), grade, advice)
         }

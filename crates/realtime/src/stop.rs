@@ -33,6 +33,11 @@ impl Stop {
         self.0.load(Ordering::Relaxed)
     }
 
+    /// Whether it was asked since the last call: the first request may be met gently, the second at once.
+    pub fn taken(&self) -> bool {
+        self.0.swap(false, Ordering::Relaxed)
+    }
+
     /// Asks it to end.
     pub fn ask(&self) {
         self.0.store(true, Ordering::Relaxed);
@@ -46,6 +51,12 @@ impl Stop {
             _ => Err(io::Error::last_os_error()),
         }
     }
+}
+
+/// Asks another process to end (SIGTERM). A process that is gone has ended.
+pub fn terminate(pid: u32) {
+    // SAFETY: `kill` takes two numbers and touches no memory.
+    unsafe { libc::kill(pid as libc::pid_t, libc::SIGTERM) };
 }
 
 fn block() -> io::Result<libc::sigset_t> {
