@@ -99,7 +99,7 @@ impl<T: Record> Reader<T> {
         *self.held = *slot.entry(next).get();
         // The writer may have come round again since the head was read.
         let got = self.held.number;
-        self.lost += got - self.number - 1;
+        self.lost += got.saturating_sub(self.number + 1);
         self.number = got;
         Some(&self.held.record)
     }
@@ -125,9 +125,10 @@ impl<T: Record> Reader<T> {
         for (k, slot) in self.slots.iter().enumerate() {
             let Head { epoch, count } = *slot.head.get();
             if epoch > self.epoch {
-                // A slot that was given back goes on counting: its old records were another writer's.
-                self.number = if k == self.slot { self.number } else { 0 };
-                (self.slot, self.epoch, found) = (k, epoch, count > 0);
+                // A slot that was given back goes on counting, for its new writer too.
+                let seen = if k == self.slot { self.number } else { 0 };
+                found = count != seen;
+                (self.slot, self.epoch, self.number) = (k, epoch, seen);
             }
         }
         found

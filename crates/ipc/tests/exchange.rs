@@ -113,6 +113,8 @@ fn a_restarted_writer_takes_over() {
             assert_eq!((read.tick, read.epoch), (tick, life));
             let read = follower.follow().unwrap().header;
             assert_eq!((read.tick, read.epoch), (tick, life));
+            // A new writer in an old slot once made its last record look new again.
+            assert!(reader.newer().is_none() && follower.follow().is_none());
         }
     }
     assert_eq!(follower.lost(), 0);

@@ -171,7 +171,7 @@ record! {
         tick: u64,
         /// \[ns\] Time stamp of that cycle, made by lowlevel, the master of time.
         stamp_ns: u64,
-        /// \[ns\] When the writing process started: tells a restarted writer from the one before it.
+        /// \[1\] Which writer of the topic, from 1: tells a restarted one from the one before it. Filled in by the port.
         epoch: u64,
     }
 }
