@@ -104,7 +104,10 @@ impl Chain {
 
         let (frames, reset) = self.joint_loop.send(Some(&c.joint_targets), None);
         take_due(&mut self.system, tick, &mut self.due);
+        let before = self.watchdog.supply();
         c.power = *self.watchdog.step(&Inputs { reset: Some(reset), commands: &self.due });
+        let event = watchdog::supply_event(before, self.watchdog.supply());
+        c.events.extend(event.map(|(code, detail)| (Process::Watchdog, code, detail)));
         let (answer, sim_state) = self.sim.step(Some(frames), Some(&c.power));
         (self.answer, c.sim_state) = (*answer, *sim_state);
         c.events.extend(self.joint_loop.take_event().map(|(code, detail)| (Process::Lowlevel, code, detail)));

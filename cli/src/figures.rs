@@ -101,7 +101,6 @@ impl Gatherer {
         }
         self.stance = Some(stance);
         self.steps += 1;
-        let here = (sim.time, [sim.position[0], sim.position[1]]);
         // Every second step: the torso sways from side to side, and the sway is no way made.
         if gait == GaitState::Walking && stance == RIGHT {
             self.strides.push((sim.time, [sim.position[0], sim.position[1]]));
@@ -156,4 +155,24 @@ impl Gatherer {
             log,
         }
     }
+}
+
+/// The figures as lines for people.
+pub fn table(f: &Figures) -> String {
+    let milli = |x: [f64; 2]| format!("{:.1}, {:.1} mrad", 1e3 * x[0], 1e3 * x[1]);
+    let rows = [
+        ("scene", format!("{} ({}, {})", f.scene, f.robot, f.depth)),
+        ("fell", if f.fell { "yes".into() } else { "no".into() }),
+        ("duration", format!("{:.1} s, {} steps", f.duration_s, f.steps)),
+        ("walking speed", format!("{:.3} m/s = {:.2} km/h", f.mean_speed_m_s, 3.6 * f.mean_speed_m_s)),
+        ("inclination error, max", milli(f.inclination_error_max_rad)),
+        ("inclination error, rms", milli(f.inclination_error_rms_rad)),
+        ("joint tracking error, max", format!("{:.2e} rad", f.joint_tracking_error_max_rad)),
+        ("normal force of a foot, max", format!("{:.0} N", f.peak_normal_force_n)),
+        ("ZMP to edge of support, min", format!("{:.1} mm", 1e3 * f.zmp_margin_min_m)),
+        ("end pose", format!("x {:.2} m, y {:.2} m, heading {:.2} rad", f.end_pose[0], f.end_pose[1], f.end_pose[2])),
+        ("real-time factor", if f.cpu_s > 0.0 { format!("{:.0}", f.real_time_factor) } else { "-".into() }),
+        ("log", f.log.clone().unwrap_or_else(|| "-".into())),
+    ];
+    rows.iter().map(|(name, value)| format!("{name:29}{value}")).collect::<Vec<_>>().join("\n")
 }

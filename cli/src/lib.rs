@@ -3,3 +3,9 @@
 pub mod chain;
 pub mod figures;
 pub mod plot;
+pub mod run;
+pub mod sim;
+pub mod topic;
+
+/// Where the processes of a robot meet, unless said otherwise: on a tmpfs.
+pub const RUN_DIR: &str = "/dev/shm/gangwerk";

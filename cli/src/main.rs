@@ -1,1 +1,268 @@
-fn main() {}
+//! The command `gangwerk`. Without arguments it shows the demonstration scene.
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use cli::run::{Order, Outcome};
+use config::Setup;
+use daemon::Commands;
+use ipc::{Mode, Space};
+use messages::command::Domain;
+use realtime::{CountingAllocator, Grade, Stop};
+
+/// Counts what control cycles allocate: nothing, after they are armed.
+#[global_allocator]
+static ALLOCATOR: CountingAllocator = CountingAllocator;
+
+/// Walking control for biped robots: plan, stabilize, drive the joints, guard, record.
+#[derive(Parser)]
+#[command(version, about)]
+struct Arguments {
+    #[command(subcommand)]
+    task: Option<Task>,
+    /// Configuration directory; default: the one of the source tree.
+    #[arg(long, global = true, value_name = "DIR")]
+    config: Option<PathBuf>,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Run a scene with all processes: broker, watchdog, simulated robot, logger, planner, stabilizer, joint loop.
+    Run {
+        /// Name of a file in config/scenes, without .toml.
+        scene: String,
+        /// Simulated time: every process waits for the others, and two runs are bit for bit the same.
+        #[arg(long)]
+        lockstep: bool,
+        /// Where log and pictures go.
+        #[arg(long, value_name = "DIR", default_value = "runs/latest")]
+        out: PathBuf,
+        /// No log and no pictures.
+        #[arg(long)]
+        no_log: bool,
+        /// Log, but draw no pictures.
+        #[arg(long)]
+        no_plots: bool,
+        /// Where the processes meet; a second robot needs another one.
+        #[arg(long, value_name = "DIR", default_value = cli::RUN_DIR)]
+        dir: PathBuf,
+    },
+    /// Run a scene in one process, as fast as possible.
+    Sim {
+        /// Name of a file in config/scenes, without .toml.
+        scene: String,
+        /// End with one JSON object on standard output.
+        #[arg(long)]
+        json: bool,
+        /// Write a log.
+        #[arg(long, value_name = "FILE")]
+        log: Option<PathBuf>,
+    },
+    /// Look at the topics of a running robot, or send it commands.
+    Topic {
+        #[command(subcommand)]
+        what: TopicTask,
+        /// Where the processes meet.
+        #[arg(long, global = true, value_name = "DIR", default_value = cli::RUN_DIR)]
+        dir: PathBuf,
+    },
+    /// Draw the pictures of a log.
+    Plot {
+        /// An MCAP file.
+        log: PathBuf,
+        /// Where the pictures go; default: beside the log.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+    /// What this machine gives to real time, what is missing, and how to get it.
+    Doctor,
+    /// One process of a run; `gangwerk run` starts them.
+    #[command(hide = true)]
+    Broker(Place),
+    #[command(hide = true)]
+    Watchdog(Place),
+    #[command(hide = true)]
+    SimBackend(Place),
+    #[command(hide = true)]
+    Logger(Place),
+    #[command(hide = true)]
+    Planner(Place),
+    #[command(hide = true)]
+    Controller(Place),
+    #[command(hide = true)]
+    Lowlevel(Place),
+}
+
+#[derive(clap::Args)]
+struct Place {
+    /// The run directory.
+    #[arg(long)]
+    run: PathBuf,
+}
+
+#[derive(Subcommand)]
+enum TopicTask {
+    /// All topics and all commands.
+    List,
+    /// Print records as they come.
+    Echo {
+        /// Name of the topic.
+        topic: String,
+        /// Only one.
+        #[arg(long)]
+        once: bool,
+    },
+    /// How often a topic is written.
+    Hz {
+        /// Name of the topic.
+        topic: String,
+        /// For how long to count \[s\].
+        #[arg(long, default_value_t = 2.0)]
+        seconds: f64,
+    },
+    /// Send a command, for example: walk/velocity forward=0.3
+    Pub {
+        /// Name of the command.
+        command: String,
+        /// field=number ...
+        fields: Vec<String>,
+    },
+}
+
+fn main() -> ExitCode {
+    tracing_subscriber::fmt().with_writer(std::io::stderr).without_time().with_target(false).init();
+    let arguments = Arguments::parse();
+    match perform(arguments) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
+    let config = config::root(arguments.config.as_deref());
+    let task = arguments.task.unwrap_or(Task::Run {
+        scene: "demo".into(),
+        lockstep: false,
+        out: "runs/latest".into(),
+        no_log: false,
+        no_plots: false,
+        dir: cli::RUN_DIR.into(),
+    });
+    match task {
+        Task::Run { scene, lockstep, out, no_log, no_plots, dir } => {
+            let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
+            let log = (!no_log).then(|| out.join(format!("{scene}.mcap")));
+            run(Order { mode, scene, config, dir, log, progress: true }, no_plots)
+        }
+        Task::Sim { scene, json, log } => sim(&Setup::load(&config, &scene)?, json, log),
+        Task::Topic { what, dir } => {
+            match what {
+                TopicTask::List => cli::topic::list(),
+                TopicTask::Echo { topic, once } => cli::topic::echo(&dir, &topic, once.then_some(1))?,
+                TopicTask::Hz { topic, seconds } => cli::topic::hz(&dir, &topic, seconds)?,
+                TopicTask::Pub { command, fields } => cli::topic::publish(&dir, &command, &fields)?,
+            }
+            Ok(ExitCode::SUCCESS)
+        }
+        Task::Plot { log, out } => {
+            let out = out.unwrap_or_else(|| log.with_extension(""));
+            draw(&log, &out)?;
+            Ok(ExitCode::SUCCESS)
+        }
+        Task::Doctor => Ok(doctor()),
+        process => daemon(process),
+    }
+}
+
+/// The processes of a run. Each ends when the supervisor does.
+fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
+    Stop::with_parent()?;
+    match task {
+        Task::Broker(p) => broker::daemon::main(&p.run, None)?,
+        Task::Watchdog(p) => watchdog::daemon::main(&p.run, Box::new(|s: &Space| commands("watchdog", &[Domain::System], s)))?,
+        Task::SimBackend(p) => {
+            sim_backend::daemon::main(&p.run, Box::new(|s: &Space| commands("sim-backend", &[Domain::Sim], s)))?;
+        }
+        Task::Logger(p) => logger::daemon::run(&ipc::Run::load(&p.run)?, &Stop::on_signals()?)?,
+        Task::Planner(p) => planner::daemon::main(&p.run, Box::new(|s: &Space| commands("planner", &[Domain::Walk], s)))?,
+        Task::Controller(p) => controller::daemon::main(&p.run)?,
+        Task::Lowlevel(p) => lowlevel::daemon::main(&p.run)?,
+        _ => {}
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Live commands of these domains, through the broker.
+fn commands(name: &str, domains: &[Domain], space: &Space) -> Result<Commands, String> {
+    let mut client = broker::Client::start(name, domains, space)?;
+    Ok(Box::new(move || client.received().next()))
+}
+
+fn run(order: Order, no_plots: bool) -> Result<ExitCode, Box<dyn Error>> {
+    if let Some(directory) = order.log.as_ref().and_then(|log| log.parent()) {
+        std::fs::create_dir_all(directory)
+            .map_err(|e| format!("{}: {e}; choose another place with --out", directory.display()))?;
+    }
+    let setup = Setup::load(&order.config, &order.scene)?;
+    let Outcome { died, interrupted } = cli::run::run(&order)?;
+    if let Some(log) = &order.log {
+        let figures = cli::run::figures_of(log, &setup)?;
+        println!("{}", cli::figures::table(&figures));
+        if !no_plots {
+            draw(log, log.parent().unwrap_or(log))?;
+        }
+    }
+    for (process, status) in &died {
+        eprintln!("{} died during the run: {}", process.name(), cli::run::how_it_died(status));
+    }
+    Ok(match (died.is_empty(), interrupted) {
+        (false, _) => ExitCode::FAILURE,
+        (true, true) => ExitCode::from(130),
+        (true, false) => ExitCode::SUCCESS,
+    })
+}
+
+fn sim(setup: &Setup, json: bool, log: Option<PathBuf>) -> Result<ExitCode, Box<dyn Error>> {
+    let bar = if json { indicatif::ProgressBar::hidden() } else { indicatif::ProgressBar::new(setup.scene.duration as u64) };
+    let figures = cli::sim::run(setup, log.as_deref(), |t| bar.set_position(t as u64))?;
+    bar.finish_and_clear();
+    if json {
+        println!("{}", serde_json::to_string(&figures)?);
+    } else {
+        println!("{}", cli::figures::table(&figures));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Error>> {
+    let pictures = cli::plot::run(log, out)?;
+    for path in &pictures.written {
+        println!("{}", path.display());
+    }
+    for reason in &pictures.skipped {
+        eprintln!("not drawn: {reason}");
+    }
+    Ok(())
+}
+
+fn doctor() -> ExitCode {
+    let checks = realtime::preflight();
+    for c in &checks {
+        let mark = match c.grade {
+            Grade::Good => "good   ",
+            Grade::Fair => "fair   ",
+            Grade::Missing => "missing",
+        };
+        println!("{mark}  {:28} {}", c.what, c.found);
+        if !c.advice.is_empty() {
+            println!("         {:28} → {}", "", c.advice);
+        }
+    }
+    let missing = checks.iter().any(|c| c.grade == Grade::Missing);
+    if missing { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}

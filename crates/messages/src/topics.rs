@@ -28,15 +28,15 @@ pub enum Process {
 }
 
 impl Process {
-    /// All processes that `gangwerk run` starts, in order.
+    /// All processes that `gangwerk run` starts, in order: the joint loop is the clock and comes last.
     pub const ALL: [Self; 7] = [
         Self::Broker,
         Self::Watchdog,
         Self::SimBackend,
         Self::Logger,
-        Self::Lowlevel,
         Self::Planner,
         Self::Controller,
+        Self::Lowlevel,
     ];
 
     /// The name of the process's folder, command and topics.

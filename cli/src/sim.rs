@@ -1,0 +1,105 @@
+//! `gangwerk sim SCENE`: all steps in one process, as fast as possible.
+
+use std::error::Error;
+use std::path::Path;
+
+use config::Setup;
+use messages::topics::{
+    CONTROLLER_STATE, EVENTS_CONTROLLER, EVENTS_LOWLEVEL, EVENTS_PLANNER, EVENTS_SIM_BACKEND, EVENTS_WATCHDOG,
+    JOINT_TARGETS, PLAN, POWER, SENSORS, SIM_STATE,
+};
+use messages::{Event, EventCode, Header, Process, Record, Topic};
+use recording::Recorder;
+
+use crate::chain::{Chain, Cycle};
+use crate::figures::{Figures, Gatherer};
+
+/// Runs a scene to its end, or until the robot has fallen and lies still; writes a log if asked to.
+///
+/// `progress` is told the simulated time \[s\] once per simulated second.
+///
+/// # Errors
+/// The robot's description is wrong or the log cannot be written.
+pub fn run(setup: &Setup, log: Option<&Path>, mut progress: impl FnMut(f64)) -> Result<Figures, Box<dyn Error>> {
+    let mut chain = Chain::new(setup)?;
+    let mut record = log.map(|path| LogWriter::create(path, setup)).transpose()?;
+    let mut gatherer = Gatherer::default();
+    let cycles = (setup.scene.duration / setup.scene.cycle).round() as u64;
+    let per_second = (1.0 / setup.scene.cycle).round() as u64;
+    let begun = realtime::clock::processor_time();
+    for i in 1..=cycles {
+        let cycle = chain.step();
+        gatherer.add(&cycle.sim_state, &cycle.controller_state);
+        if let Some(record) = &mut record {
+            record.write(cycle)?;
+        }
+        if i % per_second == 0 {
+            progress(i as f64 * setup.scene.cycle);
+        }
+    }
+    let cpu = (realtime::clock::processor_time() - begun) as f64 * 1e-9;
+    if let Some(record) = record {
+        record.finish()?;
+    }
+    Ok(gatherer.figures(&setup.scene, cpu, log.map(|p| p.display().to_string())))
+}
+
+/// Writes what the logger would write.
+struct LogWriter {
+    recorder: Recorder,
+    last: Header,
+}
+
+/// Processes of the chain whose events are logged.
+const REPORTERS: [(Process, &Topic); 5] = [
+    (Process::Watchdog, &EVENTS_WATCHDOG),
+    (Process::SimBackend, &EVENTS_SIM_BACKEND),
+    (Process::Planner, &EVENTS_PLANNER),
+    (Process::Controller, &EVENTS_CONTROLLER),
+    (Process::Lowlevel, &EVENTS_LOWLEVEL),
+];
+
+impl LogWriter {
+    fn create(path: &Path, setup: &Setup) -> Result<Self, Box<dyn Error>> {
+        let mut record = Self { recorder: logger::recorder(path, setup)?, last: Header::default() };
+        record.all(EventCode::Started)?;
+        Ok(record)
+    }
+
+    fn write(&mut self, c: &Cycle) -> Result<(), Box<dyn Error>> {
+        self.last = c.sensors.header;
+        self.put(&SENSORS, c.sensors)?;
+        if let Some(plan) = &c.plan {
+            self.put(&PLAN, **plan)?;
+        }
+        self.put(&CONTROLLER_STATE, c.controller_state)?;
+        self.put(&JOINT_TARGETS, c.joint_targets)?;
+        self.put(&POWER, c.power)?;
+        self.put(&SIM_STATE, c.sim_state)?;
+        for &(process, code, detail) in &c.events {
+            let topic = REPORTERS.iter().find(|(p, _)| *p == process).map(|(_, topic)| *topic);
+            if let Some(topic) = topic {
+                self.put(topic, Event { header: self.last, code: code as u64, detail })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A record as the first writer of its topic writes it.
+    fn put<T: Record>(&mut self, topic: &Topic, mut record: T) -> Result<(), Box<dyn Error>> {
+        record.header_mut().epoch = 1;
+        Ok(self.recorder.write(topic, &record)?)
+    }
+
+    fn all(&mut self, code: EventCode) -> Result<(), Box<dyn Error>> {
+        for (_, topic) in REPORTERS {
+            self.put(topic, Event { header: self.last, code: code as u64, detail: 0 })?;
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<(), Box<dyn Error>> {
+        self.all(EventCode::Ended)?;
+        Ok(self.recorder.finish()?)
+    }
+}
