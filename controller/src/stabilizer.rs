@@ -18,6 +18,8 @@ use crate::torso;
 const FALLING: f64 = 0.5;
 /// Cycles without load on either foot, while the plan wants load, after which the robot counts as lifted.
 const LIFTED_CYCLES: u32 = 200;
+/// Cycles that may be missed and made good for by a longer step; the joint loop carries on meanwhile.
+const MISSED_CYCLES: u64 = 10;
 /// Joints without a task go to their comfortable angles with this time constant \[1/s\] and at most this speed \[rad/s\].
 const SETTLE: (f64, f64) = (2.0, 0.5);
 
@@ -39,6 +41,9 @@ pub struct Controller {
     angle: [f64; MAX_JOINTS],
     speed: JointVector,
     started: bool,
+    /// Tick of the last cycle, and the time since then \[s\]: more than a cycle if cycles were missed.
+    last_tick: u64,
+    elapsed: f64,
     unloaded: u32,
     stopped: bool,
     targets: JointTargets,
@@ -70,6 +75,8 @@ impl Controller {
             angle: [0.0; MAX_JOINTS],
             speed: JointVector::zeros(),
             started: false,
+            last_tick: 0,
+            elapsed: dt,
             unloaded: 0,
             stopped: false,
             targets: JointTargets::default(),
@@ -86,6 +93,8 @@ impl Controller {
     /// One cycle: joint targets for its end, from the sensor data of its beginning and the newest plan.
     pub fn step(&mut self, sensors: &Sensors, newest: Option<&Plan>) -> (&JointTargets, &ControllerState) {
         let tick = sensors.header.tick;
+        self.elapsed = self.dt * tick.saturating_sub(self.last_tick).clamp(1, MISSED_CYCLES) as f64;
+        self.last_tick = tick;
         self.event = self.plan.update(tick, newest);
         if sensors.power == 0 || !self.started {
             self.start_from(sensors);
@@ -158,7 +167,7 @@ impl Controller {
         self.desired.task_jacobian(&mut self.jacobian);
         let task = self.ik.factorise(&self.jacobian);
         let gain = self.force_gain(&task, &torso, end);
-        self.modification = modify(&self.control, &gain, &forces, &self.modification, self.dt);
+        self.modification = modify(&self.control, &gain, &forces, &self.modification, self.elapsed);
         let velocity = self.task_velocity(&torso, end);
         let given = self.given_speeds(end);
         let wanted = self.ik.speeds(&task, &velocity, &given, &self.angle);
@@ -180,7 +189,7 @@ impl Controller {
             self.state.wrench_desired[i].force = w.force.into();
             self.state.wrench_desired[i].moment = w.moment.into();
         }
-        let a = (self.dt / self.control.force_filter).min(1.0);
+        let a = (self.elapsed / self.control.force_filter).min(1.0);
         self.filtered += (force_coordinates(sensors) - self.filtered) * a;
         Forces {
             desired: coordinates(&modified),
@@ -305,7 +314,7 @@ impl Controller {
     fn integrate(&mut self, wanted: &JointVector) {
         for (j, joint) in self.robot.joints.iter().enumerate() {
             let speed = wanted[j].clamp(-joint.speed_limit, joint.speed_limit);
-            let angle = self.angle[j] + 0.5 * self.dt * (self.speed[j] + speed);
+            let angle = self.angle[j] + 0.5 * self.elapsed * (self.speed[j] + speed);
             let [low, high] = joint.range;
             let held = angle.clamp(low.min(self.angle[j]), high.max(self.angle[j]));
             if !(speed == wanted[j] && held == angle) {
