@@ -1,4 +1,4 @@
-//! Writes a log: MCAP, profile `ros2`, CDR only, uncompressed, no threads.
+//! Writes a log: MCAP, profile `ros2`, CDR only, LZ4 chunks, no threads.
 //!
 //! Every logged topic is written verbatim, at full rate, as `/gangwerk/TOPIC` with its own message type. Beside them
 //! stand standard ROS 2 messages, thinned to [`STANDARD_RATE`]: they are for viewers, not for arithmetic.
@@ -68,7 +68,7 @@ impl Recorder {
         let options = mcap::WriteOptions::new()
             .profile("ros2")
             .library("gangwerk")
-            .compression(None)
+            .compression(Some(mcap::Compression::Lz4))
             .chunk_size(Some(CHUNK_SIZE))
             .disable_seeking(true);
         let mut mcap = options.create(sink).map_err(RecordingError::write)?;
