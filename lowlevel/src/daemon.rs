@@ -58,7 +58,12 @@ struct Ports {
 }
 
 /// Simulated time: each peer answers tick n before tick n + 1 begins.
-fn lockstep(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -> Result<Header, Box<dyn Error>> {
+fn lockstep(
+    d: &mut Daemon,
+    p: &mut Ports,
+    joints: &mut JointLoop,
+    last: u64,
+) -> Result<Header, Box<dyn Error>> {
     // The far end speaks first: its answer to no cycle is what the first one sees.
     let mut header = Header::default();
     if !p.bus.wait(d, &p.waiter, 0)? {

@@ -94,6 +94,9 @@ impl JointLoop {
         cause: Option<EventCode>,
     ) -> (&BusFrames, &WatchdogReset) {
         self.reset.trip = 0;
+        if self.state == State::Off {
+            self.follow_measured(); // whatever comes next begins where the joints are
+        }
         self.choose_state(targets, cause);
         match self.state {
             State::Off => self.follow_measured(),

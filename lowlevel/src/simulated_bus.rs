@@ -21,10 +21,16 @@ impl SimulatedBus {
     }
 
     /// Waits for the answer to cycle `tick`; in lockstep only. `Ok(false)`: asked to end.
-    pub(crate) fn wait(&mut self, d: &Daemon, waiter: &Waiter, tick: u64) -> Result<bool, Box<dyn std::error::Error>> {
+    pub(crate) fn wait(
+        &mut self,
+        d: &Daemon,
+        waiter: &Waiter,
+        tick: u64,
+    ) -> Result<bool, Box<dyn std::error::Error>> {
         debug_assert!(d.mode == Mode::Lockstep);
         let rx = &mut self.rx;
-        let answered = d.wait(waiter, "sim-backend", || rx.latest().is_some_and(|f| f.header.tick == tick))?;
+        let answered =
+            d.wait(waiter, "sim-backend", || rx.latest().is_some_and(|f| f.header.tick == tick))?;
         self.new = answered;
         Ok(answered)
     }

@@ -1,0 +1,80 @@
+//! The simulated robot at the end of the bus: power, pushes, falls, repeatability.
+
+use config::{Setup, root};
+use messages::command::PushCommand;
+use messages::frames::{decode_sensors, encode_targets};
+use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, Sensors, SimState};
+use sim_backend::SimBackend;
+
+fn setup() -> Setup {
+    Setup::load(&root(None), "stand").unwrap()
+}
+
+/// Holds the start pose for `cycles` with the supply on, `until` that cycle; gives the last truth and sensors.
+fn hold(sim: &mut SimBackend, setup: &Setup, cycles: u64, until: u64) -> (SimState, Sensors) {
+    let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
+    for (j, q) in setup.robot.poses[&setup.scene.start_pose].iter().enumerate() {
+        targets.angle[j] = *q;
+    }
+    let (mut frames, mut sensors) = (BusFrames::default(), Sensors::default());
+    for tick in 1..=cycles {
+        targets.header.tick = tick;
+        encode_targets(&setup.robot.nodes, &targets, &mut frames);
+        let power = Power { toggle: tick.min(until), on: 1, ..Power::default() };
+        let (answer, _) = sim.step(Some(&frames), Some(&power));
+        assert_eq!(decode_sensors(&setup.robot.nodes, answer, &mut sensors), 0);
+    }
+    (*sim.state(), sensors)
+}
+
+#[test]
+fn a_still_robot_reads_its_weight_and_gravity() {
+    let setup = setup();
+    let (truth, sensors) =
+        hold(&mut SimBackend::new(&setup.robot, &setup.scene).unwrap(), &setup, 3000, u64::MAX);
+    let fz: f64 = sensors.foot_wrench.iter().map(|w| w.force[2]).sum();
+    assert!((fz - 60.885 * 9.81).abs() < 0.5, "{fz} N");
+    assert!((sensors.imu.acceleration[2] - 9.81).abs() < 0.01);
+    assert!(truth.fallen == 0 && sensors.power == 1);
+}
+
+#[test]
+fn power_falls_with_the_toggle_and_the_joints_stay_where_they_are() {
+    let setup = setup();
+    let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+    let (truth, sensors) = hold(&mut sim, &setup, 103, 100);
+    assert_eq!((truth.power, sensors.power), (0, 0), "off in the third cycle without a toggle");
+    assert!((0..24).all(|j| sensors.joint_speed[j] == 0.0));
+}
+
+#[test]
+fn a_push_moves_the_momentum_by_its_impulse_and_a_large_one_fells() {
+    let setup = setup();
+    let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+    hold(&mut sim, &setup, 1000, u64::MAX);
+    let before = sim.state().com;
+    sim.push(&PushCommand { force: [60.0, 0.0, 0.0], duration: 0.01 });
+    hold(&mut sim, &setup, 10, u64::MAX);
+    // 0.6 N s on 60.885 kg, before the feet have answered.
+    assert!(sim.state().com[0] - before[0] > 0.2 * 0.6 / 60.885 * 0.01, "{:?}", sim.state().com);
+    assert_eq!(sim.take_event(), None);
+    sim.push(&PushCommand { force: [0.0, 2000.0, 0.0], duration: 0.2 });
+    hold(&mut sim, &setup, 3000, u64::MAX);
+    assert_eq!(sim.state().fallen, 1);
+    assert_eq!(sim.take_event(), Some((EventCode::Fallen, 0)));
+}
+
+#[test]
+fn two_simulations_are_bit_for_bit_the_same() {
+    let setup = setup();
+    let run = || hold(&mut SimBackend::new(&setup.robot, &setup.scene).unwrap(), &setup, 500, 300);
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn a_robot_with_a_wrong_link_name_is_refused() {
+    let mut setup = setup();
+    setup.robot.feet[0].sensor_link = "right_foott".into();
+    let error = SimBackend::new(&setup.robot, &setup.scene).err().expect("refused").to_string();
+    assert!(error.contains("right_foott"), "{error}");
+}
