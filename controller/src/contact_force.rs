@@ -172,7 +172,8 @@ mod tests {
     #[test]
     fn wrenches_add_up_to_the_demand() {
         let feet = feet([0.4, 0.6], [Vector3::new(0.1, -0.1, 0.08), Vector3::new(-0.1, 0.12, 0.09)]);
-        let (f, zmp, com) = (Vector3::new(12.0, 30.0, 610.0), Vector2::new(0.02, 0.03), Vector3::new(0.0, 0.01, 0.8));
+        let (f, zmp, com) =
+            (Vector3::new(12.0, 30.0, 610.0), Vector2::new(0.02, 0.03), Vector3::new(0.0, 0.01, 0.8));
         let (dt, df) = (Vector3::new(15.0, -20.0, 0.0), 13.0);
         let w = distribute(&gains(), 597.0, (f, zmp, com), (dt, df), &feet);
         let total: Vector3<f64> = w[0].force + w[1].force;

@@ -31,7 +31,9 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
         let Some(measured) = sensors.held() else { continue };
         header = measured.header;
         if d.mode == Mode::Lockstep
-            && !d.wait(&waiter, "planner", || planner_tick.latest().is_some_and(|e| e.header.tick == header.tick))?
+            && !d.wait(&waiter, "planner", || {
+                planner_tick.latest().is_some_and(|e| e.header.tick == header.tick)
+            })?
         {
             break;
         }

@@ -47,7 +47,8 @@ impl Estimate {
         let imu = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)).to_rotation_matrix();
         let force = |i: usize| sensors.foot_wrench[i].force[2];
         let loaded = force(0).max(force(1)) > LOADED;
-        let anchor = usize::from(if loaded { force(1) > force(0) } else { desired.load[1] > desired.load[0] });
+        let anchor =
+            usize::from(if loaded { force(1) > force(0) } else { desired.load[1] > desired.load[0] });
 
         let sole = measured.sole(anchor);
         let seen = imu.matrix() * sole.rotation;
@@ -153,7 +154,8 @@ mod tests {
 
     #[test]
     fn depth_in_a_square_and_in_the_hull_of_two() {
-        let square = |x: f64| [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(a, b)| Vector2::new(x + a, b));
+        let square =
+            |x: f64| [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(a, b)| Vector2::new(x + a, b));
         assert!((depth_in_hull(&square(0.0), &Vector2::new(0.3, 0.5)) - 0.3).abs() < 1e-12);
         assert!((depth_in_hull(&square(0.0), &Vector2::new(-0.2, 0.5)) + 0.2).abs() < 1e-12);
         let both: Vec<_> = square(0.0).into_iter().chain(square(3.0)).collect();

@@ -57,7 +57,13 @@ pub struct Forces {
 ///
 /// `gain` is G with the stiffness of closed contacts for both feet: a foot in the air is position controlled, its
 /// rows do not matter (errata 2 to (5.32)).
-pub fn modify(control: &Control, gain: &Matrix6<f64>, forces: &Forces, last: &Modification, dt: f64) -> Modification {
+pub fn modify(
+    control: &Control,
+    gain: &Matrix6<f64>,
+    forces: &Forces,
+    last: &Modification,
+    dt: f64,
+) -> Modification {
     let k = Vector6::from_fn(|i, _| control.force_gain[i % 3]);
     let alpha = Vector6::from_fn(|i, _| force_share(control, forces, i / 3));
     let wanted = forces.desired_rate * control.force_feed_forward
@@ -101,7 +107,9 @@ mod tests {
     use super::*;
 
     fn flat_foot() -> Vec<Vector3<f64>> {
-        [(-0.1, -0.05), (-0.1, 0.05), (0.15, -0.05), (0.15, 0.05)].map(|(x, y)| Vector3::new(x, y, 0.0)).to_vec()
+        [(-0.1, -0.05), (-0.1, 0.05), (0.15, -0.05), (0.15, 0.05)]
+            .map(|(x, y)| Vector3::new(x, y, 0.0))
+            .to_vec()
     }
 
     fn gain() -> Matrix6<f64> {
@@ -157,7 +165,8 @@ mod tests {
             measured: Vector6::zeros(),
             load: [0.0, 1.0],
         };
-        let mut m = Modification { value: Vector6::new(0.004, 0.01, -0.01, 0.0, 0.0, 0.0), ..Default::default() };
+        let mut m =
+            Modification { value: Vector6::new(0.004, 0.01, -0.01, 0.0, 0.0, 0.0), ..Default::default() };
         for _ in 0..500 {
             m = modify(&control, &gain(), &forces, &m, 1e-3);
         }

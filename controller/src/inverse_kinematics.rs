@@ -99,7 +99,11 @@ impl InverseKinematics {
     }
 
     /// Joint speeds that realise a unit of each column of `u`, without null-space motion: J_W^# u.
-    pub fn columns<const M: usize>(&self, f: &Factorised, u: &SMatrix<f64, TASK, M>) -> SMatrix<f64, MAX_JOINTS, M> {
+    pub fn columns<const M: usize>(
+        &self,
+        f: &Factorised,
+        u: &SMatrix<f64, TASK, M>,
+    ) -> SMatrix<f64, MAX_JOINTS, M> {
         let mut speeds = f.jacobian.transpose() * f.gram.solve(u);
         for j in 0..MAX_JOINTS {
             speeds.row_mut(j).scale_mut(self.inverse_weight[j]);
@@ -172,7 +176,9 @@ mod tests {
         let q = [0.95; 14];
         let speeds = ik.speeds(&f, &xd, &JointVector::zeros(), &q);
         // W q' + alpha grad H must lie in the row space of J.
-        let g = JointVector::from_fn(|i, _| if i < 14 { (1.0 + i as f64) * speeds[i] + 2.0 * ik.gradient(i, q[i]) } else { 0.0 });
+        let g = JointVector::from_fn(|i, _| {
+            if i < 14 { (1.0 + i as f64) * speeds[i] + 2.0 * ik.gradient(i, q[i]) } else { 0.0 }
+        });
         let jt = j.transpose();
         let mu = (j * jt).cholesky().unwrap().solve(&(j * g));
         assert!((g - jt * mu).norm() < 1e-10);

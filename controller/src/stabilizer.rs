@@ -20,6 +20,8 @@ const FALLING: f64 = 0.5;
 const LIFTED_CYCLES: u32 = 200;
 /// Cycles that may be missed and made good for by a longer step; the joint loop carries on meanwhile.
 const MISSED_CYCLES: u64 = 10;
+/// Cycles in a row that are bridged with the last good sensor data if a value is not finite.
+const BAD_CYCLES: u32 = 20;
 /// Joints without a task go to their comfortable angles with this time constant \[1/s\] and at most this speed \[rad/s\].
 const SETTLE: (f64, f64) = (2.0, 0.5);
 
@@ -45,6 +47,9 @@ pub struct Controller {
     last_tick: u64,
     elapsed: f64,
     unloaded: u32,
+    /// The last sensor data without a NaN, and how many with one came since.
+    good: Sensors,
+    bad: u32,
     stopped: bool,
     targets: JointTargets,
     state: ControllerState,
@@ -78,6 +83,8 @@ impl Controller {
             last_tick: 0,
             elapsed: dt,
             unloaded: 0,
+            good: Sensors::default(),
+            bad: 0,
             stopped: false,
             targets: JointTargets::default(),
             state: ControllerState::default(),
@@ -96,6 +103,7 @@ impl Controller {
         self.elapsed = self.dt * tick.saturating_sub(self.last_tick).clamp(1, MISSED_CYCLES) as f64;
         self.last_tick = tick;
         self.event = self.plan.update(tick, newest);
+        let sensors = &self.admit(sensors);
         if sensors.power == 0 || !self.started {
             self.start_from(sensors);
         }
@@ -104,7 +112,11 @@ impl Controller {
         }
         let t = self.plan.time(tick, self.dt);
         let (now, end) = (self.plan.sample(t), self.plan.sample(t + self.dt));
-        self.measured.update_motion(&sensors.joint_angle, &sensors.joint_speed, &sensors.imu.angular_velocity);
+        self.measured.update_motion(
+            &sensors.joint_angle,
+            &sensors.joint_speed,
+            &sensors.imu.angular_velocity,
+        );
         let estimate = Estimate::new(&self.robot, sensors, &self.measured, &self.reference(&now));
         if self.plan.id() > 0 {
             self.watch(sensors, &now, &estimate);
@@ -116,6 +128,26 @@ impl Controller {
         }
         self.report(sensors, t, &now, &estimate);
         (&self.targets, &self.state)
+    }
+
+    /// The sensor data if they are finite, otherwise the last ones that were, for a while.
+    fn admit(&mut self, sensors: &Sensors) -> Sensors {
+        let n = self.robot.joints.len();
+        let (imu, wrench) = (&sensors.imu, &sensors.foot_wrench);
+        let finite = sensors.joint_angle[..n].iter().chain(&sensors.joint_speed[..n]).all(|x| x.is_finite())
+            && imu.orientation.iter().chain(&imu.angular_velocity).all(|x| x.is_finite())
+            && wrench.iter().all(|w| w.force.iter().chain(&w.moment).all(|x| x.is_finite()));
+        if finite {
+            self.good = *sensors;
+            self.bad = 0;
+        } else {
+            self.bad = self.bad.saturating_add(1);
+            self.good.header = sensors.header;
+            if self.bad == 1 {
+                self.event = Some((EventCode::SensorNotFinite, 0));
+            }
+        }
+        self.good
     }
 
     /// Stands still where the joints are: while the supply is off the targets follow the measured angles.
@@ -146,7 +178,9 @@ impl Controller {
         let tilt = (0..2).map(|i| (now.torso.position[i] - estimate.angles[i]).abs()).fold(0.0, f64::max);
         let load = sensors.foot_wrench[0].force[2].max(sensors.foot_wrench[1].force[2]);
         self.unloaded = if load < crate::estimate::LOADED { self.unloaded + 1 } else { 0 };
-        let why = if !(tilt < FALLING) {
+        let why = if self.bad > BAD_CYCLES {
+            Some(EventCode::SensorNotFinite)
+        } else if !(tilt < FALLING) {
             Some(EventCode::Fallen)
         } else if self.unloaded > LIFTED_CYCLES {
             Some(EventCode::Lifted)
@@ -205,8 +239,13 @@ impl Controller {
         let com = Vector3::from(at.com.position);
         let force = (Vector3::from(at.com.acceleration) - multibody::GRAVITY) * mass;
         let supports: [Support; 2] = std::array::from_fn(|i| self.support(at, i));
-        let wrenches =
-            distribute(&self.control, mass * -multibody::GRAVITY.z, (force, at.zmp.into(), com), stabilizing, &supports);
+        let wrenches = distribute(
+            &self.control,
+            mass * -multibody::GRAVITY.z,
+            (force, at.zmp.into(), com),
+            stabilizing,
+            &supports,
+        );
         std::array::from_fn(|i| {
             let back = Rotation3::from_axis_angle(&Vector3::z_axis(), -supports[i].heading);
             FootWrench { force: back * wrenches[i].force, moment: back * wrenches[i].moment }
@@ -278,7 +317,8 @@ impl Controller {
             let m_rate = self.modification.rate.fixed_rows::<3>(3 * foot).into_owned();
             let vertical = axes.column(2);
 
-            let position = back * (Vector3::new(s.position[0], s.position[1], s.position[2]) - com) + vertical * m[0];
+            let position =
+                back * (Vector3::new(s.position[0], s.position[1], s.position[2]) - com) + vertical * m[0];
             let velocity = back * (Vector3::new(s.velocity[0], s.velocity[1], s.velocity[2]) - com_velocity)
                 + vertical * m_rate[0]
                 - omega.cross(&position);

@@ -142,4 +142,3 @@ impl TaskSpace {
         &self.sole_jacobian[foot]
     }
 }
-

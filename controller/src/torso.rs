@@ -62,9 +62,15 @@ mod tests {
     fn vectors_of_the_errata() {
         let a = rotation(&Vector3::new(1.5, 1.6, 0.3)).unwrap();
         let expected = Matrix3::new(
-            0.952943358423, -0.293415368162, -0.076199589003, //
-            0.294779924585, 0.955539015228, 0.007070108776, //
-            0.070737201668, -0.029199522301, 0.997067518375,
+            0.952943358423,
+            -0.293415368162,
+            -0.076199589003, //
+            0.294779924585,
+            0.955539015228,
+            0.007070108776, //
+            0.070737201668,
+            -0.029199522301,
+            0.997067518375,
         );
         assert!((a - expected).abs().max() < 1e-12);
         let deg = std::f64::consts::PI / 180.0;
@@ -72,9 +78,15 @@ mod tests {
         assert!((b[(0, 0)] - 0.76193173185).abs() < 1e-11 && (b[(2, 2)] - 0.98094351871).abs() < 1e-11);
         let m = rates_from_omega(&a).try_inverse().unwrap();
         let expected = Matrix3::new(
-            -0.2935411628006, -0.9553385389847, 0.0, //
-            0.9559486791313, -0.2955208407571, 0.0, //
-            1.469048747233e-4, -0.07091499646416, 1.0,
+            -0.2935411628006,
+            -0.9553385389847,
+            0.0, //
+            0.9559486791313,
+            -0.2955208407571,
+            0.0, //
+            1.469048747233e-4,
+            -0.07091499646416,
+            1.0,
         );
         assert!((m - expected).abs().max() < 1e-12);
     }
@@ -83,7 +95,11 @@ mod tests {
     fn is_a_rotation_and_inverts_over_the_whole_domain() {
         for i in 0..40 {
             for j in 0..40 {
-                let x = Vector3::new(0.6 + 0.05 * f64::from(i), 0.6 + 0.05 * f64::from(j), 0.3 * f64::from(i - 20));
+                let x = Vector3::new(
+                    0.6 + 0.05 * f64::from(i),
+                    0.6 + 0.05 * f64::from(j),
+                    0.3 * f64::from(i - 20),
+                );
                 let Some(a) = rotation(&x) else { continue };
                 assert!((a.transpose() * a - Matrix3::identity()).abs().max() < 1e-14);
                 let back = angles(&a);

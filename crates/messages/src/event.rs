@@ -56,11 +56,13 @@ pub enum EventCode {
     LogDropped = 23,
     /// Messages of the command plane were lost by clients that did not keep up; detail: how many since the last time.
     MessagesLost = 24,
+    /// A sensor value is not finite; the last good ones are used, then a stop.
+    SensorNotFinite = 25,
 }
 
 impl EventCode {
     /// All codes, in order of their numbers.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::None,
         Self::Started,
         Self::Ended,
@@ -86,6 +88,7 @@ impl EventCode {
         Self::PlanActive,
         Self::LogDropped,
         Self::MessagesLost,
+        Self::SensorNotFinite,
     ];
 
     /// The code of a number from a record.
