@@ -4,16 +4,17 @@
 //! |---|---|---|---|
 //! | gait coordination, finite state machine | 4.2, figure 4.5 | | [`gait`] |
 //! | walking commands | 4.6.1 | | [`commands`] |
-//! | step sequence planning | 4.3, (4.1)-(4.4) | 2.1, 2.2 | [`steps`] |
+//! | step sequence planning | 4.3, (4.1)-(4.4) | 2.1, 2.2 | [`steps`], `sequence` |
 //! | foot trajectories | 4.5, (4.22)-(4.28) | 2.5 | [`feet`] |
 //! | upper body orientation | 4.4.4, (4.11)-(4.13) | 2.3 | [`torso`] |
 //! | contact force (ZMP) trajectory | 4.6.4, (4.40)-(4.43) | 2.10 | [`zmp`], [`sole`] |
-//! | centre-of-gravity trajectory | 4.6.3, 4.6.5, (4.31)-(4.54) | 2.6-2.9 | [`com`], [`collocation`] |
+//! | centre-of-gravity trajectory | 4.6.3, 4.6.5, (4.31)-(4.54) | 2.6-2.9 | [`com`], [`collocation`], `balance` |
 //! | contact force distribution | 4.8, (4.62) | gap 15 | [`load`] |
 //! | all of them, in this order | | | [`walk`] |
 //!
 //! [`Planner::step`] is pure: no clock, no input or output, no allocation after construction.
 
+mod balance;
 pub mod collocation;
 pub mod com;
 pub mod commands;
@@ -21,7 +22,9 @@ pub mod daemon;
 pub mod feet;
 pub mod gait;
 pub mod load;
+mod marks;
 pub mod pose;
+mod sequence;
 pub mod sole;
 pub mod steps;
 pub mod torso;
