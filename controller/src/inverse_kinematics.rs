@@ -16,7 +16,7 @@
 
 use config::robot::Joint;
 use messages::MAX_JOINTS;
-use nalgebra::{Cholesky, Const, OMatrix, SMatrix, SVector};
+use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
 /// Task rows: position and rotation of the right sole, then of the left one.
 pub const TASK: usize = 12;
@@ -28,10 +28,14 @@ pub type JointVector = SVector<f64, MAX_JOINTS>;
 /// d x / d q.
 pub type TaskJacobian = SMatrix<f64, TASK, MAX_JOINTS>;
 
+type Gram = SMatrix<f64, TASK, TASK>;
+
 /// Weights, ranges and comfort of the joints.
 pub struct InverseKinematics {
     /// 1/W; zero for joints that are not free.
     inverse_weight: JointVector,
+    /// Joints that are free: the products below leave the others out.
+    free: Vec<usize>,
     ranges: [[f64; 2]; MAX_JOINTS],
     comfort: JointVector,
     null_space_gain: f64,
@@ -50,6 +54,7 @@ impl InverseKinematics {
     pub fn new(joints: &[Joint], free: &[bool], null_space_gain: f64) -> Self {
         let mut ik = Self {
             inverse_weight: JointVector::zeros(),
+            free: (0..joints.len()).filter(|&j| free[j]).collect(),
             ranges: [[0.0, 1.0]; MAX_JOINTS],
             comfort: JointVector::zeros(),
             null_space_gain,
@@ -64,21 +69,25 @@ impl InverseKinematics {
 
     /// Factorises J W^-1 J^T. Near a singularity the smallest damping that keeps it regular is added.
     pub fn factorise(&self, jacobian: &TaskJacobian) -> Factorised {
-        let mut weighted = *jacobian;
-        for j in 0..MAX_JOINTS {
-            let w = self.inverse_weight[j];
-            weighted.column_mut(j).scale_mut(w);
+        let mut gram = Gram::zeros();
+        for &j in &self.free {
+            let column = jacobian.column(j);
+            for k in 0..TASK {
+                let a = self.inverse_weight[j] * column[k];
+                for i in 0..TASK {
+                    gram[(i, k)] += a * column[i];
+                }
+            }
         }
-        let gram: OMatrix<f64, Const<TASK>, Const<TASK>> = weighted * jacobian.transpose();
         // A straight knee shows as a vanishing pivot (measured: sigma_min of one leg is 0.195 q near q = 0).
         const FLOOR: f64 = 1e-5;
         let regular = Cholesky::new(gram).filter(|c| c.l_dirty().diagonal().min() > FLOOR.sqrt());
         let damped = regular.is_none();
         let gram = regular
-            .or_else(|| Cholesky::new(gram + OMatrix::<f64, Const<TASK>, Const<TASK>>::identity() * FLOOR))
+            .or_else(|| Cholesky::new(gram + Gram::identity() * FLOOR))
             .unwrap_or_else(|| {
                 // Not even semi-definite: NaN in the Jacobian. Nothing moves.
-                Cholesky::new_unchecked(OMatrix::<f64, Const<TASK>, Const<TASK>>::identity() * f64::INFINITY)
+                Cholesky::new_unchecked(Gram::identity() * f64::INFINITY)
             });
         Factorised { jacobian: *jacobian, gram, damped }
     }
@@ -89,24 +98,26 @@ impl InverseKinematics {
         for j in 0..MAX_JOINTS.min(q.len()) {
             z[j] -= self.null_space_gain * self.inverse_weight[j] * self.gradient(j, q[j]);
         }
-        let mu = f.gram.solve(&(xd - f.jacobian * z));
-        let step = f.jacobian.transpose() * mu;
+        let mut rest = *xd;
+        for j in (0..q.len().min(MAX_JOINTS)).filter(|&j| z[j] != 0.0) {
+            rest.axpy(-z[j], &f.jacobian.column(j), 1.0);
+        }
+        let mu = f.gram.solve(&rest);
         let mut speeds = z;
-        for j in 0..MAX_JOINTS {
-            speeds[j] += self.inverse_weight[j] * step[j];
+        for &j in &self.free {
+            speeds[j] += self.inverse_weight[j] * f.jacobian.column(j).dot(&mu);
         }
         speeds
     }
 
     /// Joint speeds that realise a unit of each column of `u`, without null-space motion: J_W^# u.
-    pub fn columns<const M: usize>(
-        &self,
-        f: &Factorised,
-        u: &SMatrix<f64, TASK, M>,
-    ) -> SMatrix<f64, MAX_JOINTS, M> {
-        let mut speeds = f.jacobian.transpose() * f.gram.solve(u);
-        for j in 0..MAX_JOINTS {
-            speeds.row_mut(j).scale_mut(self.inverse_weight[j]);
+    pub fn columns<const M: usize>(&self, f: &Factorised, u: &SMatrix<f64, TASK, M>) -> SMatrix<f64, MAX_JOINTS, M> {
+        let mu = f.gram.solve(u);
+        let mut speeds = SMatrix::zeros();
+        for &j in &self.free {
+            for m in 0..M {
+                speeds[(j, m)] = self.inverse_weight[j] * f.jacobian.column(j).dot(&mu.column(m));
+            }
         }
         speeds
     }

@@ -286,13 +286,14 @@ impl Controller {
         let speeds = self.ik.columns(task, &unit);
         let mut gain = Matrix6::zeros();
         for foot in 0..2 {
-            let j = self.desired.sole_jacobian(foot);
-            let twist = j * speeds.rows(0, j.ncols()); // 6 x 6: of this sole against the torso
-            let linear = axes[foot].column(2).transpose() * twist.fixed_rows::<3>(0);
-            let roll = axes[foot].column(0).transpose() * twist.fixed_rows::<3>(3);
-            let pitch = axes[foot].column(1).transpose() * twist.fixed_rows::<3>(3);
-            let n = SMatrix::<f64, 3, 6>::from_rows(&[linear, roll, pitch]);
-            gain.fixed_rows_mut::<3>(3 * foot).copy_from(&(self.stiffness[foot] * n));
+            let rows = axes[foot].transpose();
+            // Lift, roll and pitch of this sole against the torso.
+            let mut motion = SMatrix::<f64, 3, 6>::zeros();
+            for (j, twist) in self.desired.sole_jacobian(foot).column_iter().enumerate().filter(|(j, _)| self.free[*j]) {
+                let (linear, turn) = (rows * twist.fixed_rows::<3>(0), rows * twist.fixed_rows::<3>(3));
+                motion += Vector3::new(linear.z, turn.x, turn.y) * speeds.row(j);
+            }
+            gain.fixed_rows_mut::<3>(3 * foot).copy_from(&(self.stiffness[foot] * motion));
         }
         gain
     }
