@@ -9,8 +9,9 @@ use std::time::Duration;
 use config::Setup;
 use indicatif::{ProgressBar, ProgressStyle};
 use ipc::{Mode, Reader, Run, Space};
+use messages::command::Domain;
 use messages::topics::{CONTROLLER_STATE, SIM_STATE, Topic};
-use messages::{ControllerState, Event, EventCode, GaitState, Process, SimState};
+use messages::{Command, ControllerState, Event, EventCode, GaitState, Process, SimState};
 use realtime::{Stop, clock};
 
 use crate::figures::{Figures, Gatherer};
@@ -115,7 +116,11 @@ impl Supervisor {
         while events.follow().is_none_or(|e| e.code != EventCode::Started as u64) {
             let child = self.children.last_mut().map(|(_, child)| child);
             if let Some(status) = child.and_then(|c| c.try_wait().ok().flatten()) {
-                return Err(format!("{} did not start ({status}); its own message stands above", process.name()).into());
+                return Err(format!(
+                    "{} did not start ({status}); its own message stands above",
+                    process.name()
+                )
+                .into());
             }
             if clock::now() - begun > START_PATIENCE {
                 return Err(format!("{} did not start within 20 s", process.name()).into());
@@ -135,6 +140,7 @@ impl Supervisor {
     fn watch(&mut self, setup: &Setup) -> Result<Outcome, Box<dyn Error>> {
         let mut outcome = Outcome { died: Vec::new(), interrupted: false };
         let mut view = View::new(self, setup)?;
+        let mut operator = broker::Client::start("supervisor", &[Domain::System], &self.space)?;
         let (mut end_at, mut asked_at) = (None, None);
         loop {
             std::thread::park_timeout(LOOK);
@@ -153,12 +159,12 @@ impl Supervisor {
             if end_at.is_some_and(|t| clock::now() > t) {
                 return Ok(outcome);
             }
-            let asked = self.stop.taken();
+            let asked = self.stop.taken() || operator.received().any(|c| c == Command::End);
             if asked && asked_at.is_none() {
                 asked_at = Some(clock::now());
                 outcome.interrupted = true;
                 view.say("asked to end: the robot stops and stands first; once more ends at once");
-                self.ask_to_stand();
+                operator.publish(&Command::Stop);
                 continue;
             }
             let stands = asked_at.is_some() && view.standing();
@@ -181,13 +187,6 @@ impl Supervisor {
         ended
     }
 
-    fn ask_to_stand(&self) {
-        if let Ok(mut client) = broker::Client::start("supervisor", &[], &self.space) {
-            client.publish(&messages::Command::Stop);
-            std::thread::park_timeout(Duration::from_millis(300));
-        }
-    }
-
     /// Ends all processes: the joint loop first, so that the watchdog cuts the supply; the logger last.
     fn end(&mut self) {
         let order = |p: Process| match p {
@@ -196,7 +195,8 @@ impl Supervisor {
             _ => 1,
         };
         for turn in 0..3 {
-            let now: Vec<usize> = (0..self.children.len()).filter(|&i| order(self.children[i].0) == turn).collect();
+            let now: Vec<usize> =
+                (0..self.children.len()).filter(|&i| order(self.children[i].0) == turn).collect();
             for &i in &now {
                 terminate(&self.children[i].1);
             }
@@ -240,10 +240,15 @@ struct View {
 
 impl View {
     fn new(s: &Supervisor, setup: &Setup) -> Result<Self, Box<dyn Error>> {
-        let bar = if s.order.progress { ProgressBar::new((setup.scene.duration * 10.0) as u64) } else { ProgressBar::hidden() };
+        let bar = if s.order.progress {
+            ProgressBar::new((setup.scene.duration * 10.0) as u64)
+        } else {
+            ProgressBar::hidden()
+        };
         let style = "{elapsed:>4} {wide_bar} {msg}";
         bar.set_style(ProgressStyle::with_template(style)?);
-        let events = Process::ALL.into_iter().map(|p| Ok((p, s.events(p)?))).collect::<Result<_, Box<dyn Error>>>()?;
+        let events =
+            Process::ALL.into_iter().map(|p| Ok((p, s.events(p)?))).collect::<Result<_, Box<dyn Error>>>()?;
         let state = s.space.reader(&CONTROLLER_STATE)?;
         Ok(Self { state, sim: s.space.reader(&SIM_STATE)?, events, bar, gait: GaitState::Idle })
     }
@@ -257,7 +262,9 @@ impl View {
     }
 
     fn standing(&mut self) -> bool {
-        self.state.latest().is_none_or(|s| matches!(GaitState::from(s.gait), GaitState::Standing | GaitState::Idle))
+        self.state
+            .latest()
+            .is_none_or(|s| matches!(GaitState::from(s.gait), GaitState::Standing | GaitState::Idle))
     }
 
     fn update(&mut self) {

@@ -21,5 +21,5 @@ pub use histogram::Histogram;
 pub use meter::CycleMeter;
 pub use period::{Period, Verdict};
 pub use preflight::{Check, Grade, preflight};
-pub use stop::{Stop, terminate};
+pub use stop::{Stop, end_with_reader, terminate};
 pub use thread::{Granted, Schedule, prepare_thread};

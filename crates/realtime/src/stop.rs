@@ -53,6 +53,12 @@ impl Stop {
     }
 }
 
+/// A program that writes to a pipe nobody reads any more ends quietly, as `gangwerk topic list | head` should.
+pub fn end_with_reader() {
+    // SAFETY: SIGPIPE gets its default action back; no handler is involved.
+    unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
+}
+
 /// Asks another process to end (SIGTERM). A process that is gone has ended.
 pub fn terminate(pid: u32) {
     // SAFETY: `kill` takes two numbers and touches no memory.
