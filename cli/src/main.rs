@@ -76,6 +76,14 @@ enum Task {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// Speed against accuracy, and where methods fail.
+    Study {
+        #[command(subcommand)]
+        what: StudyTask,
+        /// End with one JSON object on standard output instead of a table.
+        #[arg(long, global = true)]
+        json: bool,
+    },
     /// What this machine gives to real time, what is missing, and how to get it.
     Doctor,
     /// One process of a run; `gangwerk run` starts them.
@@ -131,6 +139,33 @@ enum TopicTask {
     },
 }
 
+#[derive(Subcommand)]
+enum StudyTask {
+    /// Which impulse the walking robot survives.
+    Push {
+        /// Only this scene; default: walking in place and at 1 km/h.
+        #[arg(long)]
+        scene: Option<String>,
+        /// How many instants of a stride are tried.
+        #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..=1000))]
+        instants: u64,
+    },
+    /// How fast simulation, planner and stabilizer are, and how accurate at that speed.
+    Speed,
+    /// How well the processes keep real time, beside cyclictest before and after.
+    Realtime {
+        /// The scene that is run.
+        #[arg(long, default_value = "walk_60s")]
+        scene: String,
+        /// How long cyclictest runs \[s\]; 0: not at all.
+        #[arg(long, default_value_t = 20)]
+        cyclictest: u64,
+        /// Where the log goes.
+        #[arg(long, value_name = "DIR", default_value = "runs/realtime")]
+        out: PathBuf,
+    },
+}
+
 fn main() -> ExitCode {
     tracing_subscriber::fmt().with_writer(std::io::stderr).without_time().with_target(false).init();
     let arguments = Arguments::parse();
@@ -161,6 +196,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         }
         Task::Sim { scene, json, log } => sim(&Setup::load(&config, &scene)?, json, log),
         Task::Topic { what, dir } => {
+            realtime::end_with_reader();
             match what {
                 TopicTask::List => cli::topic::list(),
                 TopicTask::Echo { topic, once } => cli::topic::echo(&dir, &topic, once.then_some(1))?,
@@ -174,6 +210,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             draw(&log, &out)?;
             Ok(ExitCode::SUCCESS)
         }
+        Task::Study { what, json } => study(&config, what, json),
         Task::Doctor => Ok(doctor()),
         process => daemon(process),
     }
@@ -184,12 +221,19 @@ fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
     Stop::with_parent()?;
     match task {
         Task::Broker(p) => broker::daemon::main(&p.run, None)?,
-        Task::Watchdog(p) => watchdog::daemon::main(&p.run, Box::new(|s: &Space| commands("watchdog", &[Domain::System], s)))?,
+        Task::Watchdog(p) => {
+            watchdog::daemon::main(&p.run, Box::new(|s: &Space| commands("watchdog", &[Domain::System], s)))?
+        }
         Task::SimBackend(p) => {
-            sim_backend::daemon::main(&p.run, Box::new(|s: &Space| commands("sim-backend", &[Domain::Sim], s)))?;
+            sim_backend::daemon::main(
+                &p.run,
+                Box::new(|s: &Space| commands("sim-backend", &[Domain::Sim], s)),
+            )?;
         }
         Task::Logger(p) => logger::daemon::run(&ipc::Run::load(&p.run)?, &Stop::on_signals()?)?,
-        Task::Planner(p) => planner::daemon::main(&p.run, Box::new(|s: &Space| commands("planner", &[Domain::Walk], s)))?,
+        Task::Planner(p) => {
+            planner::daemon::main(&p.run, Box::new(|s: &Space| commands("planner", &[Domain::Walk], s)))?
+        }
         Task::Controller(p) => controller::daemon::main(&p.run)?,
         Task::Lowlevel(p) => lowlevel::daemon::main(&p.run)?,
         _ => {}
@@ -228,7 +272,11 @@ fn run(order: Order, no_plots: bool) -> Result<ExitCode, Box<dyn Error>> {
 }
 
 fn sim(setup: &Setup, json: bool, log: Option<PathBuf>) -> Result<ExitCode, Box<dyn Error>> {
-    let bar = if json { indicatif::ProgressBar::hidden() } else { indicatif::ProgressBar::new(setup.scene.duration as u64) };
+    let bar = if json {
+        indicatif::ProgressBar::hidden()
+    } else {
+        indicatif::ProgressBar::new(setup.scene.duration as u64)
+    };
     let figures = cli::sim::run(setup, log.as_deref(), |t| bar.set_position(t as u64))?;
     bar.finish_and_clear();
     if json {
@@ -237,6 +285,50 @@ fn sim(setup: &Setup, json: bool, log: Option<PathBuf>) -> Result<ExitCode, Box<
         println!("{}", cli::figures::table(&figures));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn study(config: &std::path::Path, what: StudyTask, json: bool) -> Result<ExitCode, Box<dyn Error>> {
+    use studies::{cycles, push, speed};
+    let (object, table) = match what {
+        StudyTask::Push { scene, instants } => {
+            let report = push::run(config, scene.as_deref(), instants as usize)?;
+            (serde_json::to_string(&report)?, push::table(&report))
+        }
+        StudyTask::Speed => {
+            let report = speed::run(config)?;
+            (serde_json::to_string(&report)?, speed::table(&report))
+        }
+        StudyTask::Realtime { scene, cyclictest, out } => {
+            let report = realtime_study(config, scene, cyclictest, &out)?;
+            (serde_json::to_string(&report)?, cycles::table(&report))
+        }
+    };
+    println!("{}", if json { object } else { table });
+    Ok(ExitCode::SUCCESS)
+}
+
+/// cyclictest, the scene with all processes, cyclictest again: on the core and with the priority of the joint loop.
+fn realtime_study(
+    config: &std::path::Path,
+    scene: String,
+    seconds: u64,
+    out: &std::path::Path,
+) -> Result<studies::cycles::Report, Box<dyn Error>> {
+    let setup = Setup::load(config, &scene)?;
+    let row = setup.system.process(messages::Process::Lowlevel);
+    let (core, priority) = row.map_or((0, 0), |row| (row.core.unwrap_or(0), row.priority));
+    let cyclictest = || {
+        let found = (seconds > 0).then(|| studies::cycles::cyclictest(core, priority, seconds))?;
+        found.inspect_err(|error| tracing::warn!("{error}")).ok()
+    };
+    std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
+    let log = out.join(format!("{scene}.mcap"));
+    let before = cyclictest();
+    let (mode, dir, config) = (Mode::RealTime, cli::RUN_DIR.into(), config.to_path_buf());
+    cli::run::run(&Order { mode, scene, config, dir, log: Some(log.clone()), progress: false })?;
+    let after = cyclictest();
+    let fell = cli::run::figures_of(&log, &setup)?.fell;
+    Ok(studies::cycles::Report { cyclictest_us: [before, after], fell, processes: studies::cycles::of_log(&log)? })
 }
 
 fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Error>> {

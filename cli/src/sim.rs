@@ -5,8 +5,8 @@ use std::path::Path;
 
 use config::Setup;
 use messages::topics::{
-    CONTROLLER_STATE, EVENTS_CONTROLLER, EVENTS_LOWLEVEL, EVENTS_PLANNER, EVENTS_SIM_BACKEND, EVENTS_WATCHDOG,
-    JOINT_TARGETS, PLAN, POWER, SENSORS, SIM_STATE,
+    CONTROLLER_STATE, EVENTS_CONTROLLER, EVENTS_LOWLEVEL, EVENTS_PLANNER, EVENTS_SIM_BACKEND,
+    EVENTS_WATCHDOG, JOINT_TARGETS, PLAN, POWER, SENSORS, SIM_STATE,
 };
 use messages::{Event, EventCode, Header, Process, Record, Topic};
 use recording::Recorder;
@@ -20,7 +20,11 @@ use crate::figures::{Figures, Gatherer};
 ///
 /// # Errors
 /// The robot's description is wrong or the log cannot be written.
-pub fn run(setup: &Setup, log: Option<&Path>, mut progress: impl FnMut(f64)) -> Result<Figures, Box<dyn Error>> {
+pub fn run(
+    setup: &Setup,
+    log: Option<&Path>,
+    mut progress: impl FnMut(f64),
+) -> Result<Figures, Box<dyn Error>> {
     let mut chain = Chain::new(setup)?;
     let mut record = log.map(|path| LogWriter::create(path, setup)).transpose()?;
     let mut gatherer = Gatherer::default();

@@ -88,6 +88,11 @@ impl SimBackend {
         &self.sim_state
     }
 
+    /// State of the equations of motion, as [`crate::plant`] lays it out.
+    pub fn integrated(&self) -> &[f64] {
+        &self.state
+    }
+
     /// Simulated time \[s\].
     pub fn time(&self) -> f64 {
         self.cycles as f64 * self.scene.cycle

@@ -79,6 +79,11 @@ impl Chain {
         self.sim.push(push);
     }
 
+    /// The simulated robot.
+    pub fn robot(&self) -> &SimBackend {
+        &self.sim
+    }
+
     /// One bus cycle.
     pub fn step(&mut self) -> &Cycle {
         self.tick += 1;
@@ -100,7 +105,8 @@ impl Chain {
 
         let (targets, state) = self.controller.step(&c.sensors, (self.plan.id > 0).then_some(&*self.plan));
         (c.joint_targets, c.controller_state) = (*targets, *state);
-        c.events.extend(self.controller.take_event().map(|(code, detail)| (Process::Controller, code, detail)));
+        c.events
+            .extend(self.controller.take_event().map(|(code, detail)| (Process::Controller, code, detail)));
 
         let (frames, reset) = self.joint_loop.send(Some(&c.joint_targets), None);
         take_due(&mut self.system, tick, &mut self.due);

@@ -96,7 +96,9 @@ impl Gatherer {
             _ => return,
         };
         let gait = GaitState::from(state.gait);
-        if self.stance == Some(stance) || !matches!(gait, GaitState::Starting | GaitState::Walking | GaitState::Stopping) {
+        if self.stance == Some(stance)
+            || !matches!(gait, GaitState::Starting | GaitState::Walking | GaitState::Stopping)
+        {
             return;
         }
         self.stance = Some(stance);
@@ -170,7 +172,10 @@ pub fn table(f: &Figures) -> String {
         ("joint tracking error, max", format!("{:.2e} rad", f.joint_tracking_error_max_rad)),
         ("normal force of a foot, max", format!("{:.0} N", f.peak_normal_force_n)),
         ("ZMP to edge of support, min", format!("{:.1} mm", 1e3 * f.zmp_margin_min_m)),
-        ("end pose", format!("x {:.2} m, y {:.2} m, heading {:.2} rad", f.end_pose[0], f.end_pose[1], f.end_pose[2])),
+        (
+            "end pose",
+            format!("x {:.2} m, y {:.2} m, heading {:.2} rad", f.end_pose[0], f.end_pose[1], f.end_pose[2]),
+        ),
         ("real-time factor", if f.cpu_s > 0.0 { format!("{:.0}", f.real_time_factor) } else { "-".into() }),
         ("log", f.log.clone().unwrap_or_else(|| "-".into())),
     ];

@@ -1,0 +1,15 @@
+//! Speed against accuracy, and where methods fail: `gangwerk study ...`.
+//!
+//! | study | question |
+//! |---|---|
+//! | [`push`] | which impulse does the walking robot survive? |
+//! | [`speed`] | how fast is each part, and how accurate is it at that speed? |
+//! | [`cycles`] | how well did the processes of a run keep real time? |
+//!
+//! They work on [`chain`], all steps in one process, and judge by [`figures`].
+
+pub mod chain;
+pub mod cycles;
+pub mod figures;
+pub mod push;
+pub mod speed;

@@ -1,0 +1,415 @@
+//! How fast is each part, and how accurate is it at that speed?
+//!
+//! What a part is given is recorded from a walk of the whole chain and replayed through the part alone. Time is
+//! processor time of this process, which does nothing else meanwhile; reading it costs a few tenths of a microsecond,
+//! which stay in the figures.
+
+use std::error::Error;
+use std::hint::black_box;
+use std::path::Path;
+
+use config::scene::Integrator;
+use config::{Gait, Setup, Timeline};
+use controller::Controller;
+use messages::command::Domain;
+use messages::{Command, ControllerState, GaitState, JointTargets, LEFT, Plan, RIGHT, Sensors};
+use planner::Planner;
+use realtime::clock::processor_time;
+use serde::Serialize;
+use sim_backend::drive::{Drive, Motion};
+use sim_backend::integrate::Stepper;
+use sim_backend::plant::{Outside, Plant, orientation};
+
+use crate::chain::Chain;
+
+/// Runs of which the fastest counts, where the work is the same each time.
+const REPEATS: usize = 5;
+/// \[s\] Begin of the second that is simulated: the robot stands, or walks periodically.
+const BEGIN: f64 = 8.0;
+/// Cycles simulated from there.
+const CYCLES: usize = 1000;
+
+/// Everything that was measured.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Type 1 model alone.
+    pub simulation: Vec<Simulation>,
+    /// Whole chain in one process.
+    pub chain: Vec<WholeChain>,
+    /// Planner and stabilizer.
+    pub cycle: Cycle,
+    /// Plans.
+    pub plans: Vec<Plans>,
+}
+
+/// One second of the type 1 model with recorded joint targets.
+#[derive(Clone, Debug, Serialize)]
+pub struct Simulation {
+    /// What the robot does.
+    pub motion: String,
+    /// Integrator, and its steps per millisecond.
+    pub method: String,
+    /// Simulated time over processor time, sensors once per cycle.
+    pub real_time_factor: f64,
+    /// \[m\] Largest error of the torso's position.
+    pub position_error_m: f64,
+    /// \[rad\] Largest error of the torso's orientation.
+    pub orientation_error_rad: f64,
+    /// \[N\] Root mean square error of the normal force of the right foot.
+    pub force_error_rms_n: f64,
+}
+
+/// A scene with everything in the loop.
+#[derive(Clone, Debug, Serialize)]
+pub struct WholeChain {
+    /// Name of the scene.
+    pub scene: String,
+    /// Simulated time over processor time.
+    pub real_time_factor: f64,
+}
+
+/// Processor time of control cycles over a walk.
+#[derive(Clone, Debug, Serialize)]
+pub struct Cycle {
+    /// Cycles with a plan.
+    pub cycles: usize,
+    /// Whether the replayed joint targets were those of the chain, bit for bit.
+    pub same_targets: bool,
+    /// \[us\] Planner and stabilizer: median, p99, largest.
+    pub both_us: [f64; 3],
+    /// \[us\] Stabilizer alone.
+    pub stabilizer_us: [f64; 3],
+    /// \[us\] Planner alone.
+    pub planner_us: [f64; 3],
+}
+
+/// Plans of a walk with knots at most `spacing` apart.
+#[derive(Clone, Debug, Serialize)]
+pub struct Plans {
+    /// \[s\]
+    pub spacing_s: f64,
+    /// Collocation points of head and tail of a walking plan, the most that occurred.
+    pub points: u64,
+    /// \[us\] The planner's cycle in which a walking plan is made: median, p99, largest.
+    pub time_us: [f64; 3],
+    /// \[m\] How far three masses that move as planned miss the planned zero-moment point: largest over the plan.
+    pub zmp_error_m: f64,
+}
+
+/// Measures everything with the scenes `stand` and `walk_1kmh`.
+///
+/// # Errors
+/// A configuration or robot is wrong.
+pub fn run(config: &Path) -> Result<Report, Box<dyn Error>> {
+    let stand = Setup::load(config, "stand")?;
+    let walk = Setup::load(config, "walk_1kmh")?;
+    let mut simulation = simulations("standing", &stand)?;
+    simulation.extend(simulations("walking at 1 km/h", &walk)?);
+    let recording = Recording::new(&walk)?;
+    let spacing = walk.gait.model.spacing;
+    let mut plans = Vec::new();
+    for times in [0.75, 1.0, 1.5, 2.0, 3.0] {
+        plans.push(plan_times(&walk, &recording, times * spacing));
+    }
+    Ok(Report {
+        simulation,
+        chain: vec![whole_chain(&stand)?, whole_chain(&walk)?],
+        cycle: cycle_times(&walk, &recording)?,
+        plans,
+    })
+}
+
+// ------------------------------------------------------------------------------------------------ simulation alone
+
+/// A second of motion: where it begins, and the joint targets of its cycles.
+struct Second {
+    state: Vec<f64>,
+    before: JointTargets,
+    targets: Vec<JointTargets>,
+}
+
+/// Torso pose and normal force of the right foot at the end of every cycle.
+type Trajectory = Vec<([f64; 7], f64)>;
+
+fn simulations(motion: &str, setup: &Setup) -> Result<Vec<Simulation>, Box<dyn Error>> {
+    let second = Second::record(setup)?;
+    let mut plant = Plant::new(&setup.robot)?;
+    let mut simulate = |method, steps| second.simulate(&mut plant, setup, method, steps);
+    let (reference, _) = simulate(Integrator::RungeKutta4, 64);
+    use Integrator::{Euler, RungeKutta4};
+    let methods =
+        [(Euler, 1), (Euler, 4), (Euler, 16), (RungeKutta4, 1), (RungeKutta4, 4), (RungeKutta4, 32)];
+    let rows = methods.map(|(method, steps)| {
+        let mut best = f64::INFINITY;
+        let mut trajectory = Trajectory::new();
+        for _ in 0..REPEATS {
+            let (found, seconds) = simulate(method, steps);
+            (trajectory, best) = (found, best.min(seconds));
+        }
+        let pairs = || trajectory.iter().zip(&reference);
+        let position = pairs().map(|((a, _), (b, _))| distance(&a[..3], &b[..3]));
+        let square: f64 = pairs().map(|((_, a), (_, b))| (a - b).powi(2)).sum();
+        let turned = pairs().map(|((a, _), (b, _))| orientation(a).angle_to(&orientation(b)));
+        Simulation {
+            motion: motion.into(),
+            method: format!("{method:?} x {steps}"),
+            real_time_factor: CYCLES as f64 * setup.scene.cycle / best,
+            position_error_m: position.fold(0.0, f64::max),
+            orientation_error_rad: turned.fold(0.0, f64::max),
+            force_error_rms_n: (square / CYCLES as f64).sqrt(),
+        }
+    });
+    Ok(rows.into())
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+impl Second {
+    /// From the chain, [`BEGIN`] seconds into the scene.
+    fn record(setup: &Setup) -> Result<Self, Box<dyn Error>> {
+        let mut chain = Chain::new(setup)?;
+        let begin = (BEGIN / setup.scene.cycle) as usize;
+        let before = (0..begin).fold(JointTargets::default(), |_, _| chain.step().joint_targets);
+        let state = chain.robot().integrated().to_vec();
+        Ok(Self { state, before, targets: (0..CYCLES).map(|_| chain.step().joint_targets).collect() })
+    }
+
+    /// Simulates it; the trajectory, and the processor time \[s\].
+    fn simulate(
+        &self,
+        plant: &mut Plant,
+        setup: &Setup,
+        method: Integrator,
+        steps: u32,
+    ) -> (Trajectory, f64) {
+        let (n, dt) = (setup.robot.joints.len(), setup.scene.cycle);
+        let (mut x, none) = (self.state.clone(), Outside::default());
+        let mut stepper = Stepper::new(x.len());
+        let motion =
+            |t: &JointTargets, j: usize| Motion { angle: t.angle[j], speed: t.speed[j], acceleration: 0.0 };
+        let mut motions: Vec<Motion> = (0..n).map(|j| motion(&self.before, j)).collect();
+        let mut drives = vec![Drive::default(); n];
+        let mut trajectory = Trajectory::with_capacity(CYCLES);
+        let begun = processor_time();
+        for target in &self.targets {
+            for (j, drive) in drives.iter_mut().enumerate() {
+                *drive = Drive::follow(motions[j], target.angle[j], target.speed[j], dt);
+                motions[j] = motion(target, j);
+            }
+            let h = dt / f64::from(steps);
+            for i in 0..steps {
+                let tau = f64::from(i) * h;
+                stepper.step(method, tau, h, &mut x, |tau, x, dx| plant.rate(tau, x, &drives, &none, dx));
+            }
+            let seen = plant.snapshot(dt, &x, &drives, &none);
+            let mut pose = [0.0; 7];
+            pose.copy_from_slice(&x[..7]);
+            trajectory.push((pose, seen.foot_wrench[RIGHT].force[2]));
+        }
+        (trajectory, (processor_time() - begun) as f64 * 1e-9)
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------- whole chain
+
+fn whole_chain(setup: &Setup) -> Result<WholeChain, Box<dyn Error>> {
+    let cycles = (setup.scene.duration / setup.scene.cycle) as usize;
+    let mut best = f64::INFINITY;
+    for _ in 0..REPEATS {
+        let mut chain = Chain::new(setup)?;
+        let begun = processor_time();
+        for _ in 0..cycles {
+            black_box(chain.step());
+        }
+        best = best.min((processor_time() - begun) as f64 * 1e-9);
+    }
+    let real_time_factor = cycles as f64 * setup.scene.cycle / best;
+    Ok(WholeChain { scene: setup.scene.name.clone(), real_time_factor })
+}
+
+// --------------------------------------------------------------------------------------------- planner, stabilizer
+
+/// What planner and stabilizer saw and did in each cycle of a walk.
+struct Recording {
+    sensors: Vec<Sensors>,
+    states: Vec<ControllerState>,
+    targets: Vec<JointTargets>,
+}
+
+impl Recording {
+    fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
+        let mut chain = Chain::new(setup)?;
+        let mut r = Self { sensors: Vec::new(), states: Vec::new(), targets: Vec::new() };
+        for _ in 0..(setup.scene.duration / setup.scene.cycle) as usize {
+            let c = chain.step();
+            r.sensors.push(c.sensors);
+            r.states.push(c.controller_state);
+            r.targets.push(c.joint_targets);
+        }
+        Ok(r)
+    }
+
+    /// Replays the planner's input; `seen` is told the cycle and given the planner to step.
+    fn replay(
+        &self,
+        setup: &Setup,
+        gait: &Gait,
+        mut seen: impl FnMut(usize, &mut dyn FnMut(&mut Plan) -> bool),
+    ) {
+        let feet = &setup.robot.feet;
+        let mut planner = Planner::new(gait, [feet[RIGHT].support, feet[LEFT].support]);
+        let mut timeline = Timeline::new(&setup.scene, &[Domain::Walk]);
+        let mut due: Vec<Command> = Vec::with_capacity(16);
+        for i in 0..self.sensors.len() {
+            let tick = self.sensors[i].header.tick;
+            due.clear();
+            due.extend(std::iter::from_fn(|| timeline.due(tick)));
+            let before = i.checked_sub(1).map(|k| &self.states[k]);
+            seen(i, &mut |plan| {
+                let made = planner.step(tick, setup.scene.cycle, before, &due).plan;
+                made.inspect(|made| *plan = **made).is_some()
+            });
+        }
+    }
+}
+
+fn cycle_times(setup: &Setup, recording: &Recording) -> Result<Cycle, Box<dyn Error>> {
+    let mut controller = Controller::new(&setup.robot, &setup.gait, setup.scene.cycle)?;
+    let mut plan = Box::new(Plan::default());
+    let (mut planning, mut stabilizing, mut both) = (Vec::new(), Vec::new(), Vec::new());
+    let mut same_targets = true;
+    recording.replay(setup, &setup.gait, |i, planner| {
+        let begun = processor_time();
+        planner(&mut plan);
+        let planned = processor_time();
+        let (targets, _) = controller.step(&recording.sensors[i], (plan.id > 0).then_some(&*plan));
+        let done = processor_time();
+        same_targets &= targets.angle == recording.targets[i].angle;
+        if plan.id > 0 {
+            planning.push(planned - begun);
+            stabilizing.push(done - planned);
+            both.push(done - begun);
+        }
+    });
+    Ok(Cycle {
+        cycles: both.len(),
+        same_targets,
+        both_us: spread(both),
+        stabilizer_us: spread(stabilizing),
+        planner_us: spread(planning),
+    })
+}
+
+/// Median, p99 and largest of durations \[ns\], in microseconds.
+fn spread(mut ns: Vec<u64>) -> [f64; 3] {
+    ns.sort_unstable();
+    let last = ns.len().saturating_sub(1);
+    [last / 2, last * 99 / 100, last].map(|k| ns.get(k).copied().unwrap_or(0) as f64 * 1e-3)
+}
+
+// ---------------------------------------------------------------------------------------------------------- plans
+
+fn plan_times(setup: &Setup, recording: &Recording, spacing: f64) -> Plans {
+    let mut gait = setup.gait.clone();
+    gait.model.spacing = spacing;
+    let mut plan = Box::new(Plan::default());
+    let (mut times, mut points, mut error) = (Vec::new(), 0, 0.0f64);
+    for repeat in 0..10 * REPEATS {
+        recording.replay(setup, &gait, |_, planner| {
+            let begun = processor_time();
+            let made = planner(&mut plan);
+            let took = processor_time() - begun;
+            if made && GaitState::from(plan.state) == GaitState::Walking {
+                times.push(took);
+                if repeat == 0 {
+                    points = points.max(plan.com.pieces + 2); // two problems, each with a point more than pieces
+                    error = error.max(zmp_error(&plan, &gait));
+                }
+            }
+        });
+    }
+    Plans { spacing_s: spacing, points, time_us: spread(times), zmp_error_m: error }
+}
+
+/// Largest distance of the planned zero-moment point to that of three masses that move as planned (4.35)-(4.39).
+fn zmp_error(plan: &Plan, gait: &Gait) -> f64 {
+    const INSTANT: f64 = 1e-3;
+    let (leg, height) = (gait.model.leg_mass, gait.model.leg_height);
+    let body = 1.0 - 2.0 * leg;
+    let g = -multibody::GRAVITY.z;
+    let at = |t: f64| {
+        let com = plan.com.sample(t);
+        let feet = [plan.feet[0].sample(t), plan.feet[1].sample(t)];
+        let mut trunk = (com.position, com.acceleration);
+        for foot in &feet {
+            for d in 0..3 {
+                let lift = if d == 2 { height } else { 0.0 };
+                trunk.0[d] -= leg * (foot.position[d] + lift);
+                trunk.1[d] -= leg * foot.acceleration[d];
+            }
+        }
+        let trunk = (trunk.0.map(|x| x / body), trunk.1.map(|x| x / body));
+        let masses = feet.map(|f| {
+            let ([x, y, z, _], [ax, ay, az, _]) = (f.position, f.acceleration);
+            (leg, ([x, y, z + height], [ax, ay, az]))
+        });
+        let all = [masses[0], masses[1], (body, trunk)];
+        let force: f64 = all.iter().map(|(m, (_, a))| m * (a[2] + g)).sum();
+        let planned = plan.zmp.sample(t).0;
+        let miss = [0, 1].map(|d| {
+            let moment: f64 = all.iter().map(|(m, (p, a))| m * (p[d] * (a[2] + g) - p[2] * a[d])).sum();
+            moment / force - planned[d]
+        });
+        miss[0].hypot(miss[1])
+    };
+    (0..(plan.com.end() / INSTANT) as usize).map(|k| at(k as f64 * INSTANT)).fold(0.0, f64::max)
+}
+
+/// The report as lines for people.
+pub fn table(r: &Report) -> String {
+    let mut text = String::from(
+        "Type 1 model alone, 1 s with recorded joint targets, sensors every 1 ms; errors against RungeKutta4 x 64\n\
+         motion              steps per ms       real time   position [m]   orientation [rad]   normal force, rms [N]",
+    );
+    for s in &r.simulation {
+        text += &format!(
+            "\n{:20}{:17}{:9.0} x{:15.1e}{:20.1e}{:24.1e}",
+            s.motion,
+            s.method,
+            s.real_time_factor,
+            s.position_error_m,
+            s.orientation_error_rad,
+            s.force_error_rms_n
+        );
+    }
+    text += "\n\nWhole chain in one process";
+    for c in &r.chain {
+        text += &format!("\n{:20}{:26.0} x", c.scene, c.real_time_factor);
+    }
+    let three = |[median, p99, max]: [f64; 3]| format!("{median:9.2}{p99:9.2}{max:9.2}");
+    text += &format!(
+        "\n\nControl cycle, processor time [us]   median      p99      max     ({} cycles of walk_1kmh, replay {})",
+        r.cycle.cycles,
+        if r.cycle.same_targets { "bit for bit the chain's" } else { "DIFFERS from the chain" }
+    );
+    for (what, times) in [
+        ("planner + stabilizer", r.cycle.both_us),
+        ("stabilizer", r.cycle.stabilizer_us),
+        ("planner", r.cycle.planner_us),
+    ] {
+        text += &format!("\n{what:34}{}", three(times));
+    }
+    text += "\n\nA new walking plan: spacing, points       median      p99      max [us]   error of its zero-moment point";
+    for p in &r.plans {
+        let error = 1e3 * p.zmp_error_m;
+        text += &format!(
+            "\n{:18.3} s {:4} points      {}        {error:7.3} mm",
+            p.spacing_s,
+            p.points,
+            three(p.time_us)
+        );
+    }
+    text
+}
