@@ -65,7 +65,7 @@ pub struct Snapshot {
 /// Everything that acts on the robot from outside except the ground.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outside {
-    /// \[N\] @world Push at the torso's origin.
+    /// \[N\] @world Push at the torso's own centre of gravity.
     pub push: [f64; 3],
 }
 
@@ -135,7 +135,8 @@ impl Plant {
                 base_force += at_base(x, &scratch.contacts[i].0, &scratch.contacts[i].1);
             }
         }
-        base_force += at_base(x, &Vector3::new(x[0], x[1], x[2]), &outside.push.into());
+        let pushed = Vector3::new(x[0], x[1], x[2]) + orientation(x) * model.base_cog();
+        base_force += at_base(x, &pushed, &outside.push.into());
         let (m, bias) = model.base_dynamics(data, &scratch.q, &scratch.v, &scratch.joint_acceleration);
         let acceleration = m.cholesky().map_or(Vector6::zeros(), |c| c.solve(&(base_force - bias))); // (2.80)
         let o = orientation(x);

@@ -121,6 +121,11 @@ impl Model {
         6 + self.n()
     }
 
+    /// \[m\] Centre of gravity of the base body alone, in the base frame.
+    pub fn base_cog(&self) -> Vector3<f64> {
+        (self.bodies[0].mc * (1.0 / self.bodies[0].m)).into()
+    }
+
     /// \[kg\] Mass of the whole robot.
     pub fn mass(&self) -> f64 {
         self.carried[0]
