@@ -48,6 +48,8 @@ const LOOK: Duration = Duration::from_millis(10);
 const START_PATIENCE: u64 = 20 * clock::SECOND;
 /// After the death of a process of the chain the run goes on this long, so that the log shows what the robot did.
 const AFTERMATH: u64 = 3 * clock::SECOND;
+/// After the death of the planner: its last plan is walked to its end, up to seven steps and the time to come to rest.
+const LAST_PLAN: u64 = 12 * clock::SECOND;
 /// A process that was asked to end gets this long.
 const END_PATIENCE: u64 = 5 * clock::SECOND;
 /// After a first request to end the robot gets this long to come to a stand.
@@ -153,7 +155,8 @@ impl Supervisor {
                 view.say(&format!("{} died: {status}", process.name()));
                 outcome.died.push((process, status));
                 if !matches!(process, Process::Broker | Process::Logger) {
-                    end_at.get_or_insert(clock::now() + AFTERMATH);
+                    let aftermath = if process == Process::Planner { LAST_PLAN } else { AFTERMATH };
+                    end_at.get_or_insert(clock::now() + aftermath);
                 }
             }
             if end_at.is_some_and(|t| clock::now() > t) {

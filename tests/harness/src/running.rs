@@ -1,0 +1,133 @@
+//! A `gangwerk` at work, and what it said.
+
+use crate::place::Site;
+use ipc::Space;
+use messages::Process;
+use realtime::clock;
+use rustix::process::{Pid, Signal, kill_process};
+use std::fs::{self, File};
+use std::path::PathBuf;
+use std::process::{Child, Command};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// No command of a test takes longer \[s\].
+const PATIENCE: f64 = 120.0;
+
+/// Waits a little; only where nothing rings.
+pub fn doze(seconds: f64) {
+    clock::sleep_until(clock::now() + (seconds * 1e9) as u64);
+}
+
+/// How a command ended.
+#[derive(Clone, Debug)]
+pub struct Said {
+    /// Exit code; none: ended by a signal.
+    pub code: Option<i32>,
+    /// Standard output.
+    pub out: String,
+    /// Standard error.
+    pub err: String,
+}
+
+impl Said {
+    /// This, if the command ended well.
+    #[track_caller]
+    pub fn well(self) -> Self {
+        assert_eq!(self.code, Some(0), "{self:#?}");
+        self
+    }
+}
+
+/// A started `gangwerk`. Killed when dropped.
+pub struct Running {
+    child: Child,
+    run_dir: PathBuf,
+    out: PathBuf,
+    err: PathBuf,
+}
+
+impl Running {
+    pub(crate) fn start(command: &mut Command, site: &Site) -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let n = COUNT.fetch_add(1, Ordering::Relaxed);
+        // Files, not pipes: nobody waits for a reader.
+        let (out, err) = (site.path(&format!("{n}.out")), site.path(&format!("{n}.err")));
+        command.stdout(File::create(&out).expect("the place is ours"));
+        command.stderr(File::create(&err).expect("the place is ours"));
+        let child = command.spawn().expect("the executable was built for this test");
+        Self { child, run_dir: site.run_dir(), out, err }
+    }
+
+    /// Standard error so far.
+    pub fn err(&self) -> String {
+        fs::read_to_string(&self.err).unwrap_or_default()
+    }
+
+    /// Whether it is still at work.
+    pub fn is_alive(&mut self) -> bool {
+        self.child.try_wait().is_ok_and(|status| status.is_none())
+    }
+
+    /// Waits for its end.
+    #[track_caller]
+    pub fn end(mut self) -> Said {
+        let begun = clock::now();
+        while self.is_alive() {
+            let late = clock::now() - begun > (PATIENCE * 1e9) as u64;
+            assert!(!late, "did not end within {PATIENCE} s: {}", self.err());
+            doze(0.005);
+        }
+        let code = self.child.wait().expect("it has ended").code();
+        Said { code, out: fs::read_to_string(&self.out).unwrap_or_default(), err: self.err() }
+    }
+
+    /// Asks it to end, as Ctrl-C does.
+    pub fn interrupt(&self) {
+        signal(self.child.id(), Signal::INT);
+    }
+
+    /// SIGKILL to one process of the run.
+    pub fn kill(&self, process: Process) {
+        signal(self.pid(process), Signal::KILL);
+    }
+
+    /// Process id of one process of the run.
+    pub fn pid(&self, process: Process) -> u32 {
+        let path = self.run_dir.join(format!("{}.lock", process.name()));
+        let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        text.trim().parse().unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    }
+
+    /// The shared memory of the run, as soon as all its processes are there.
+    #[track_caller]
+    pub fn space(&mut self) -> Space {
+        let begun = clock::now();
+        let last = Process::Lowlevel.name();
+        while !self.run_dir.join(format!("{last}.lock")).exists() {
+            assert!(
+                self.is_alive() && clock::now() - begun < 30 * clock::SECOND,
+                "did not start: {}",
+                self.err()
+            );
+            doze(0.005);
+        }
+        Space::open(&self.run_dir, Process::Observer).unwrap_or_else(|e| panic!("{e}"))
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if self.is_alive() {
+            signal(self.child.id(), Signal::TERM);
+            doze(0.2);
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+        }
+    }
+}
+
+fn signal(pid: u32, signal: Signal) {
+    let pid = Pid::from_raw(pid as i32).expect("no process has id 0");
+    // One that is gone has ended.
+    let _ = kill_process(pid, signal);
+}

@@ -1,0 +1,123 @@
+//! Simulated time is the same however it is computed: one process or all, one core or two, today or again.
+//!
+//! Compared are the hashes of all payloads of every channel, but for those that speak of wall time (cycle statistics)
+//! or of processes that a single process does not have (broker, logger).
+
+use harness::Site;
+use recording::{Log, payload_hashes};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
+
+/// Standing up, three steps and a push on the way.
+const SCENE: &str = "
+[[command]]
+time = 0.2
+topic = \"walk/stand\"
+[[command]]
+time = 2.4
+topic = \"walk/velocity\"
+forward = 0.278
+[[push]]
+time = 4.5
+duration = 0.1
+force = [0.0, 20.0, 0.0]
+";
+const SECONDS: f64 = 6.0;
+
+type Hashes = BTreeMap<String, u64>;
+
+fn site() -> Site {
+    let site = Site::new(EXE);
+    site.scene("walk", SECONDS, SCENE);
+    site
+}
+
+fn hashes(log: &Path) -> Hashes {
+    let left_out = ["/gangwerk/cycle_stats/", "/gangwerk/events/broker", "/gangwerk/events/logger"];
+    payload_hashes(log, |channel| !left_out.iter().any(|name| channel.starts_with(name))).unwrap()
+}
+
+/// The log of `gangwerk sim`.
+fn sim(site: &Site) -> Hashes {
+    let log = site.path("sim.mcap");
+    site.gangwerk(&["sim", "walk", "--log", &log.display().to_string()]).well();
+    hashes(&log)
+}
+
+/// The log of `gangwerk run --lockstep` on these cores.
+fn run(site: &Site, cores: &[usize]) -> Hashes {
+    let arguments = site.run_arguments("walk", &["--lockstep"]);
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    site.start_on(cores, &arguments).end().well();
+    hashes(&site.path("walk.mcap"))
+}
+
+/// Names of the channels that are not the same in both.
+fn different(a: &Hashes, b: &Hashes) -> Vec<String> {
+    let names = a.keys().chain(b.keys()).cloned().collect::<std::collections::BTreeSet<_>>();
+    names.into_iter().filter(|name| a.get(name) != b.get(name)).collect()
+}
+
+#[test]
+fn one_process_and_all_processes_write_the_same_log_on_one_core_and_on_two() {
+    let site = site();
+    let alone = sim(&site);
+    assert_eq!(different(&alone, &sim(&site)), [""; 0], "twice alone");
+    for cores in [&[0][..], &[0, 1], &[0, 1]] {
+        assert_eq!(
+            different(&alone, &run(&site, cores)),
+            [""; 0],
+            "alone, and all processes on cores {cores:?}"
+        );
+    }
+}
+
+/// What the comparison is worth: the whole chain is in it, and every cycle.
+#[test]
+fn the_log_that_is_compared_holds_every_cycle_of_the_chain() {
+    let site = site();
+    let alone = sim(&site);
+    for topic in ["sensors", "plan", "joint_targets", "controller_state", "power", "sim_state"] {
+        assert!(alone.contains_key(&format!("/gangwerk/{topic}")), "{topic} of {:?}", alone.keys());
+    }
+    for process in ["watchdog", "sim_backend", "planner", "controller", "lowlevel"] {
+        assert!(
+            alone.contains_key(&format!("/gangwerk/events/{process}")),
+            "{process} of {:?}",
+            alone.keys()
+        );
+    }
+    let mut count = BTreeMap::<String, u64>::new();
+    let log = Log::open(&site.path("sim.mcap")).unwrap();
+    log.each(|message| *count.entry(message.channel.to_owned()).or_default() += 1).unwrap();
+    for topic in ["sensors", "joint_targets", "controller_state", "power", "sim_state"] {
+        assert_eq!(count[&format!("/gangwerk/{topic}")], (SECONDS * 1e3) as u64, "{topic}");
+    }
+}
+
+/// The comparison sees a foot lifted by a millionth of a metre more.
+#[test]
+fn a_micrometre_of_swing_height_changes_the_log() {
+    let (a, b) = (site(), site());
+    b.edit("gaits/lola.toml", "swing_height = 0.055", "swing_height = 0.055001");
+    let changed = different(&sim(&a), &run(&b, &[0, 1]));
+    for topic in ["plan", "joint_targets", "sensors", "sim_state"] {
+        assert!(changed.contains(&format!("/gangwerk/{topic}")), "{topic} of {changed:?}");
+    }
+}
+
+/// And a push of a thousandth of a newton for a thousandth of a second.
+#[test]
+fn a_micronewtonsecond_changes_the_log() {
+    let (a, b) = (site(), site());
+    b.edit("scenes/walk.toml", "force = [0.0, 20.0, 0.0]", "force = [0.0, 20.001, 0.0]");
+    b.edit("scenes/walk.toml", "duration = 0.1\n", "duration = 0.001\n");
+    a.edit("scenes/walk.toml", "duration = 0.1\n", "duration = 0.001\n");
+    let changed = different(&sim(&a), &sim(&b));
+    for topic in ["joint_targets", "sensors", "sim_state"] {
+        assert!(changed.contains(&format!("/gangwerk/{topic}")), "{topic} of {changed:?}");
+    }
+    assert!(!changed.contains(&"/gangwerk/power".to_owned()), "{changed:?}");
+}

@@ -1,0 +1,108 @@
+//! Every shipped scene, walked to its end and held against what it promises.
+
+use harness::{Site, root};
+use serde_json::Value;
+use std::f64::consts::TAU;
+
+const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
+
+/// \[rad\] Largest inclination error of an undisturbed walk.
+const INCLINATION: f64 = 0.03;
+/// Share of the commanded speed that the walking speed may differ by.
+const SPEED: f64 = 0.03;
+/// Share of its length by which a closed path may miss its beginning.
+const CLOSING: f64 = 0.05;
+/// Simulated time over processor time, planner and stabilizer in the loop, in an optimised build.
+const REAL_TIMES: f64 = 10.0;
+
+/// The figures of a scene, after what holds for each: done to its end, on its feet, upright, fast.
+fn figures(scene: &str, seconds: f64) -> Value {
+    let said = Site::new(EXE).gangwerk(&["sim", scene, "--json"]).well();
+    let f: Value = serde_json::from_str(&said.out).unwrap_or_else(|e| panic!("{e}: {}", said.out));
+    assert_eq!(f["scene"], scene);
+    assert_eq!(f["fell"], false, "{f:#}");
+    assert!((number(&f, "duration_s") - seconds).abs() < 0.01, "{f:#}");
+    for axis in 0..2 {
+        let error = f["inclination_error_max_rad"][axis].as_f64().unwrap();
+        assert!(error <= INCLINATION, "{scene}: {error} rad about axis {axis}");
+    }
+    if !cfg!(debug_assertions) {
+        assert!(number(&f, "real_time_factor") >= REAL_TIMES, "{f:#}");
+    }
+    f
+}
+
+fn number(figures: &Value, key: &str) -> f64 {
+    figures[key].as_f64().unwrap_or_else(|| panic!("{key} of {figures:#}"))
+}
+
+/// Walks at this speed \[km/h\], to within [`SPEED`].
+fn walks(figures: &Value, kmh: f64) {
+    let is = 3.6 * number(figures, "mean_speed_m_s");
+    assert!((is - kmh).abs() <= SPEED * kmh, "{is} km/h instead of {kmh}");
+}
+
+#[test]
+fn stand() {
+    let f = figures("stand", 10.0);
+    assert_eq!(f["steps"], 0);
+}
+
+#[test]
+fn walk_1kmh() {
+    walks(&figures("walk_1kmh", 20.0), 1.0);
+}
+
+#[test]
+fn walk_2kmh() {
+    walks(&figures("walk_2kmh", 20.0), 2.0);
+}
+
+#[test]
+fn walk_60s() {
+    walks(&figures("walk_60s", 60.0), 1.0);
+}
+
+#[test]
+fn walk_sideways() {
+    let f = figures("walk_sideways", 20.0);
+    walks(&f, 0.7);
+    let [x, y] = [0, 1].map(|i| f["end_pose"][i].as_f64().unwrap());
+    assert!(y > 1.9 && x.abs() < CLOSING * y, "sideways is to the left: {x}, {y}");
+}
+
+/// A full circle: back where it began, facing where it faced.
+#[test]
+fn walk_curve() {
+    let f = figures("walk_curve", 43.0);
+    let length = number(&f, "distance_m");
+    assert!(length > 6.0, "{length} m are no circle of 1.1 m radius");
+    let [x, y, heading] = [0, 1, 2].map(|i| f["end_pose"][i].as_f64().unwrap());
+    assert!(x.hypot(y) <= CLOSING * length, "ends at {x}, {y}");
+    assert!(heading.abs() <= CLOSING * TAU, "faces {heading} rad");
+}
+
+#[test]
+fn push() {
+    let f = figures("push", 20.0);
+    // The same walk on the spot without a push reaches 11 mrad: the push was there.
+    assert!(f["inclination_error_max_rad"][1].as_f64().unwrap() > 0.012, "{f:#}");
+}
+
+#[test]
+fn demo() {
+    let f = figures("demo", 34.0);
+    let heading = f["end_pose"][2].as_f64().unwrap();
+    assert!(number(&f, "steps") > 20.0 && heading > 1.0, "walks and turns: {f:#}");
+}
+
+/// No scene is shipped without a test here.
+#[test]
+fn every_shipped_scene_is_tested() {
+    let tests = std::fs::read_to_string(root().join("tests/scenes.rs")).unwrap();
+    for entry in std::fs::read_dir(root().join("config/scenes")).unwrap().flatten() {
+        let path = entry.path();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        assert!(tests.contains(&format!("\nfn {name}() {{")), "scene {name} has no test");
+    }
+}
