@@ -68,6 +68,14 @@ enum Task {
         #[arg(long, global = true, value_name = "DIR", default_value = cli::RUN_DIR)]
         dir: PathBuf,
     },
+    /// Parameters of the running stabilizer: list, read, set.
+    Param {
+        #[command(subcommand)]
+        what: ParamTask,
+        /// Where the processes meet.
+        #[arg(long, global = true, value_name = "DIR", default_value = cli::RUN_DIR)]
+        dir: PathBuf,
+    },
     /// Draw the pictures of a log.
     Plot {
         /// An MCAP file.
@@ -108,6 +116,25 @@ struct Place {
     /// The run directory.
     #[arg(long)]
     run: PathBuf,
+}
+
+#[derive(Subcommand)]
+enum ParamTask {
+    /// All parameters with unit, range and meaning; of a running robot also their values.
+    List,
+    /// The value of one.
+    Get {
+        /// Name of the parameter.
+        name: String,
+    },
+    /// Another value, from the next cycle on.
+    Set {
+        /// Name of the parameter.
+        name: String,
+        /// In its unit and range.
+        #[arg(allow_negative_numbers = true)]
+        value: f64,
+    },
 }
 
 #[derive(Subcommand)]
@@ -205,6 +232,15 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             }
             Ok(ExitCode::SUCCESS)
         }
+        Task::Param { what, dir } => {
+            realtime::end_with_reader();
+            match what {
+                ParamTask::List => cli::param::list(&dir),
+                ParamTask::Get { name } => cli::param::get(&dir, &name)?,
+                ParamTask::Set { name, value } => cli::param::set(&dir, &name, value)?,
+            }
+            Ok(ExitCode::SUCCESS)
+        }
         Task::Plot { log, out } => {
             let out = out.unwrap_or_else(|| log.with_extension(""));
             draw(&log, &out)?;
@@ -234,7 +270,10 @@ fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
         Task::Planner(p) => {
             planner::daemon::main(&p.run, Box::new(|s: &Space| commands("planner", &[Domain::Walk], s)))?
         }
-        Task::Controller(p) => controller::daemon::main(&p.run)?,
+        Task::Controller(p) => {
+            let connect = |s: &Space| commands("controller", &[Domain::Stabilize], s);
+            controller::daemon::main(&p.run, Box::new(connect))?;
+        }
         Task::Lowlevel(p) => lowlevel::daemon::main(&p.run)?,
         _ => {}
     }
@@ -321,14 +360,19 @@ fn realtime_study(
         let found = (seconds > 0).then(|| studies::cycles::cyclictest(core, priority, seconds))?;
         found.inspect_err(|error| tracing::warn!("{error}")).ok()
     };
-    std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
+    std::fs::create_dir_all(out)
+        .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
     let log = out.join(format!("{scene}.mcap"));
     let before = cyclictest();
     let (mode, dir, config) = (Mode::RealTime, cli::RUN_DIR.into(), config.to_path_buf());
     cli::run::run(&Order { mode, scene, config, dir, log: Some(log.clone()), progress: false })?;
     let after = cyclictest();
     let fell = cli::run::figures_of(&log, &setup)?.fell;
-    Ok(studies::cycles::Report { cyclictest_us: [before, after], fell, processes: studies::cycles::of_log(&log)? })
+    Ok(studies::cycles::Report {
+        cyclictest_us: [before, after],
+        fell,
+        processes: studies::cycles::of_log(&log)?,
+    })
 }
 
 fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Error>> {

@@ -6,7 +6,7 @@ use std::path::Path;
 use config::Setup;
 use messages::topics::{
     CONTROLLER_STATE, EVENTS_CONTROLLER, EVENTS_LOWLEVEL, EVENTS_PLANNER, EVENTS_SIM_BACKEND,
-    EVENTS_WATCHDOG, JOINT_TARGETS, PLAN, POWER, SENSORS, SIM_STATE,
+    EVENTS_WATCHDOG, JOINT_TARGETS, PARAMETERS, PLAN, POWER, SENSORS, SIM_STATE,
 };
 use messages::{Event, EventCode, Header, Process, Record, Topic};
 use recording::Recorder;
@@ -26,7 +26,7 @@ pub fn run(
     mut progress: impl FnMut(f64),
 ) -> Result<Figures, Box<dyn Error>> {
     let mut chain = Chain::new(setup)?;
-    let mut record = log.map(|path| LogWriter::create(path, setup)).transpose()?;
+    let mut record = log.map(|path| LogWriter::create(path, setup, &chain)).transpose()?;
     let mut gatherer = Gatherer::default();
     let cycles = (setup.scene.duration / setup.scene.cycle).round() as u64;
     let per_second = (1.0 / setup.scene.cycle).round() as u64;
@@ -64,9 +64,10 @@ const REPORTERS: [(Process, &Topic); 5] = [
 ];
 
 impl LogWriter {
-    fn create(path: &Path, setup: &Setup) -> Result<Self, Box<dyn Error>> {
+    fn create(path: &Path, setup: &Setup, chain: &Chain) -> Result<Self, Box<dyn Error>> {
         let mut record = Self { recorder: logger::recorder(path, setup)?, last: Header::default() };
         record.all(EventCode::Started)?;
+        record.put(&PARAMETERS, chain.parameters())?;
         Ok(record)
     }
 

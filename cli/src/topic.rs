@@ -23,7 +23,10 @@ pub fn list() {
         println!("  {:26} {}", c.name, c.about);
         for f in c.fields {
             let default = f.default.map_or("must be given".into(), |d| format!("default {d}"));
-            println!("      {:10} [{}, {}] {:6} {default}: {}", f.name, f.range[0], f.range[1], f.unit, f.about);
+            println!(
+                "      {:10} [{}, {}] {:6} {default}: {}",
+                f.name, f.range[0], f.range[1], f.unit, f.about
+            );
         }
     }
 }
@@ -43,8 +46,13 @@ pub fn publish(dir: &Path, name: &str, fields: &[String]) -> Result<(), Box<dyn 
 
 fn find(name: &str) -> Result<&'static Topic, String> {
     Topic::find(name).ok_or_else(|| {
-        let near = TOPICS.iter().map(|t| t.name).filter(|n| n.contains(name) || name.contains(n)).collect::<Vec<_>>();
-        let hint = if near.is_empty() { String::new() } else { format!("; did you mean {}?", near.join(" or ")) };
+        let near = TOPICS
+            .iter()
+            .map(|t| t.name)
+            .filter(|n| n.contains(name) || name.contains(n))
+            .collect::<Vec<_>>();
+        let hint =
+            if near.is_empty() { String::new() } else { format!("; did you mean {}?", near.join(" or ")) };
         format!("there is no topic {name}{hint} `gangwerk topic list` shows them all")
     })
 }

@@ -5,6 +5,8 @@
 //! - [`scene::Scene`]: `scenes/NAME.toml`: what is simulated.
 //! - [`system::System`]: `system.toml`: processes, cores, priorities, deadlines, limits of the run-time system.
 //!
+//! [`parameters::PARAMETERS`] may be changed while the robot runs.
+//!
 //! [`Setup`] reads all four for a scene, checks what they say about each other, and hashes them.
 //!
 //! Only this crate names TOML.
@@ -12,6 +14,7 @@
 mod error;
 mod file;
 pub mod gait;
+pub mod parameters;
 pub mod robot;
 pub mod scene;
 mod section;

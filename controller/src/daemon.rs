@@ -1,11 +1,12 @@
 //! The process around the stabilizer: `gangwerk controller --run DIR`.
 
 use crate::Controller;
-use daemon::Daemon;
+use daemon::{Connect, Daemon};
 use ipc::Mode;
-use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, PLAN, PLANNER_TICK, SENSORS};
-use messages::{ControllerState, Event, EventCode, Header, JointTargets, Plan, Process, Sensors};
-use realtime::clock;
+use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, PARAMETERS, PLAN, PLANNER_TICK, SENSORS};
+use messages::{
+    Command, ControllerState, Event, EventCode, Header, JointTargets, Parameters, Plan, Process, Sensors,
+};
 use std::error::Error;
 use std::path::Path;
 
@@ -13,7 +14,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// The process cannot start, or, in lockstep, joint loop or planner fell silent.
-pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
+pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut d = Daemon::new(Process::Controller, dir)?;
     let mut sensors = d.space.reader::<Sensors>(&SENSORS)?;
     let mut plan = d.space.reader::<Plan>(&PLAN)?;
@@ -24,6 +25,11 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
     let waiter = d.space.waiter(Process::Controller)?;
     let mut controller = Controller::new(&d.setup.robot, &d.setup.gait, d.setup.scene.cycle)?;
     let mut silence = PlannerSilence::default();
+    let mut commands = connect(&d.space)?;
+    let mut set = d.space.writer::<Parameters>(&PARAMETERS)?;
+    let mut parameters = Parameters::default();
+    controller.report_parameters(&mut parameters);
+    set.write(&parameters);
     d.report(Header::default(), EventCode::Started, 0);
 
     let mut header = Header::default();
@@ -37,7 +43,17 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
         {
             break;
         }
-        d.begin(clock::now());
+        d.begin_woken(header);
+        while let Some(command) = commands() {
+            let Command::Parameter(change) = command else { continue };
+            match controller.set_parameter(&change) {
+                Ok(()) => d.report(header, EventCode::ParameterSet, change.number.into()),
+                Err(code) => d.report(header, code, command.address().1.into()),
+            }
+            parameters.header = header;
+            controller.report_parameters(&mut parameters);
+            set.write(&parameters);
+        }
         let (new_targets, new_state) = controller.step(measured, plan.latest());
         state.write(new_state);
         targets.write(new_targets);

@@ -1,8 +1,10 @@
 //! One control cycle. Pure: no clock, no topics.
 
 use config::gait::Control;
+use config::parameters::PARAMETERS;
 use config::{Gait, Robot};
-use messages::{ControllerState, EventCode, JointMode, JointTargets, MAX_JOINTS, Plan, Sensors};
+use messages::command::ParameterCommand;
+use messages::{ControllerState, EventCode, JointMode, JointTargets, MAX_JOINTS, Parameters, Plan, Sensors};
 use multibody::ModelError;
 use nalgebra::{Matrix3, Matrix6, Rotation3, SMatrix, Vector2, Vector3, Vector6};
 
@@ -95,6 +97,21 @@ impl Controller {
     /// Something worth a line in the log, since the last call.
     pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
         self.event.take()
+    }
+
+    /// Gives a parameter another value from the next cycle on; an event if there is no such parameter or value.
+    pub fn set_parameter(&mut self, command: &ParameterCommand) -> Result<(), EventCode> {
+        let parameter = PARAMETERS.get(command.number as usize);
+        let set = parameter.is_some_and(|p| p.set(&mut self.control, command.value));
+        if set { Ok(()) } else { Err(EventCode::CommandRefused) }
+    }
+
+    /// Writes the present values of all parameters.
+    pub fn report_parameters(&self, record: &mut Parameters) {
+        record.count = PARAMETERS.len() as u64;
+        for (value, p) in record.values.iter_mut().zip(PARAMETERS) {
+            *value = p.get(&self.control);
+        }
     }
 
     /// One cycle: joint targets for its end, from the sensor data of its beginning and the newest plan.

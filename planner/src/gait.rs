@@ -154,7 +154,11 @@ impl Planner {
                 Some(p) => Some((Wish::Walk, Some(p))),
             }),
             Command::Stand | Command::Start => None,
-            Command::EmergencyStop | Command::Reset | Command::Enable | Command::Push(_) => return,
+            Command::EmergencyStop
+            | Command::Reset
+            | Command::Enable
+            | Command::Push(_)
+            | Command::Parameter(_) => return,
         };
         match taken {
             Some((wish, parameters)) => {

@@ -8,7 +8,7 @@ use controller::Controller;
 use lowlevel::JointLoop;
 use messages::command::Domain;
 use messages::{
-    BusFrames, Command, ControllerState, EventCode, JointTargets, Plan, Power, Process, Sensors, SimState,
+    BusFrames, Command, ControllerState, EventCode, JointTargets, Parameters, Plan, Power, Process, Sensors, SimState,
 };
 use multibody::ModelError;
 use planner::Planner;
@@ -72,6 +72,13 @@ impl Chain {
             cycle: Cycle::default(),
             plan: Box::default(),
         })
+    }
+
+    /// What the stabilizer is set to.
+    pub fn parameters(&self) -> Parameters {
+        let mut parameters = Parameters::default();
+        self.controller.report_parameters(&mut parameters);
+        parameters
     }
 
     /// Begins a push of the simulated robot now.

@@ -113,6 +113,8 @@ pub enum Command {
     Velocity(VelocityCommand),
     /// `sim/push`: push the simulated robot now.
     Push(PushCommand),
+    /// `stabilize/parameter`: give a parameter of the stabilizer another value, from the next cycle on.
+    Parameter(ParameterCommand),
 }
 
 /// Step parameters (thesis table 4.1).
@@ -156,6 +158,16 @@ pub struct PushCommand {
     pub duration: f64,
 }
 
+/// Another value for a parameter; `gangwerk param` knows them by name.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterCommand {
+    /// \[1\] Its number in the table of parameters.
+    pub number: u32,
+    /// In the parameter's unit and range.
+    pub value: f64,
+}
+
 impl Command {
     /// Domain and id of the message that carries this command.
     pub const fn address(&self) -> (Domain, u16) {
@@ -170,6 +182,7 @@ impl Command {
             Self::Step(_) => (Domain::Walk, 3),
             Self::Velocity(_) => (Domain::Walk, 4),
             Self::Push(_) => (Domain::Sim, 0),
+            Self::Parameter(_) => (Domain::Stabilize, 0),
         }
     }
 
@@ -194,6 +207,7 @@ impl Command {
             Self::Step(_) => "walk/step",
             Self::Velocity(_) => "walk/velocity",
             Self::Push(_) => "sim/push",
+            Self::Parameter(_) => "stabilize/parameter",
         }
     }
 }

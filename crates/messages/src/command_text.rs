@@ -4,7 +4,7 @@
 //! accepted. Text is `field=number`, separated by blanks or commas, in any order; fields with a default may be left
 //! out. Nothing here runs in a control cycle: errors are text and allocate.
 
-use crate::command::{Command, PushCommand, StepCommand, VelocityCommand};
+use crate::command::{Command, ParameterCommand, PushCommand, StepCommand, VelocityCommand};
 
 /// One number of a command.
 #[derive(Clone, Copy, Debug)]
@@ -91,6 +91,15 @@ pub const COMMANDS: &[CommandInfo] = &[
         ],
         build: |v| Command::Push(PushCommand { force: [v[0], v[1], v[2]], duration: v[3] }),
     },
+    CommandInfo {
+        name: "stabilize/parameter",
+        about: "give a parameter another value; gangwerk param does it by name",
+        fields: &[
+            field("number", "", [0.0, 1e3], None, "number in the table of gangwerk param list"),
+            field("value", "", [-1e9, 1e9], None, "in the parameter's unit"),
+        ],
+        build: |v| Command::Parameter(ParameterCommand { number: v[0] as u32, value: v[1] }),
+    },
 ];
 
 impl CommandInfo {
@@ -128,6 +137,7 @@ impl Command {
         match *self {
             Self::Step(s) => [s.length, s.side, s.turn, s.duration],
             Self::Velocity(v) => [v.forward, v.left, v.turn, 0.0],
+            Self::Parameter(p) => [f64::from(p.number), p.value, 0.0, 0.0],
             Self::Push(p) => [p.force[0], p.force[1], p.force[2], p.duration],
             _ => [0.0; MAX_FIELDS],
         }

@@ -58,11 +58,13 @@ pub enum EventCode {
     MessagesLost = 24,
     /// A sensor value is not finite; the last good ones are used, then a stop.
     SensorNotFinite = 25,
+    /// A parameter got another value; detail: its number.
+    ParameterSet = 26,
 }
 
 impl EventCode {
     /// All codes, in order of their numbers.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 27] = [
         Self::None,
         Self::Started,
         Self::Ended,
@@ -89,6 +91,7 @@ impl EventCode {
         Self::LogDropped,
         Self::MessagesLost,
         Self::SensorNotFinite,
+        Self::ParameterSet,
     ];
 
     /// The code of a number from a record.

@@ -2,7 +2,7 @@
 
 use crate::record::Record;
 use crate::{
-    BusFrames, ControllerState, CycleStats, Event, JointTargets, Plan, Power, Sensors, SimState,
+    BusFrames, ControllerState, CycleStats, Event, JointTargets, Parameters, Plan, Power, Sensors, SimState,
     WatchdogReset,
 };
 
@@ -127,6 +127,9 @@ topics! {
     /// What the stabilizer sees and does.
     CONTROLLER_STATE: ControllerState = "controller_state", Controller -> [Planner], wakes [],
         1000 Hz, stale 100, depth 256, logged true;
+    /// Parameters of the stabilizer.
+    PARAMETERS: Parameters = "parameters", Controller -> [], wakes [],
+        0 Hz, stale 0, depth 8, logged true;
     /// Sign of life of the joint loop.
     WATCHDOG_RESET: WatchdogReset = "watchdog_reset", Lowlevel -> [Watchdog], wakes [Watchdog],
         1000 Hz, stale 3, depth 4, logged false;

@@ -1,6 +1,6 @@
 //! Bytes of commands: golden vectors, an independent decoder, hostile bytes.
 
-use messages::command::{Command, PushCommand, StepCommand, VelocityCommand};
+use messages::command::{Command, ParameterCommand, PushCommand, StepCommand, VelocityCommand};
 use messages::wire::{MAX_BYTES, decode, encode};
 use proptest::prelude::*;
 
@@ -17,6 +17,7 @@ enum Peer {
     Step { length: f64, side: f64, turn: f64, duration: f64 },
     Velocity { forward: f64, left: f64, turn: f64 },
     Push { force: [f64; 3], duration: f64 },
+    Parameter { number: u32, value: f64 },
 }
 
 impl From<Command> for Peer {
@@ -36,6 +37,7 @@ impl From<Command> for Peer {
                 Self::Velocity { forward, left, turn }
             }
             Command::Push(PushCommand { force, duration }) => Self::Push { force, duration },
+            Command::Parameter(ParameterCommand { number, value }) => Self::Parameter { number, value },
         }
     }
 }
@@ -52,6 +54,8 @@ fn any_command() -> impl Strategy<Value = Command> {
             Command::Start,
             Command::Stop,
         ]),
+        (any::<u32>(), f())
+            .prop_map(|(number, value)| Command::Parameter(ParameterCommand { number, value })),
         (f(), f(), f(), f()).prop_map(|(length, side, turn, duration)| Command::Step(StepCommand {
             length,
             side,

@@ -1,0 +1,18 @@
+//! `parameters`: what the stabilizer is set to.
+
+use crate::{Header, record};
+
+/// Room for parameters in a record.
+pub const MAX_PARAMETERS: usize = 64;
+
+record! {
+    /// Present values of all parameters, in the order of their table. Written by controller at start and after a change.
+    record Parameters {
+        /// The cycle from which they hold.
+        header: Header,
+        /// \[1\] How many there are.
+        count: u64,
+        /// Each in its own unit.
+        values: [f64; 64],
+    }
+}
