@@ -38,6 +38,7 @@ pub fn list() {
 pub fn publish(dir: &Path, name: &str, fields: &[String]) -> Result<(), Box<dyn Error>> {
     let command = Command::parse(name, &fields.join(" "))?;
     let run = Run::load(dir)?;
+    let _alive = Space::open(dir, Process::Observer)?; // the port may serve another run
     let port = System::load(&run.config.join("system.toml"))?.tcp_port;
     let clients = broker::TcpClient::connect(port)?.publish(&command)?;
     println!("{} taken by {clients} process{}", command.name(), if clients == 1 { "" } else { "es" });
