@@ -258,7 +258,7 @@ fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
     match task {
         Task::Broker(p) => broker::daemon::main(&p.run, None)?,
         Task::Watchdog(p) => {
-            watchdog::daemon::main(&p.run, Box::new(|s: &Space| commands("watchdog", &[Domain::System], s)))?
+            watchdog::daemon::main(&p.run, Box::new(|s: &Space| commands("watchdog", &[Domain::System], s)))?;
         }
         Task::SimBackend(p) => {
             sim_backend::daemon::main(
@@ -268,7 +268,7 @@ fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
         }
         Task::Logger(p) => logger::daemon::run(&ipc::Run::load(&p.run)?, &Stop::on_signals()?)?,
         Task::Planner(p) => {
-            planner::daemon::main(&p.run, Box::new(|s: &Space| commands("planner", &[Domain::Walk], s)))?
+            planner::daemon::main(&p.run, Box::new(|s: &Space| commands("planner", &[Domain::Walk], s)))?;
         }
         Task::Controller(p) => {
             let connect = |s: &Space| commands("controller", &[Domain::Stabilize], s);

@@ -83,12 +83,10 @@ impl InverseKinematics {
         const FLOOR: f64 = 1e-5;
         let regular = Cholesky::new(gram).filter(|c| c.l_dirty().diagonal().min() > FLOOR.sqrt());
         let damped = regular.is_none();
-        let gram = regular
-            .or_else(|| Cholesky::new(gram + Gram::identity() * FLOOR))
-            .unwrap_or_else(|| {
-                // Not even semi-definite: NaN in the Jacobian. Nothing moves.
-                Cholesky::new_unchecked(Gram::identity() * f64::INFINITY)
-            });
+        let gram = regular.or_else(|| Cholesky::new(gram + Gram::identity() * FLOOR)).unwrap_or_else(|| {
+            // Not even semi-definite: NaN in the Jacobian. Nothing moves.
+            Cholesky::new_unchecked(Gram::identity() * f64::INFINITY)
+        });
         Factorised { jacobian: *jacobian, gram, damped }
     }
 
@@ -111,7 +109,11 @@ impl InverseKinematics {
     }
 
     /// Joint speeds that realise a unit of each column of `u`, without null-space motion: J_W^# u.
-    pub fn columns<const M: usize>(&self, f: &Factorised, u: &SMatrix<f64, TASK, M>) -> SMatrix<f64, MAX_JOINTS, M> {
+    pub fn columns<const M: usize>(
+        &self,
+        f: &Factorised,
+        u: &SMatrix<f64, TASK, M>,
+    ) -> SMatrix<f64, MAX_JOINTS, M> {
         let mu = f.gram.solve(u);
         let mut speeds = SMatrix::zeros();
         for &j in &self.free {

@@ -306,7 +306,9 @@ impl Controller {
             let rows = axes[foot].transpose();
             // Lift, roll and pitch of this sole against the torso.
             let mut motion = SMatrix::<f64, 3, 6>::zeros();
-            for (j, twist) in self.desired.sole_jacobian(foot).column_iter().enumerate().filter(|(j, _)| self.free[*j]) {
+            for (j, twist) in
+                self.desired.sole_jacobian(foot).column_iter().enumerate().filter(|(j, _)| self.free[*j])
+            {
                 let (linear, turn) = (rows * twist.fixed_rows::<3>(0), rows * twist.fixed_rows::<3>(3));
                 motion += Vector3::new(linear.z, turn.x, turn.y) * speeds.row(j);
             }

@@ -294,7 +294,7 @@ mod tests {
         let before = momentum(&mut plant, &x);
         for _ in 0..300 {
             stepper.step(Integrator::RungeKutta4, 0.0, 1e-3, &mut x, |t, x, dx| {
-                plant.rate(t, x, &drives, &none, dx)
+                plant.rate(t, x, &drives, &none, dx);
             });
         }
         let after = momentum(&mut plant, &x);
@@ -322,7 +322,7 @@ mod tests {
         for i in 0..50 {
             let t0 = f64::from(i) * 1e-3;
             stepper.step(Integrator::RungeKutta4, t0, 1e-3, &mut x, |t, x, dx| {
-                plant.rate(t, x, &drives, &none, dx)
+                plant.rate(t, x, &drives, &none, dx);
             });
         }
         plant.load(0.05, &x, &drives);

@@ -8,7 +8,8 @@ use controller::Controller;
 use lowlevel::JointLoop;
 use messages::command::Domain;
 use messages::{
-    BusFrames, Command, ControllerState, EventCode, JointTargets, Parameters, Plan, Power, Process, Sensors, SimState,
+    BusFrames, Command, ControllerState, EventCode, JointTargets, Parameters, Plan, Power, Process, Sensors,
+    SimState,
 };
 use multibody::ModelError;
 use planner::Planner;

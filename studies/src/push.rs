@@ -1,6 +1,6 @@
 //! Which impulse does the walking robot survive? Bisection, at several instants of a stride.
 //!
-//! A push of 0.1 s at the torso's origin. Survived: [`AFTER`] later the robot has not fallen, and no process has stopped
+//! A push of 0.1 s at the torso's origin. Survived: `AFTER` later the robot has not fallen, and no process has stopped
 //! it. The way it walks repeats with every stride of two steps, so the instants are spread over one stride.
 
 use std::path::Path;

@@ -247,7 +247,7 @@ impl Chart {
             let middle = y - 7.0;
             match *key {
                 Key::Line(pen) => {
-                    canvas.line(&[[x - 34.0, middle], [x, middle]], Pen { width: pen.width.max(2.5), ..pen })
+                    canvas.line(&[[x - 34.0, middle], [x, middle]], Pen { width: pen.width.max(2.5), ..pen });
                 }
                 Key::Dot(color) => canvas.dot([x - 10.0, middle], 6.0, color),
                 Key::Patch(color) => {

@@ -67,8 +67,7 @@ fn sensors(tick: u64) -> Sensors {
 }
 
 fn state(tick: u64) -> SimState {
-    let mut state = SimState::default();
-    state.header = sensors(tick).header;
+    let mut state = SimState { header: sensors(tick).header, ..SimState::default() };
     state.position = [0.001 * tick as f64, 0.0, 1.0];
     let (s, c) = (0.1 * tick as f64).sin_cos();
     state.orientation = [0.0, 0.0, s, c];
@@ -95,15 +94,12 @@ fn write(path: &Path, change: impl Fn(u64, &mut Sensors)) {
 fn records_come_back() {
     let path = file("records.mcap");
     let mut recorder = Recorder::create(&path, &robot(), &run()).unwrap();
-    let mut plan = Plan::default();
-    plan.id = 7;
+    let mut plan = Plan { id: 7, ..Plan::default() };
     plan.header.stamp_ns = 5;
     recorder.write(&PLAN, &plan).unwrap();
-    let mut controller = ControllerState::default();
-    controller.zmp = [f64::NAN, 0.25];
+    let controller = ControllerState { zmp: [f64::NAN, 0.25], ..ControllerState::default() };
     recorder.write(&CONTROLLER_STATE, &controller).unwrap();
-    let mut event = Event::default();
-    event.code = EventCode::PlanActive as u64;
+    let event = Event { code: EventCode::PlanActive as u64, ..Event::default() };
     recorder.write(&EVENTS_CONTROLLER, &event).unwrap();
     recorder.finish().unwrap();
 
