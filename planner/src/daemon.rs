@@ -7,7 +7,6 @@ use ipc::Mode;
 use messages::command::Domain;
 use messages::topics::{CONTROLLER_STATE, PLAN, PLANNER_TICK, SENSORS};
 use messages::{Command, ControllerState, Event, EventCode, Header, Plan, Process, Sensors};
-use realtime::clock;
 use std::error::Error;
 use std::path::Path;
 
@@ -39,7 +38,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut header = Header::default();
     while d.wait(&waiter, "lowlevel", || sensors.refresh())? {
         header = sensors.held().map_or(header, |s| s.header);
-        d.begin(clock::now());
+        d.begin_woken(header);
         let mut waiting = [Command::Stop; MAX_COMMANDS];
         let mut count = 0;
         while count < MAX_COMMANDS

@@ -59,7 +59,11 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
                 let now = clock::now();
                 if new || (running && now >= due + patience) {
                     due = if new { now } else { due + period };
-                    d.begin(now);
+                    if let Some(frames) = ports.tx.held().filter(|_| new) {
+                        d.begin_woken(frames.header);
+                    } else {
+                        d.begin(due);
+                    }
                     header = cycle(&mut d, &mut sim, &mut ports);
                 } else if !running {
                     due = now;

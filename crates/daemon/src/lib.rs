@@ -8,7 +8,7 @@ use config::Setup;
 use ipc::{Bell, IpcError, Mode, Run, Space, Waiter, Woken, Writer};
 use messages::topics::{Process, Topic};
 use messages::{Command, CycleStats, Event, EventCode, Header};
-use realtime::{CycleMeter, Schedule, Stop, clock, prepare_thread};
+use realtime::{CycleMeter, Granted, Schedule, Stop, clock, prepare_thread};
 use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
@@ -19,7 +19,7 @@ pub type Commands = Box<dyn FnMut() -> Option<Command>>;
 /// Opens the source of live commands in a space.
 pub type Connect<'a> = Box<dyn FnOnce(&Space) -> Result<Commands, String> + 'a>;
 
-/// Cycles before counting begins: everything has been touched once.
+/// Cycles of the running chain before counting begins: everything has been touched once, everybody is connected.
 const WARM_UP: u64 = 100;
 /// Cycles from one record of statistics to the next.
 const STATS_EVERY: u64 = 100;
@@ -43,6 +43,7 @@ pub struct Daemon {
     events: Writer<Event>,
     bells: Vec<Bell>,
     cycle: u64,
+    granted: Granted,
 }
 
 impl Daemon {
@@ -63,6 +64,7 @@ impl Daemon {
         for missing in &granted.missing {
             tracing::warn!("{} degraded: {missing}", process.name());
         }
+        granted.stand_back();
         let space = run.enter(process)?;
         let deadline = row.map_or(0, |row| row.deadline_ns);
         Ok(Self {
@@ -71,6 +73,7 @@ impl Daemon {
             events: space.writer(topic(process, "events")?)?,
             bells: Vec::new(),
             cycle: 0,
+            granted,
             logged: run.log.is_some(),
             mode: run.mode,
             process,
@@ -103,7 +106,12 @@ impl Daemon {
 
     /// Waits until `ready`; `Ok(false)`: asked to end. In lockstep a silent peer is an error that names it; in real time
     /// it is waited for without end: its silence is seen by the age of what it wrote.
-    pub fn wait(&self, waiter: &Waiter, peer: &str, mut ready: impl FnMut() -> bool) -> Result<bool, Box<dyn Error>> {
+    pub fn wait(
+        &self,
+        waiter: &Waiter,
+        peer: &str,
+        mut ready: impl FnMut() -> bool,
+    ) -> Result<bool, Box<dyn Error>> {
         loop {
             match waiter.wait_until(self.patience(), || self.stop.asked(), &mut ready) {
                 Woken::Ready => return Ok(true),
@@ -112,10 +120,20 @@ impl Daemon {
                 Woken::Silent => {
                     let seconds = self.patience().as_secs_f64();
                     let me = self.process.name();
-                    return Err(format!("{me}: lockstep: {peer} did not answer within {seconds} s; is it running?").into());
+                    return Err(format!(
+                        "{me}: lockstep: {peer} did not answer within {seconds} s; is it running?"
+                    )
+                    .into());
                 }
             }
         }
+    }
+
+    /// A cycle begins that the record with this header woke: in real time it was planned for when the bus cycle began.
+    pub fn begin_woken(&mut self, by: Header) {
+        let now = clock::now();
+        let planned_ns = if self.mode == Mode::RealTime { by.stamp_ns } else { now };
+        self.meter.begin(planned_ns, now);
     }
 
     /// A cycle that was planned for `planned_ns` begins.
@@ -126,20 +144,24 @@ impl Daemon {
     /// The cycle `header` ends, and `skipped` wake-ups were missed.
     pub fn end(&mut self, header: Header, skipped: u64) {
         self.meter.end(clock::now(), skipped);
-        self.cycle += 1;
+        // Before the first tick the processes that come later are not there yet, and bells connect to them.
+        self.cycle += u64::from(header.tick > 0);
         if self.cycle == WARM_UP {
             self.bells.iter().for_each(Bell::connect);
             self.meter.arm();
         }
-        if self.cycle.is_multiple_of(STATS_EVERY) {
+        if header.tick > 0 && self.cycle.is_multiple_of(STATS_EVERY) {
             let stats = self.meter.stats();
             stats.header = header;
             self.stats.write(stats);
         }
     }
 
-    /// Writes an event.
+    /// Writes an event. With `Started` everything is built: from here on the process has its real-time priority.
     pub fn report(&mut self, header: Header, code: EventCode, detail: u64) {
+        if code == EventCode::Started {
+            self.granted.engage();
+        }
         self.events.write(&Event { header, code: code as u64, detail });
     }
 }

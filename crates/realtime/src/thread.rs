@@ -49,6 +49,23 @@ impl Granted {
     }
 }
 
+impl Granted {
+    /// Gives the real-time priority back until [`Granted::engage`]: who builds for milliseconds at the priority of
+    /// a running joint loop, of another robot or of the one that this process replaces, stops it for as long.
+    pub fn stand_back(&self) {
+        if self.priority > 0 {
+            schedule(libc::SCHED_OTHER, 0);
+        }
+    }
+
+    /// Takes the priority that was granted.
+    pub fn engage(&self) {
+        if self.priority > 0 {
+            schedule(libc::SCHED_FIFO, self.priority);
+        }
+    }
+}
+
 /// Prepares the calling thread; before its ports are made, so that they are locked too.
 ///
 /// Threads it starts later are ordinary ones on the same core. Nothing fails here: what is missing is listed.
@@ -149,16 +166,20 @@ fn bind(core: usize, missing: &mut Vec<String>) -> Option<usize> {
 }
 
 fn fifo(priority: u8, missing: &mut Vec<String>) -> u8 {
-    let param = libc::sched_param { sched_priority: i32::from(priority) };
-    // SAFETY: `param` is a valid `sched_param` that outlives the call; 0 means the calling thread.
-    let done = unsafe { libc::sched_setscheduler(0, libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK, &param) };
-    if done != 0 {
+    if !schedule(libc::SCHED_FIFO, priority) {
         missing.push(format!(
             "no SCHED_FIFO priority {priority}: {} (needs CAP_SYS_NICE or rtprio in /etc/security/limits.conf)",
             std::io::Error::last_os_error()
         ));
     }
     scheduler_priority()
+}
+
+/// Sets policy and priority of the calling thread; whether that was allowed. Threads it starts are ordinary ones.
+fn schedule(policy: i32, priority: u8) -> bool {
+    let param = libc::sched_param { sched_priority: i32::from(priority) };
+    // SAFETY: `param` is a valid `sched_param` that outlives the call; 0 means the calling thread.
+    unsafe { libc::sched_setscheduler(0, policy | libc::SCHED_RESET_ON_FORK, &param) == 0 }
 }
 
 /// SCHED_FIFO priority of this thread, 0 if it is an ordinary one.
