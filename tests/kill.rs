@@ -32,7 +32,7 @@ time = 5.2
 topic = \"walk/stop\"
 ";
 /// \[s\] Length of the scene, and when the process dies: the robot swings a leg.
-const SECONDS: f64 = 11.5;
+const SECONDS: f64 = 13.0;
 const DEATH: f64 = 4.9;
 /// Runs of one scenario that may be spoilt from outside.
 const ATTEMPTS: u32 = 3;
@@ -132,8 +132,8 @@ fn kill(victim: Process) -> Evidence {
     }
     seen.look();
     let at = seen.sim.all.len();
-    run.kill(victim);
     let (signalled, mut wall_off) = (clock::now(), None);
+    run.kill(victim);
     while run.is_alive() {
         seen.look();
         if wall_off.is_none() && seen.sim.all[at..].iter().any(|s| s.power == 0) {
@@ -146,12 +146,10 @@ fn kill(victim: Process) -> Evidence {
 }
 
 impl Evidence {
-    /// Cycles from the death to the end of the scene, or to half a second before the run ends after a death that ends it.
+    /// Cycles from the death until shortly before the run ends, which cuts the supply too.
     fn after(&self) -> &[SimState] {
         let all = &self.seen.sim.all[self.at..];
-        let enough =
-            if self.said.err.contains("asked to end") { all.len() } else { all.len().saturating_sub(500) };
-        &all[..enough]
+        &all[..all.len().saturating_sub(500)]
     }
 
     /// First cycle after the death without motor supply \[cycles\].
@@ -195,13 +193,15 @@ impl Evidence {
     }
 }
 
-/// Codes of a process as text, in order.
+/// What the processes said between the death and the end of the run.
 fn events(e: &Evidence) -> String {
-    let mut text = Vec::new();
+    let until = e.after().last().map_or(0, |s| s.header.tick);
+    let mut text: Vec<String> = Vec::new();
     for (process, track) in &e.seen.events {
-        for event in track.all.iter().filter(|event| event.header.tick >= e.tick()) {
+        for event in track.all.iter().filter(|event| (e.tick()..=until).contains(&event.header.tick)) {
             let code = EventCode::from_number(event.code).unwrap_or(EventCode::None);
-            if !matches!(code, EventCode::Started | EventCode::Ended | EventCode::PlanActive) {
+            let routine = [EventCode::Started, EventCode::Ended, EventCode::PlanActive, EventCode::Overrun];
+            if !routine.contains(&code) {
                 text.push(format!("{}: {code:?} ({})", process.name(), event.detail));
             }
         }
@@ -219,6 +219,11 @@ impl Evidence {
 /// What must be so. The limits are those of `system.toml` and of the robot's brakes.
 fn judge(e: &Evidence, setup: &Setup) -> Result<(), String> {
     let check = |right: bool, what: &str| if right { Ok(()) } else { Err(what.to_owned()) };
+    let said_twice = e.seen.events.iter().find_map(|(process, track)| {
+        let fallen = track.all.iter().filter(|event| event.code == EventCode::Fallen as u64).count();
+        (fallen > 1).then(|| format!("{} said {fallen} times that the robot has fallen", process.name()))
+    });
+    said_twice.map_or(Ok(()), Err)?;
     let braking = braking_cycles(e, setup);
     let missed = u64::from(setup.system.watchdog_missed);
     match e.victim {
@@ -326,7 +331,7 @@ fn check_log(e: &Evidence) {
 
 fn row(e: &Evidence, note: &str) -> String {
     let ms = |cycles: Option<usize>| cycles.map_or("-".into(), |n| format!("{n} ms"));
-    let wall = e.wall_off.map_or("-".into(), |t| format!("{t:.1} ms"));
+    let wall = e.wall_off.filter(|_| e.power_off().is_some()).map_or("-".into(), |t| format!("{t:.1} ms"));
     let fell = if e.fell() { "yes" } else { "no" };
     let (off, rest) = (ms(e.power_off()), ms(e.at_rest()));
     let code = e.said.code.map_or("-".into(), |c| c.to_string());

@@ -1,0 +1,214 @@
+//! Bad input of every kind: one clear error, nothing moves, nothing is left behind, a robot that runs goes on.
+
+use harness::{Running, Said, Site, doze};
+use ipc::Space;
+use messages::topics::SIM_STATE;
+use messages::{Process, SimState};
+use realtime::clock;
+use std::io::{Read, Write};
+use std::net::{Ipv4Addr, TcpStream};
+
+const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
+
+/// Both ways to run the scene `stand` refuse with the same error, which holds all of `texts`; no process was started.
+fn refused(site: &Site, scene: &str, texts: &[&str]) {
+    let run = site.run(scene, &["--lockstep"]).end();
+    one_error(&run, texts);
+    one_error(&site.gangwerk(&["sim", scene, "--json"]), texts);
+    assert_eq!(run.out, "", "nothing was done");
+    let lock = |p: &Process| site.run_dir().join(format!("{}.lock", p.name())).exists();
+    assert!(!Process::ALL.iter().any(lock), "a process was started");
+    assert_eq!(site.shared_memory(), [""; 0], "left in /dev/shm");
+}
+
+/// Exit code 1, one line that begins with `error:`, and it holds the texts.
+#[track_caller]
+fn one_error(said: &Said, texts: &[&str]) {
+    assert_eq!(said.code, Some(1), "{said:#?}");
+    let errors = said.err.lines().filter(|line| line.to_lowercase().contains("error")).count();
+    assert_eq!(errors, 1, "one error: {}", said.err);
+    assert!(!said.err.contains("panicked"), "{}", said.err);
+    for text in texts {
+        assert!(said.err.contains(text), "`{text}` in: {}", said.err);
+    }
+}
+
+#[test]
+fn a_misspelt_key_is_named_with_its_line_and_the_nearest_one() {
+    let site = Site::new(EXE);
+    site.edit("gaits/lola.toml", "swing_height", "swing_heigth");
+    let texts = ["gaits/lola.toml", "line 6", "step.swing_heigth", "unknown key", "`swing_height`"];
+    refused(&site, "stand", &texts);
+}
+
+#[test]
+fn a_number_in_the_wrong_unit_is_refused_with_the_range() {
+    let site = Site::new(EXE);
+    site.edit("scenes/stand.toml", "cycle = 0.001 # [s]", "cycle = 1.0 # [ms]");
+    refused(&site, "stand", &["scenes/stand.toml", "line 7", "cycle: 1", "0.0001 to 0.02 s"]);
+}
+
+#[test]
+fn a_missing_scene_is_named_with_those_there_are() {
+    refused(&Site::new(EXE), "walk_3kmh", &["scenes/walk_3kmh.toml", "cannot be read", "walk_1kmh, walk_2kmh"]);
+}
+
+#[test]
+fn a_missing_file_that_the_scene_names_is_named() {
+    let site = Site::new(EXE);
+    std::fs::remove_file(site.config("gaits/lola.toml")).unwrap();
+    refused(&site, "stand", &["gaits/lola.toml", "cannot be read"]);
+}
+
+#[test]
+fn a_urdf_with_a_loop_is_refused_with_the_joints_that_close_it() {
+    let site = Site::new(EXE);
+    let bar = "<joint name=\"bar\" type=\"fixed\"><parent link=\"left_thigh\"/><child link=\"right_shank\"/></joint>\n</robot>";
+    site.edit("robots/lola/lola.urdf", "</robot>", bar);
+    refused(&site, "stand", &["right_shank", "`bar`", "`right_knee_flexion`", "remove one joint"]);
+}
+
+#[test]
+fn a_urdf_with_a_massless_link_is_refused_with_the_link() {
+    let site = Site::new(EXE);
+    site.edit("robots/lola/lola.urdf", "<mass value=\"9.886\"/>", "<mass value=\"0\"/>");
+    refused(&site, "stand", &["lola.urdf", "50.999 kg", "total_mass in robot.toml is 60.885 kg"]);
+    site.edit("robots/lola/robot.toml", "total_mass = 60.885", "total_mass = 50.999");
+    refused(&site, "stand", &["`torso`", "mass"]);
+}
+
+#[test]
+fn a_wrong_command_line_is_answered_with_the_usage() {
+    let site = Site::new(EXE);
+    for arguments in [&["run"][..], &["walk"], &["topic", "pub"], &["run", "stand", "--fast"]] {
+        let said = site.gangwerk(arguments);
+        assert_eq!(said.code, Some(2), "{arguments:?}: {said:#?}");
+        assert!(said.err.contains("error: ") && said.err.contains("Usage: "), "{}", said.err);
+    }
+}
+
+#[test]
+fn a_look_at_no_robot_says_how_to_start_one() {
+    let site = Site::new(EXE);
+    one_error(&site.topic(&["pub", "walk/stop"]), &["gangwerk run"]);
+    std::fs::create_dir(site.run_dir()).unwrap();
+    one_error(&site.topic(&["echo", "sensors", "--once"]), &["gangwerk run"]);
+}
+
+/// A robot in simulated time that stands on its feet.
+struct Robot {
+    site: Site,
+    run: Running,
+    space: Space,
+}
+
+impl Robot {
+    fn standing() -> Self {
+        let site = Site::new(EXE);
+        site.scene("wait", 100_000.0, "[[command]]\ntime = 0.2\ntopic = \"walk/stand\"\n");
+        let mut run = site.run("wait", &["--lockstep", "--no-log"]);
+        let space = run.space();
+        let robot = Self { site, run, space };
+        robot.at(|s| s.time > 12.0); // joints without a task have settled too
+        robot
+    }
+
+    /// The first state from now on of which `what` is true.
+    #[track_caller]
+    fn at(&self, what: impl Fn(&SimState) -> bool) -> SimState {
+        let mut sim = self.space.reader::<SimState>(&SIM_STATE).unwrap();
+        let begun = clock::now();
+        loop {
+            if let Some(state) = sim.newer().filter(|s| what(s)) {
+                return *state;
+            }
+            assert!(clock::now() - begun < 20 * clock::SECOND, "{}", self.run.err());
+            doze(0.001);
+        }
+    }
+
+    /// Nothing moves, before and for two seconds after `what`; the robot still listens, and ends as asked.
+    fn undisturbed_by(mut self, what: impl FnOnce(&Site)) {
+        assert!(!self.site.shared_memory().is_empty(), "this is where the run is");
+        let before = self.at(|_| true);
+        what(&self.site);
+        let now = self.at(|_| true);
+        let after = self.at(|s| s.time > now.time + 2.0);
+        let moved = (0..before.joint_angle.len()).map(|j| (after.joint_angle[j] - before.joint_angle[j]).abs());
+        assert!(moved.fold(0.0, f64::max) < 1e-6, "joints moved");
+        assert_eq!((after.power, after.fallen), (1, 0));
+        assert_eq!(self.site.topic(&["pub", "walk/stand"]).well().out, "walk/stand taken by 1 process\n");
+        assert!(self.run.is_alive());
+        self.run.interrupt();
+        let Self { site, run, space } = self;
+        drop(space);
+        assert_eq!(run.end().code, Some(130), "ended by Ctrl-C");
+        assert_eq!(site.shared_memory(), [""; 0], "left in /dev/shm");
+    }
+}
+
+#[test]
+fn nan_and_numbers_out_of_range_over_topic_pub_are_refused_with_field_and_range() {
+    Robot::standing().undisturbed_by(|site| {
+        let pub_ = |arguments: &[&str]| site.topic(&[&["pub"], arguments].concat());
+        one_error(&pub_(&["walk/velocity", "forward=NaN"]), &["walk/velocity", "forward = NaN", "[-2, 2] m/s"]);
+        one_error(&pub_(&["walk/velocity", "left=inf"]), &["left = inf", "[-1, 1] m/s"]);
+        one_error(&pub_(&["walk/velocity", "forward=9"]), &["forward = 9", "[-2, 2] m/s"]);
+        one_error(&pub_(&["walk/step", "length=0.3", "duration=0.01"]), &["duration = 0.01", "[0.3, 5] s"]);
+        one_error(&pub_(&["sim/push", "force.x=1e9", "duration=1"]), &["force.x", "[-5000, 5000] N"]);
+        one_error(&pub_(&["walk/velocity", "forward=fast"]), &["forward = `fast`", "[-2, 2] m/s"]);
+        one_error(&pub_(&["walk/velocity", "forwards=0.1"]), &["`forwards`", "did you mean forward?"]);
+        one_error(&pub_(&["walk/run"]), &["`walk/run`", "topic list"]);
+    });
+}
+
+#[test]
+fn garbage_on_the_tcp_port_closes_its_connection_and_no_other() {
+    let robot = Robot::standing();
+    let err = |robot: &Robot| robot.run.err().matches("connection closed: ").count();
+    assert_eq!(err(&robot), 0);
+    let mut stream = TcpStream::connect((Ipv4Addr::LOCALHOST, robot.site.port())).unwrap();
+    stream.write_all(b"GET / HTTP/1.1\r\nHost: lola\r\n\r\n").unwrap();
+    let mut answer = Vec::new();
+    stream.set_read_timeout(Some(std::time::Duration::from_secs(5))).unwrap();
+    stream.read_to_end(&mut answer).expect("the broker closes the connection");
+    let text = String::from_utf8_lossy(&answer);
+    assert!(text.contains("length"), "the broker says why: {text}");
+    assert_eq!(err(&robot), 1, "{}", robot.run.err());
+    let mut noise = TcpStream::connect((Ipv4Addr::LOCALHOST, robot.site.port())).unwrap();
+    let port = robot.site.port();
+    robot.undisturbed_by(|_| {
+        // Frames of a right length with anything in them, and one that is cut off.
+        for seed in 0..50u32 {
+            let mut other = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
+            let body: Vec<u8> = (0..32u32).map(|i| (i.wrapping_mul(2_654_435_761).wrapping_add(seed * 97) >> 13) as u8).collect();
+            let _ = other.write_all(&32u32.to_le_bytes()).and_then(|()| other.write_all(&body));
+        }
+        noise.write_all(&[200, 0]).unwrap();
+        drop(noise);
+    });
+}
+
+#[test]
+fn a_second_instance_in_the_same_place_is_refused_and_the_first_goes_on() {
+    Robot::standing().undisturbed_by(|site| {
+        let said = site.run("wait", &["--lockstep"]).end();
+        let dir = site.run_dir().display().to_string();
+        one_error(&said, &["supervisor is already running", &dir, "pid", "choose another directory"]);
+    });
+}
+
+#[test]
+fn a_second_robot_on_the_same_port_is_refused_and_the_first_goes_on() {
+    Robot::standing().undisturbed_by(|first| {
+        let second = Site::new(EXE);
+        let (port, own) = (format!("tcp_port = {}", first.port()), format!("tcp_port = {}", second.port()));
+        second.edit("system.toml", &own, &port);
+        let said = second.run("stand", &["--lockstep"]).end();
+        assert_eq!(said.code, Some(1), "{said:#?}");
+        for text in [&format!("127.0.0.1:{}", first.port()), "another tcp_port in system.toml", "broker did not start"] {
+            assert!(said.err.contains(text), "`{text}` in: {}", said.err);
+        }
+        assert_eq!(second.shared_memory(), [""; 0], "left in /dev/shm");
+    });
+}
