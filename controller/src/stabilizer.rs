@@ -135,7 +135,7 @@ impl Controller {
             &sensors.imu.angular_velocity,
         );
         let estimate = Estimate::new(&self.robot, sensors, &self.measured, &self.reference(&now));
-        if self.plan.id() > 0 {
+        if self.plan.id() > 0 && sensors.power == 1 {
             self.watch(sensors, &now, &estimate);
         }
         if self.plan.id() > 0 && !self.stopped && sensors.power == 1 {

@@ -156,7 +156,7 @@ impl SimBackend {
 
     /// Sum of the pushes that act now \[N\].
     fn current_push(&mut self) -> [f64; 3] {
-        let t = self.time();
+        let t = self.time() + 0.5 * self.scene.cycle; // mid-cycle: rounding adds no cycle and takes none
         let mut sum = [0.0; 3];
         let scripted =
             self.scene.pushes.iter().filter(|(at, p)| *at <= t && t < at + p.duration).map(|(_, p)| p);
