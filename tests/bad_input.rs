@@ -50,7 +50,11 @@ fn a_number_in_the_wrong_unit_is_refused_with_the_range() {
 
 #[test]
 fn a_missing_scene_is_named_with_those_there_are() {
-    refused(&Site::new(EXE), "walk_3kmh", &["scenes/walk_3kmh.toml", "cannot be read", "walk_1kmh, walk_2kmh"]);
+    refused(
+        &Site::new(EXE),
+        "walk_3kmh",
+        &["scenes/walk_3kmh.toml", "cannot be read", "walk_1kmh, walk_2kmh"],
+    );
 }
 
 #[test]
@@ -134,7 +138,8 @@ impl Robot {
         what(&self.site);
         let now = self.at(|_| true);
         let after = self.at(|s| s.time > now.time + 2.0);
-        let moved = (0..before.joint_angle.len()).map(|j| (after.joint_angle[j] - before.joint_angle[j]).abs());
+        let moved =
+            (0..before.joint_angle.len()).map(|j| (after.joint_angle[j] - before.joint_angle[j]).abs());
         assert!(moved.fold(0.0, f64::max) < 1e-6, "joints moved");
         assert_eq!((after.power, after.fallen), (1, 0));
         assert_eq!(self.site.topic(&["pub", "walk/stand"]).well().out, "walk/stand taken by 1 process\n");
@@ -151,7 +156,10 @@ impl Robot {
 fn nan_and_numbers_out_of_range_over_topic_pub_are_refused_with_field_and_range() {
     Robot::standing().undisturbed_by(|site| {
         let pub_ = |arguments: &[&str]| site.topic(&[&["pub"], arguments].concat());
-        one_error(&pub_(&["walk/velocity", "forward=NaN"]), &["walk/velocity", "forward = NaN", "[-2, 2] m/s"]);
+        one_error(
+            &pub_(&["walk/velocity", "forward=NaN"]),
+            &["walk/velocity", "forward = NaN", "[-2, 2] m/s"],
+        );
         one_error(&pub_(&["walk/velocity", "left=inf"]), &["left = inf", "[-1, 1] m/s"]);
         one_error(&pub_(&["walk/velocity", "forward=9"]), &["forward = 9", "[-2, 2] m/s"]);
         one_error(&pub_(&["walk/step", "length=0.3", "duration=0.01"]), &["duration = 0.01", "[0.3, 5] s"]);
@@ -181,7 +189,9 @@ fn garbage_on_the_tcp_port_closes_its_connection_and_no_other() {
         // Frames of a right length with anything in them, and one that is cut off.
         for seed in 0..50u32 {
             let mut other = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
-            let body: Vec<u8> = (0..32u32).map(|i| (i.wrapping_mul(2_654_435_761).wrapping_add(seed * 97) >> 13) as u8).collect();
+            let body: Vec<u8> = (0..32u32)
+                .map(|i| (i.wrapping_mul(2_654_435_761).wrapping_add(seed * 97) >> 13) as u8)
+                .collect();
             let _ = other.write_all(&32u32.to_le_bytes()).and_then(|()| other.write_all(&body));
         }
         noise.write_all(&[200, 0]).unwrap();
@@ -206,7 +216,11 @@ fn a_second_robot_on_the_same_port_is_refused_and_the_first_goes_on() {
         second.edit("system.toml", &own, &port);
         let said = second.run("stand", &["--lockstep"]).end();
         assert_eq!(said.code, Some(1), "{said:#?}");
-        for text in [&format!("127.0.0.1:{}", first.port()), "another tcp_port in system.toml", "broker did not start"] {
+        for text in [
+            &format!("127.0.0.1:{}", first.port()),
+            "another tcp_port in system.toml",
+            "broker did not start",
+        ] {
             assert!(said.err.contains(text), "`{text}` in: {}", said.err);
         }
         assert_eq!(second.shared_memory(), [""; 0], "left in /dev/shm");

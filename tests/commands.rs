@@ -68,7 +68,12 @@ fn walk_velocity_and_walk_stop_walk_and_stop() {
     let now = until(&mut run, &mut sim, |s| s.header.tick > walked.header.tick + 1000);
     let later = until(&mut run, &mut sim, |s| s.header.tick > now.header.tick + 20_000);
     let end = until(&mut run, &mut sim, |s| s.header.tick > later.header.tick + 2000);
-    assert!((end.position[0] - later.position[0]).abs() < 1e-3, "{} m, {} m", later.position[0], end.position[0]);
+    assert!(
+        (end.position[0] - later.position[0]).abs() < 1e-3,
+        "{} m, {} m",
+        later.position[0],
+        end.position[0]
+    );
     assert_eq!((end.fallen, end.power), (0, 1));
 }
 
