@@ -75,7 +75,7 @@ fn crates() -> BTreeMap<String, (BTreeSet<String>, PathBuf)> {
             } else if let Some((key, value)) = line.split_once('=').filter(|_| !line.starts_with('#')) {
                 match section {
                     "package" if key.trim() == "name" => {
-                        name = Some(value.trim().trim_matches('"').to_owned())
+                        name = Some(value.trim().trim_matches('"').to_owned());
                     }
                     "dependencies" | "build-dependencies" => {
                         needs.insert(key.trim().trim_end_matches(".workspace").to_owned());

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use messages::Command;
-use messages::command::PushCommand;
+use messages::command::{Domain, PushCommand};
 use messages::command_text::{COMMANDS, CommandInfo};
 
 use crate::error::ConfigError;
@@ -108,7 +108,10 @@ impl Scene {
 /// One `[[command]]`: `time`, the topic as `gangwerk topic` names it, and the topic's fields.
 fn command(row: &Section<'_, '_>) -> (f64, Command) {
     let time = row.number("time", "s", NOT_NEGATIVE);
-    let scripted: Vec<&CommandInfo> = COMMANDS.iter().filter(|info| info.name != "sim/push").collect();
+    let scripted: Vec<&CommandInfo> = COMMANDS
+        .iter()
+        .filter(|info| matches!(info.example().address().0, Domain::System | Domain::Walk))
+        .collect();
     let names: Vec<&str> = scripted.iter().map(|info| info.name).collect();
     let info = scripted[row.word("topic", &names)];
     let mut text = String::new();

@@ -113,7 +113,8 @@ impl<T: Record> Reader<T> {
     /// one of a newer writer, if there is one.
     fn count_of_newest(&mut self) -> Option<u64> {
         let count = self.slots[self.slot].head.get().count;
-        if self.epoch > 0 && count != self.number {
+        // The head may still lag behind a record that was read out of the ring already.
+        if self.epoch > 0 && count > self.number {
             return Some(count);
         }
         self.find_writer().then(|| self.slots[self.slot].head.get().count)
@@ -127,7 +128,7 @@ impl<T: Record> Reader<T> {
             if epoch > self.epoch {
                 // A slot that was given back goes on counting, for its new writer too.
                 let seen = if k == self.slot { self.number } else { 0 };
-                found = count != seen;
+                found = count > seen;
                 (self.slot, self.epoch, self.number) = (k, epoch, seen);
             }
         }

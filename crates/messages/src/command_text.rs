@@ -182,8 +182,15 @@ impl Command {
                 )
             })?;
         }
+        for (f, x) in info.fields.iter().zip(values) {
+            f.check(name, x)?; // before a number becomes an integer, which hides NaN
+        }
         let command = (info.build)(&values);
-        command.check()?;
+        if let Some((f, x)) =
+            info.fields.iter().zip(values).zip(command.values()).find(|((_, x), y)| x != y).map(|(a, _)| a)
+        {
+            return Err(format!("{name}: {} = {x} must be a whole number", f.name));
+        }
         Ok(command)
     }
 }

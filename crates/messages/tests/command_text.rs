@@ -68,10 +68,16 @@ fn the_table_is_complete() {
             info.fields.iter().map(|f| format!("{}={}", f.name, 0.5 * (f.range[0] + f.range[1]))).collect();
         assert_eq!(Command::parse(info.name, &middle.join(" ")).unwrap().name(), info.name);
     }
-    assert_eq!(COMMANDS.len(), 10, "a new command needs its row");
+    assert_eq!(COMMANDS.len(), 11, "a new command needs its row");
     assert_eq!(Domain::try_from(8), Err(8));
     assert_eq!(Priority::try_from(3), Err(3));
     assert_eq!(Command::EmergencyStop.priority(), Priority::High);
+}
+
+#[test]
+fn a_number_of_something_is_whole() {
+    let error = Command::parse("stabilize/parameter", "number=1.5 value=2").unwrap_err();
+    assert_eq!(error, "stabilize/parameter: number = 1.5 must be a whole number");
 }
 
 /// Every number of every command, not only the first: just inside passes, everything else is refused by name.
