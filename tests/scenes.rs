@@ -60,7 +60,7 @@ fn walk_2kmh() {
 
 #[test]
 fn walk_60s() {
-    walks(&figures("walk_60s", 60.0), 1.0);
+    walks(&figures("walk_60s", 64.0), 1.0);
 }
 
 #[test]

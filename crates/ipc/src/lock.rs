@@ -6,6 +6,11 @@ use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
+use std::time::Duration;
+
+/// How often, and how long after one another, a lock is tried before it counts as somebody else's.
+const TRIES: u32 = 20;
+const PAUSE: Duration = Duration::from_millis(5);
 
 /// Held as long as it lives.
 #[derive(Debug)]
@@ -25,7 +30,15 @@ impl Lock {
             .mode(0o600)
             .open(&path)
             .map_err(|e| IpcError::Other(format!("{}: {e}", path.display())))?;
-        if flock(&file, FlockOperation::NonBlockingLockExclusive).is_err() {
+        // A process that was just forked holds a copy of a lock that was let go, until it becomes another program.
+        let taken = (0..TRIES).any(|_| {
+            let taken = flock(&file, FlockOperation::NonBlockingLockExclusive).is_ok();
+            if !taken {
+                std::thread::park_timeout(PAUSE);
+            }
+            taken
+        });
+        if !taken {
             let mut text = String::new();
             let _ = file.read_to_string(&mut text);
             return Err(IpcError::AlreadyRunning {
