@@ -125,13 +125,13 @@ pub fn required_distance(turn: f64, width_min: f64, sole: &Sole) -> f64 {
 /// half of what two equal steps need, so that widths of a steady turn do not alternate.
 ///
 /// The foot left behind becomes the swing foot: seen from the new one it must not stand in its own way either, which
-/// (4.4) does not look at. It turns back while it passes, so parallel feet are what counts then.
+/// (4.4) does not look at. It turns while it passes, so it needs as much room as at its foothold.
 pub fn next_width(p: &Parameters, w_c: f64, nu: f64, step: &gait::Step, sole: &Sole) -> f64 {
     let (s, c) = p.turn.sin_cos();
     let need = required_distance(p.turn, step.width_min, sole);
     let bound = |w_c: f64| 2.0 * (need - nu * displacement(p, w_c, 0.0, nu)[1]) / c; // (4.4)
     let together = bound(0.0) / (1.0 + 1.0 / c);
     let [x, y] = displacement(p, w_c, 0.0, nu);
-    let behind = 2.0 * (step.width_min - nu * (c * y - s * x));
+    let behind = 2.0 * (need - nu * (c * y - s * x));
     step.width.max(bound(w_c)).max(together).max(behind)
 }
