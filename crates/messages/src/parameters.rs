@@ -13,6 +13,6 @@ record! {
         /// \[1\] How many there are.
         count: u64,
         /// Each in its own unit.
-        values: [f64; 64],
+        values: [f64; MAX_PARAMETERS],
     }
 }
