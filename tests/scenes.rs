@@ -71,6 +71,16 @@ fn walk_sideways() {
     assert!(y > 1.9 && x.abs() < CLOSING * y, "sideways is to the left: {x}, {y}");
 }
 
+#[test]
+fn johnnie_2kmh() {
+    walks(&figures("johnnie_2kmh", 21.0), 2.0);
+}
+
+#[test]
+fn johnnie_25kmh() {
+    walks(&figures("johnnie_25kmh", 21.0), 2.5);
+}
+
 /// A full circle: back where it began, facing where it faced.
 #[test]
 fn walk_curve() {

@@ -18,7 +18,9 @@ fn scenes() {
     for name in &all {
         Setup::load(&root(), name).unwrap_or_else(|e| panic!("{e}"));
     }
-    for name in ["demo", "stand", "walk_1kmh", "walk_2kmh", "walk_sideways", "walk_curve", "push"] {
+    for name in
+        ["demo", "stand", "walk_1kmh", "walk_2kmh", "walk_sideways", "walk_curve", "push", "johnnie_2kmh"]
+    {
         assert!(all.iter().any(|n| n == name), "{name} is missing");
     }
 }
