@@ -6,10 +6,8 @@
 //! | motor power line | [`power`] |
 //! | drives | [`drive`] |
 //! | bodies: reduced model (type 1) | [`plant`] |
-//! | contact | [`contact`] |
 //! | time steps | [`integrate`] |
 
-pub mod contact;
 pub mod daemon;
 pub mod drive;
 pub mod integrate;

@@ -13,11 +13,11 @@
 
 use config::Robot;
 use config::robot::Contact;
+use contact::point::{self, Law};
 use messages::Wrench;
 use multibody::{Data, Frame, Model, ModelError};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
-use crate::contact::{self, Law};
 use crate::drive::Drive;
 
 const POSE: usize = 7;
@@ -128,10 +128,10 @@ impl Plant {
             let d = [x[at], x[at + 1], x[at + 2]];
             let p = model.frame_position(data, &node.frame);
             let w = model.frame_velocity(data, &node.frame).linear;
-            let answer = contact::solve(law, d, w.into(), p.z + d[2]);
+            let answer = point::solve(law, d, w.into(), p.z + d[2]);
             dx[at..at + 3].copy_from_slice(&answer.rate);
             scratch.contacts[i] = (p + Vector3::from(d), answer.force.into());
-            if answer.state != contact::State::Open {
+            if answer.state != point::State::Open {
                 base_force += at_base(x, &scratch.contacts[i].0, &scratch.contacts[i].1);
             }
         }
