@@ -1,0 +1,25 @@
+//! Drives: what lies between the terminals of a motor and the joints it moves.
+//!
+//! - [`Motor`]: voltage to current to torque (2.57), (2.58).
+//! - [`Transmission`]: motor angle as a function of joint angles: harmonic drives, [`Knee`] roller screw (2.14)-(2.21),
+//!   [`Ankle`] slider-crank with belt (2.22)-(2.33); first and second derivatives; errors where a linkage has none.
+//! - [`Friction`]: of gears (2.61) and roller screws (2.65)-(2.68), with the load torque (2.63), (2.64).
+//! - [`Elasticity`]: of harmonic drives (2.69).
+//!
+//! Pure mathematics: no file, no clock, and after construction no allocation. All quantities of a motor are those of its
+//! rotor relative to its stator: angle, speed \[rad/s\] and torque count about the rotor's axis, not about the joint's.
+
+mod ankle;
+mod elasticity;
+mod friction;
+mod knee;
+mod motor;
+mod transmission;
+mod turn;
+
+pub use ankle::{Ankle, AnkleGeometry};
+pub use elasticity::Elasticity;
+pub use friction::{Friction, HarmonicFriction, NoLoadTorque, ScrewFriction};
+pub use knee::{Knee, KneeGeometry};
+pub use motor::Motor;
+pub use transmission::{Gear, OutOfDomain, Transmission};
