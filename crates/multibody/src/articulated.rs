@@ -19,7 +19,7 @@ use crate::turn::Turn;
 
 impl Model {
     /// Acceleration v' that the generalized force gives at `q`, `v`; n_v each. The same as
-    /// [`Model::forward_dynamics`] by another route, with cost linear in n.
+    /// [`Model::forward_dynamics`] by another route, with cost linear in n. For models without rotors.
     pub fn forward_dynamics_articulated(
         &self,
         data: &mut Data,
@@ -33,6 +33,7 @@ impl Model {
             "lengths of v and of the generalized force"
         );
         assert_eq!(acceleration.len(), self.nv(), "length of the acceleration");
+        assert!(self.gyros.is_empty(), "articulated bodies have no rotors here; use forward_dynamics");
         data.set_position(self, q);
         let Data { joints, oblique, locals, articulated, base, .. } = data;
 

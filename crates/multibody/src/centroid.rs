@@ -83,7 +83,7 @@ impl Model {
     }
 
     /// Momentum and angular momentum about the centre of gravity, (3.4) with the term `m rho x v_o` that the print
-    /// lacks (errata, F13). Needs [`Model::forward_motion`].
+    /// lacks (errata, F13), rotors included. Needs [`Model::forward_motion`].
     pub fn momentum(&self, data: &Data) -> Momentum {
         let (mut p, mut l, mut mc) = (ZERO, ZERO, ZERO);
         for ((m, place), b) in data.motions.iter().zip(&data.places).zip(&self.bodies) {
@@ -93,11 +93,15 @@ impl Model {
             mc += place.r * b.m + rho;
             l += place.r.cross(impulse) + rho.cross(m.v) + place.a * (b.i * place.a.t_mul(m.w)); // (3.4)
         }
+        let w = |k: usize| data.places[k].a.t_mul(data.motions[k].w);
+        for (k, spin, _) in self.rotor_terms(&data.spins, w) {
+            l += data.places[k].a * spin;
+        }
         let c = mc * (1.0 / self.mass());
         Momentum { linear: p.into(), angular: (l - c.cross(p)).into() }
     }
 
-    /// \[J\] Kinetic and potential energy (zero at world height zero). Needs [`Model::forward_motion`].
+    /// \[J\] Kinetic and potential energy (zero at world height zero), rotors included. Needs [`Model::forward_motion`].
     pub fn energy(&self, data: &Data) -> (f64, f64) {
         let (mut kinetic, mut height) = (0.0, 0.0);
         for ((m, p), b) in data.motions.iter().zip(&data.places).zip(&self.bodies) {
@@ -105,6 +109,8 @@ impl Model {
             kinetic += 0.5 * (b.m * m.v.dot(m.v) + w.dot(b.i * w)) + m.v.dot(m.w.cross(rho));
             height += b.m * p.r.z + rho.z;
         }
+        let w = |k: usize| data.places[k].a.t_mul(data.motions[k].w);
+        kinetic += self.rotor_terms(&data.spins, w).map(|(_, _, energy)| energy).sum::<f64>();
         (kinetic, -crate::model::G.z * height)
     }
 }

@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::model::{Kind, Model};
+use crate::rotor::Spin;
 use crate::space::{Mat3, Sym3, V3, ZERO, v3};
 use crate::trigonometry::sin_cos;
 
@@ -26,6 +27,7 @@ pub struct Data {
     /// Momentum and moment of momentum of each composite, on its way to the base.
     pub(crate) momenta: Vec<[V3; 2]>,
     pub(crate) articulated: Vec<Articulated>,
+    pub(crate) spins: Vec<Spin>,
     /// Mass matrix and its factors as rows of [`crate::sparsity::Paths`].
     pub(crate) m: Vec<f64>,
     pub(crate) l: Vec<f64>,
@@ -114,6 +116,7 @@ impl Data {
             composites: vec![Composite::default(); nb],
             momenta: vec![[ZERO; 2]; nb],
             articulated: vec![Articulated::NONE; nb],
+            spins: vec![Spin::default(); model.gyros.len()],
             m: vec![0.0; entries],
             l: vec![0.0; entries],
             mass_matrix: DMatrix::zeros(nv, nv),

@@ -24,6 +24,8 @@ pub enum ModelError {
     Unreachable(String),
     /// Mass or inertia of a link, or of a moving body, cannot exist: (link, what is wrong).
     Inertia(String, String),
+    /// A rotor cannot be where it is put: (rotor, what is wrong and what to do).
+    Rotor(String, String),
     /// A type of joint that has no single coordinate: (joint, type).
     JointType(String, String),
     /// The axis of a joint has no direction, or a number is not finite: (joint or link).
@@ -49,7 +51,7 @@ impl fmt::Display for ModelError {
                 )
             }
             Self::Duplicate(n) => {
-                write!(f, "the name `{n}` occurs twice; names of joints and of links must be unique")
+                write!(f, "the name `{n}` occurs twice; names of joints, of links and of rotors must be unique")
             }
             Self::Order(j, p) => {
                 write!(f, "joint `{j}` comes before `{p}`, which carries it; list `{p}` first")
@@ -64,6 +66,7 @@ impl fmt::Display for ModelError {
                 "no chain of joints leads from the base to link `{l}`; take the root of the tree as base, and look for a loop"
             ),
             Self::Inertia(l, why) => write!(f, "inertia of link `{l}`: {why}; correct <inertial>"),
+            Self::Rotor(r, why) => write!(f, "rotor `{r}`: {why}"),
             Self::JointType(j, t) => write!(
                 f,
                 "joint `{j}` is of type {t}; allowed are revolute, continuous, prismatic, fixed; split it into such joints"

@@ -3,12 +3,15 @@
 //! M = L^T D L with L unit lower triangular, eliminated from the tips to the base, has no fill-in: row k of L has its
 //! entries where row k of M has, on the path from the base to k.
 
-use crate::data::Data;
+use crate::data::{Data, with_turn};
 use crate::model::Model;
+use crate::space::V3;
 use crate::sparsity::Paths;
+use crate::turn::Turn;
 
 impl Model {
-    /// Acceleration v' that the generalized force gives at `q`, `v`; n_v each.
+    /// Acceleration v' that the generalized force gives at `q`, `v`; n_v each. Leaves in `data` what
+    /// [`Model::rotor_acceleration`] needs.
     pub fn forward_dynamics(
         &self,
         data: &mut Data,
@@ -27,6 +30,20 @@ impl Model {
         data.l.copy_from_slice(&data.m);
         factor(&self.paths, &mut data.l);
         solve(&self.paths, &data.l, acceleration);
+        if self.gyros.iter().any(|g| g.geared.is_empty()) {
+            self.turn_bodies(data, v, acceleration);
+        }
+    }
+
+    /// Angular accelerations of all bodies, their angular velocities being known.
+    fn turn_bodies(&self, data: &mut Data, v: &[f64], acceleration: &[f64]) {
+        let Data { joints, oblique, locals, .. } = data;
+        locals[0].dw = V3::from_slice(&acceleration[3..]);
+        for (k, body) in self.bodies.iter().enumerate().skip(1) {
+            let (dw, w, j) = (locals[body.parent].dw, locals[k].w, &joints[k]);
+            let (qd, qdd) = (v[k + 5] * body.sign, acceleration[k + 5] * body.sign);
+            with_turn!(body, j, &oblique[k], t => locals[k].dw = turning(t, dw, w, qd, qdd));
+        }
     }
 
     /// Solves M x = b in place with the mass matrix that [`Model::mass_matrix`] or [`Model::forward_dynamics`] left.
@@ -36,6 +53,13 @@ impl Model {
         factor(&self.paths, &mut data.l);
         solve(&self.paths, &data.l, x);
     }
+}
+
+/// Angular acceleration of a body from its parent's and its own angular velocity.
+#[inline(always)]
+fn turning<T: Turn>(t: T, p_dw: V3, w: V3, qd: f64, qdd: f64) -> V3 {
+    let dw = t.down(p_dw);
+    if T::SLIDES { dw } else { t.plus(dw + t.across(w, qd), qdd) }
 }
 
 /// L^T D L in place; the diagonal holds 1/D.

@@ -95,6 +95,11 @@ fn steiner(m: f64, r: &Vector3<f64>) -> Matrix3<f64> {
     (Matrix3::identity() * r.norm_squared() - r * r.transpose()) * m
 }
 
+/// \[kg m^2\] Smallest principal moment.
+pub(crate) fn least(m: &Matrix3<f64>) -> f64 {
+    principal(m)[0]
+}
+
 /// Principal moments in ascending order.
 fn principal(m: &Matrix3<f64>) -> [f64; 3] {
     let mut p = [0.0; 3];

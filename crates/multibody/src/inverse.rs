@@ -31,6 +31,7 @@ impl Model {
         let base = (V3::from_slice(acceleration), V3::from_slice(&acceleration[3..]));
         self.sweeps(data, v, base, |k| acceleration[k + 5], |k, x| force[k + 5] = x);
         collect(data, force);
+        self.load_joints(data, force);
     }
 
     /// Nonlinear terms h at `q`, `v`: Coriolis, centrifugal and weight; M v' + h = generalized force.
@@ -44,6 +45,7 @@ impl Model {
         assert_eq!(h.len(), self.nv(), "length of the generalized force");
         self.sweeps(data, v, (ZERO, ZERO), |_| 0.0, |k, x| h[k + 5] = x);
         collect(data, h);
+        self.load_joints(data, h);
     }
 
     /// Both sweeps, with the base's acceleration; leaves force and moment of every body in `data` and hands the force of
@@ -58,7 +60,7 @@ impl Model {
         mut joint: impl FnMut(usize, f64),
     ) {
         assert_eq!(v.len(), self.nv(), "length of v");
-        let Data { joints, oblique, locals, base: attitude, .. } = data;
+        let Data { joints, oblique, locals, base: attitude, spins, .. } = data;
         let w = V3::from_slice(&v[3..]);
         let a = base.0 + w.cross(V3::from_slice(v)) - attitude.t_mul(G);
         locals[0] = load(&self.bodies[0], w, base.1, a);
@@ -67,6 +69,7 @@ impl Model {
             let (qd, qdd) = (v[k + 5] * body.sign, qdd(k) * body.sign);
             with_turn!(body, j, &oblique[k], t => locals[k] = out(t, p, j.r, qd, qdd, body));
         }
+        self.load_stators(locals, spins, v, &qdd);
         for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
             let (own, j) = (locals[k], &joints[k]);
             let p = &mut locals[body.parent];

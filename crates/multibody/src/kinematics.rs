@@ -51,7 +51,8 @@ impl Model {
     /// Velocities and velocity-product accelerations of all bodies, the poses being known.
     pub fn motion(&self, data: &mut Data, v: &[f64]) {
         assert_eq!(v.len(), self.nv(), "length of v");
-        let Data { places, motions, .. } = data;
+        let Data { places, motions, spins, .. } = data;
+        self.rotor_speeds(spins, v);
         let a = places[0].a;
         let (w, vel) = (a * V3::from_slice(&v[3..]), a * V3::from_slice(v));
         motions[0] = Motion { w, v: vel, dw: ZERO, dv: w.cross(vel) };

@@ -44,11 +44,18 @@ impl Model {
     ///
     /// A joint's kernel is chosen once for its composite and for all momenta that pass it on their way to the base.
     pub(crate) fn rows(&self, data: &mut Data) {
-        let Data { joints, oblique, composites, momenta, m, .. } = data;
+        let Data { joints, oblique, composites, momenta, spins, m, .. } = data;
+        let mut gyros = &self.gyros[..];
         for (c, b) in composites.iter_mut().zip(&self.bodies) {
             *c = Composite { mc: b.mc, i: b.i };
         }
         for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
+            while let Some((g, before)) = gyros.split_last()
+                && g.body == k
+            {
+                g.add_momenta(&spins[g.index], momenta);
+                gyros = before;
+            }
             let (own, j) = (composites[k], &joints[k]);
             let (p, members, mass) = (&mut composites[body.parent], self.subtrees.of(k), self.carried[k]);
             with_turn!(body, j, &oblique[k], t => {
@@ -58,10 +65,16 @@ impl Model {
             });
         }
         base_rows(self.mass(), &composites[0], m);
+        for g in gyros {
+            g.add_momenta(&spins[g.index], momenta);
+        }
         for (k, [f, n]) in momenta.iter().enumerate().skip(1) {
             let at = self.paths.start[k + 5];
             m[at..at + 3].copy_from_slice(&f.array());
             m[at + 3..at + 6].copy_from_slice(&n.array());
+        }
+        for g in &self.gyros {
+            g.add_entries(&spins[g.index], m);
         }
     }
 }

@@ -4,6 +4,7 @@ use nalgebra::{IsometryMatrix3, Vector3};
 
 use crate::builder::kernel_rotation;
 use crate::error::ModelError;
+use crate::rotor::Gyro;
 use crate::space::{Mat3, Sym3, V3};
 use crate::sparsity::{Paths, Subtrees};
 
@@ -31,6 +32,9 @@ pub struct Model {
     pub(crate) carried: Vec<f64>,
     pub(crate) paths: Paths,
     pub(crate) subtrees: Subtrees,
+    pub(crate) rotor_names: Vec<String>,
+    /// By the bodies that carry them.
+    pub(crate) gyros: Vec<Gyro>,
 }
 
 /// One rigid body with the joint that moves it, in a frame parallel to the base at zero coordinates.
@@ -45,7 +49,7 @@ pub(crate) struct Body {
     pub m: f64,
     /// First moment of mass m c.
     pub mc: V3,
-    /// Moments of inertia about the origin.
+    /// Moments of inertia about the origin, geared rotors locked, free ones free about their axes.
     pub i: Sym3,
 }
 
@@ -103,7 +107,8 @@ impl Model {
         }
         let paths = Paths::new(&bodies);
         let subtrees = Subtrees::new(&bodies, &paths);
-        Model { bodies, links, joint_names, carried, paths, subtrees }
+        let (rotor_names, gyros) = (Vec::new(), Vec::new());
+        Model { bodies, links, joint_names, carried, paths, subtrees, rotor_names, gyros }
     }
 
     /// Number of joints n.
