@@ -51,7 +51,10 @@ impl fmt::Display for ModelError {
                 )
             }
             Self::Duplicate(n) => {
-                write!(f, "the name `{n}` occurs twice; names of joints, of links and of rotors must be unique")
+                write!(
+                    f,
+                    "the name `{n}` occurs twice; names of joints, of links and of rotors must be unique"
+                )
             }
             Self::Order(j, p) => {
                 write!(f, "joint `{j}` comes before `{p}`, which carries it; list `{p}` first")

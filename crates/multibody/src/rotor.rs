@@ -131,12 +131,12 @@ impl Model {
                 Rotor::JOINTS
             ));
         }
+        if let Some(j) = rotor.joints.iter().find(|&&j| j >= self.n()) {
+            return Err(format!("joint {j} does not exist; name one below {}", self.n()));
+        }
         let geared: Vec<usize> = rotor.joints.iter().map(|j| j + 1).collect();
         let mut entries = Vec::new();
         for (a, &k) in geared.iter().enumerate() {
-            if k > self.n() {
-                return Err(format!("joint {} does not exist, the robot has {}", k - 1, self.n()));
-            }
             if k == link.body || !self.carries(link.body, k) {
                 return Err(format!(
                     "joint `{}` is not carried by link `{}`; name a link between it and the base",
@@ -185,9 +185,10 @@ impl Model {
     /// [`Model::nonlinear_terms`] that at v' = 0.
     pub fn rotor_acceleration(&self, data: &Data, rotor: usize) -> f64 {
         let own = |g: &&Gyro| g.index == rotor;
-        self.gyros.iter().find(own).map_or(f64::NAN, |g| {
-            data.spins[rotor].torque / g.j - g.e.dot(data.locals[g.body].dw)
-        })
+        self.gyros
+            .iter()
+            .find(own)
+            .map_or(f64::NAN, |g| data.spins[rotor].torque / g.j - g.e.dot(data.locals[g.body].dw))
     }
 
     /// Speeds of the geared rotors.
@@ -309,4 +310,3 @@ impl Data {
         self.spins[rotor].s
     }
 }
-

@@ -9,7 +9,7 @@ mod tree;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use multibody::Data;
+use multibody::{Data, Rotor};
 use nalgebra::{Matrix3xX, Matrix6xX, Vector3};
 
 struct Counting;
@@ -38,7 +38,16 @@ static ALLOCATOR: Counting = Counting;
 #[test]
 fn every_function_works_in_the_memory_made_at_the_start() {
     let mut dice = tree::Dice(11);
-    let model = tree::random(&mut dice, 20);
+    let plain = tree::random(&mut dice, 20);
+    let rotor = |name: &str, joints: &[usize]| Rotor {
+        name: name.into(),
+        link: "link 0".into(),
+        axis: Vector3::x(),
+        inertia: 1e-4,
+        joints: joints.to_vec(),
+    };
+    let model =
+        plain.clone().with_rotors(&[rotor("geared", &[0]), rotor("free", &[])]).expect("small rotors");
     let mut d = Data::new(&model);
     let q = tree::configuration(&mut dice, &model);
     let (v, a) = (dice.list(model.nv(), 1.0), dice.list(model.nv(), 1.0));
@@ -63,11 +72,15 @@ fn every_function_works_in_the_memory_made_at_the_start() {
     model.nonlinear_terms(&mut d, &q, &v, &mut out);
     model.inverse_dynamics(&mut d, &q, &v, &a, &mut out);
     model.forward_dynamics(&mut d, &q, &v, &a, &mut out);
-    model.forward_dynamics_articulated(&mut d, &q, &v, &a, &mut out);
+    d.set_gear(0, [50.0, 0.0, 0.0], 0.1);
+    d.set_free_rotor(1, 100.0, 0.1);
+    model.forward_dynamics(&mut d, &q, &v, &a, &mut out);
+    let spin = model.rotor_acceleration(&d, 1);
+    plain.forward_dynamics_articulated(&mut d, &q, &v, &a, &mut out);
     model.solve_mass_matrix(&mut d, &mut out);
     let base = model.base_dynamics(&mut d, &q, &v, &a[6..]);
     let allocations = COUNT.get() - before;
-    std::hint::black_box((seen, whole, base, next, rate));
+    std::hint::black_box((seen, whole, base, next, rate, spin));
     assert_eq!(allocations, 0);
 
     drop(Box::new(std::hint::black_box(1)));

@@ -3,9 +3,10 @@
 //!
 //! Here the base has a quaternion and the motor is a body on a joint of its own. The thesis's coordinates come back by
 //! v = T(q) q', with F2's J_R,u for the root and -100 for the motor: M = T^T M_ours T, h = T^T (M_ours T' q' + h_ours).
+//! With the motor as a rotor of the torso the rows of its joint fall away, and the same numbers must come.
 //! V12 (a three-degree system without bodies) and V14 (centre of pressure) have no counterpart in this crate.
 
-use multibody::{Data, Inertia, JointKind, Model, ModelBuilder};
+use multibody::{Data, Inertia, JointKind, Model, ModelBuilder, Rotor};
 use nalgebra::{DMatrix, DVector, IsometryMatrix3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use serde_json::Value;
 
@@ -23,11 +24,16 @@ struct Robot {
 fn mass_matrix_and_nonlinear_terms() {
     let vectors = vectors();
     let f = &vectors["F1_F2_F6"];
-    let mut r = robot(f);
+    for r in [robot(f), robot_with_rotor(f)] {
+        check_dynamics(f, r);
+    }
+}
+
+fn check_dynamics(f: &Value, mut r: Robot) {
     let m_ours = r.model.mass_matrix(&mut r.data, &r.q).clone();
     let m = r.t.transpose() * &m_ours * &r.t;
     near("M", m.as_slice(), &flat(&f["M"]), 1e-12);
-    let mut h_ours = vec![0.0; 9];
+    let mut h_ours = vec![0.0; r.model.nv()];
     r.model.nonlinear_terms(&mut r.data, &r.q, r.v.as_slice(), &mut h_ours);
     let h = r.t.transpose() * (m_ours * &r.bias + DVector::from_vec(h_ours));
     near("h", h.as_slice(), &flat(&f["h"]), 1e-12);
@@ -74,14 +80,37 @@ fn velocities_and_velocity_products_of_the_bodies() {
 fn momentum_and_energy() {
     let vectors = vectors();
     let (f, momentum) = (&vectors["F1_F2_F6"], &vectors["F13_mom"]);
-    let mut r = robot(f);
-    r.model.forward_motion(&mut r.data, &r.q, r.v.as_slice());
-    near("CoG", r.model.cog(&mut r.data).as_slice(), &flat(&momentum["C"]), 1e-12);
-    let ours = r.model.momentum(&r.data);
-    near("p", ours.linear.as_slice(), &flat(&momentum["p"]), 1e-12);
-    near("L", ours.angular.as_slice(), &flat(&momentum["L"]), 1e-12);
-    let (kinetic, potential) = r.model.energy(&r.data);
-    near("E", &[kinetic + potential], &[123.182471126], 1e-11);
+    for mut r in [robot(f), robot_with_rotor(f)] {
+        r.model.forward_motion(&mut r.data, &r.q, r.v.as_slice());
+        near("CoG", r.model.cog(&mut r.data).as_slice(), &flat(&momentum["C"]), 1e-12);
+        let ours = r.model.momentum(&r.data);
+        near("p", ours.linear.as_slice(), &flat(&momentum["p"]), 1e-12);
+        near("L", ours.angular.as_slice(), &flat(&momentum["L"]), 1e-12);
+        let (kinetic, potential) = r.model.energy(&r.data);
+        near("E", &[kinetic + potential], &[123.182471126], 1e-11);
+    }
+}
+
+/// V2 (F9): the motor's torque of 0.7 Nm acts between torso and rotor, so the base feels none of it. The rotor as a body
+/// answers with its own acceleration -100 q'' when the joint's force is T^T (0 .. 0.7 .. 0).
+#[test]
+fn motor_torque_reacts_on_the_stator() {
+    let vectors = vectors();
+    let f = &vectors["F1_F2_F6"];
+    let full = robot(f);
+    let mut torque = DVector::zeros(9);
+    torque[7] = 0.7;
+    let q = full.t.transpose() * torque;
+    near("Q", q.as_slice(), &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -70.0, 0.0], 1e-14);
+    let mut r = robot_with_rotor(f);
+    let mut force = vec![0.0; 8];
+    force[6] = q[6];
+    let mut a = force.clone();
+    r.model.forward_dynamics(&mut r.data, &r.q, r.v.as_slice(), &force, &mut a);
+    let m = DMatrix::from_row_slice(8, 8, &flat(&f["M"]));
+    let h = DVector::from_vec(flat(&f["h"]));
+    let thesis = &r.t * m.lu().solve(&(q - h)).expect("M is regular") + &r.bias;
+    near("v'", &a, thesis.as_slice(), 1e-10);
 }
 
 fn vectors() -> Value {
@@ -121,7 +150,32 @@ fn robot(f: &Value) -> Robot {
     Robot { data: Data::new(&model), model, q, v, t, bias }
 }
 
+/// The motor as a rotor of the torso, which has its mass and its inertia.
+fn robot_with_rotor(f: &Value) -> Robot {
+    let full = robot(f);
+    let motor = flat(&f["bodies"][2]["A0"]);
+    let rotor = Rotor {
+        name: "motor".into(),
+        link: "body 0".into(),
+        axis: Vector3::from_column_slice(&motor[6..]),
+        inertia: flat(&f["bodies"][2]["Io"])[8],
+        joints: vec![0],
+    };
+    let model = tree(&f["bodies"], true).build().expect("valid tree");
+    let model = model.with_rotors(&[rotor]).expect("a rotor in the torso");
+    let mut data = Data::new(&model);
+    data.set_gear(0, [-100.0, 0.0, 0.0], 0.0);
+    let mut q = full.q;
+    q.remove(8);
+    let (v, t, bias) = (full.v.remove_row(7), full.t.remove_row(7), full.bias.remove_row(7));
+    Robot { model, data, q, v, t, bias }
+}
+
 fn model(bodies: &Value) -> Model {
+    tree(bodies, false).build().expect("valid tree")
+}
+
+fn tree(bodies: &Value, locked: bool) -> ModelBuilder {
     let bodies = bodies.as_array().expect("a list");
     let inertia = |b: &Value| {
         let center = Vector3::from_column_slice(&flat(&b["c"]));
@@ -138,10 +192,10 @@ fn model(bodies: &Value) -> Model {
         let placement =
             IsometryMatrix3::from_parts(Vector3::from_column_slice(&flat(&b["r"])).into(), rotation);
         let (name, parent) = (format!("body {k}"), format!("body {}", b["parent"]));
-        let kind = JointKind::Revolute(Vector3::z());
+        let kind = if locked && k == 2 { JointKind::Fixed } else { JointKind::Revolute(Vector3::z()) };
         builder.joint(&name, &parent, &name, &placement, kind, &inertia(b)).expect("valid joint");
     }
-    builder.build().expect("valid tree")
+    builder
 }
 
 fn flat(v: &Value) -> Vec<f64> {

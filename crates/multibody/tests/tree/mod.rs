@@ -32,7 +32,7 @@ impl Dice {
         (0..n).map(|_| self.unit() * size).collect()
     }
 
-    fn rotation(&mut self) -> Rotation3<f64> {
+    pub(crate) fn rotation(&mut self) -> Rotation3<f64> {
         Rotation3::new(self.vector(2.0))
     }
 
@@ -59,6 +59,11 @@ impl Dice {
 
 /// A tree of `links` links behind its base.
 pub(crate) fn random(dice: &mut Dice, links: usize) -> Model {
+    builder(dice, links).build().expect("valid tree")
+}
+
+/// The tree of [`random`], to be continued.
+pub(crate) fn builder(dice: &mut Dice, links: usize) -> ModelBuilder {
     let name = |k: usize| format!("link {k}");
     let mut builder = ModelBuilder::new(&name(0), dice.inertia());
     for k in 1..=links {
@@ -70,7 +75,7 @@ pub(crate) fn random(dice: &mut Dice, links: usize) -> Model {
             .joint(&format!("joint {k}"), &name(parent), &name(k), &placement, kind, &inertia)
             .expect("valid joint");
     }
-    builder.build().expect("valid tree")
+    builder
 }
 
 /// Any configuration: base anywhere in any attitude, joints within half a turn.
