@@ -11,6 +11,7 @@
 //!
 //! Only this crate names TOML.
 
+pub mod drive;
 mod error;
 mod file;
 pub mod gait;

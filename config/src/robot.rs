@@ -5,6 +5,8 @@ use std::path::Path;
 
 use messages::MAX_JOINTS;
 
+pub use crate::drive::Drive;
+use crate::drive::drives;
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
@@ -32,6 +34,8 @@ pub struct Robot {
     pub poses: BTreeMap<String, Vec<f64>>,
     /// Local controllers of the field bus: the joints (indices) each one drives.
     pub nodes: Vec<Vec<usize>>,
+    /// Drives, one per joint in the joints' order; empty for a robot of ideal drives.
+    pub drives: Vec<Drive>,
 }
 
 /// One driven joint.
@@ -134,6 +138,7 @@ impl Robot {
             imu: top.numbers("imu", "m", -2.0..=2.0),
             poses: poses(top, &joints),
             nodes: nodes(top, &names),
+            drives: drives(top, &joints),
             joints,
         }
     }
@@ -214,7 +219,7 @@ impl Foot {
 }
 
 /// The position of a joint that a key names.
-fn joint_index(at: &Section<'_, '_>, key: &str, name: &str, joints: &[&str]) -> Option<usize> {
+pub(crate) fn joint_index(at: &Section<'_, '_>, key: &str, name: &str, joints: &[&str]) -> Option<usize> {
     let found = joints.iter().position(|joint| *joint == name);
     if found.is_none() && !name.is_empty() {
         let hint =
