@@ -9,6 +9,7 @@ use messages::command_text::{COMMANDS, CommandInfo};
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
+use crate::sensors::Sensors;
 
 /// `scenes/NAME.toml`.
 #[derive(Clone, Debug)]
@@ -35,6 +36,8 @@ pub struct Scene {
     pub duration: f64,
     /// Seed of everything random.
     pub seed: u64,
+    /// Errors of the sensors.
+    pub sensors: Sensors,
     /// Commands by time \[s\], ascending.
     pub commands: Vec<(f64, Command)>,
     /// Pushes at the torso by time \[s\], ascending.
@@ -76,6 +79,7 @@ impl Scene {
             start_pose: top.text("start_pose"),
             duration: top.number("duration", "s", POSITIVE),
             seed: top.integer("seed", 0..=u64::MAX),
+            sensors: sensors(top),
             commands: top.tables("command", command),
             pushes: top.tables("push", push),
         };
@@ -103,6 +107,12 @@ impl Scene {
             last = time;
         }
     }
+}
+
+/// `[sensors]`, if it is there.
+fn sensors(top: &Section<'_, '_>) -> Sensors {
+    let named = top.has("sensors").then(|| top.table("sensors", Sensors::build));
+    named.flatten().unwrap_or_default()
 }
 
 /// One `[[command]]`: `time`, the topic as `gangwerk topic` names it, and the topic's fields.

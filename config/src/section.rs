@@ -239,6 +239,25 @@ impl<'a, 't> Section<'a, 't> {
         })
     }
 
+    /// A switch: off if the key is not there.
+    pub(crate) fn flag(&self, key: &str) -> bool {
+        if !self.has(key) {
+            return false;
+        }
+        match self.table[key].get_ref() {
+            DeValue::Boolean(on) => *on,
+            _ => {
+                self.wrong_type(&self.path(key), &self.table[key], "true or false");
+                false
+            }
+        }
+    }
+
+    /// Is the key there, and a table?
+    pub(crate) fn is_table(&self, key: &str) -> bool {
+        self.has(key) && matches!(self.table[key].get_ref(), DeValue::Table(_))
+    }
+
     fn items(&self, key: &str, wanted: &str) -> &'a [Value<'t>] {
         let Some(value) = self.get(key, wanted) else { return &[] };
         match value.get_ref() {

@@ -57,6 +57,10 @@ impl Setup {
                 note(format!("command[{i}]"), format!("at {time} s: {text} of gait {}", scene.gait));
             }
         }
+        let joints: Vec<&str> = self.robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+        for (key, text) in scene.sensors.unknown_joints(&scene.robot, &joints) {
+            note(key, text);
+        }
         problems
     }
 
