@@ -34,7 +34,7 @@ impl Model {
         );
         assert_eq!(acceleration.len(), self.nv(), "length of the acceleration");
         assert!(self.gyros.is_empty(), "articulated bodies have no rotors here; use forward_dynamics");
-        data.set_position(self, q);
+        self.set_position(data, q);
         let Data { joints, oblique, locals, articulated, base, .. } = data;
 
         let w = V3::from_slice(&v[3..]);

@@ -17,7 +17,9 @@ pub struct Data {
     pub(crate) joints: Vec<Position>,
     /// parent_from_body of joints about oblique axes; others unused.
     pub(crate) oblique: Vec<Mat3>,
+    /// Attitude and origin of the base.
     pub(crate) base: Mat3,
+    pub(crate) origin: V3,
     pub(crate) places: Vec<Place>,
     pub(crate) motions: Vec<Motion>,
     /// First moments of mass of the carried bodies, about the world's origin, world axes.
@@ -97,6 +99,15 @@ pub(crate) struct Articulated {
     pub ca: V3,
 }
 
+impl Model {
+    /// Takes a configuration without computing more than sines and cosines. The functions whose names end in `_here`
+    /// work at the configuration that was taken last, by this function or by any other that is given q: so several of
+    /// them share the work of one.
+    pub fn set_position(&self, data: &mut Data, q: &[f64]) {
+        data.take(self, q);
+    }
+}
+
 impl Data {
     /// Allocates for a model.
     pub fn new(model: &Model) -> Data {
@@ -109,6 +120,7 @@ impl Data {
             joints,
             oblique: vec![Mat3::IDENTITY; nb],
             base: Mat3::IDENTITY,
+            origin: ZERO,
             places: vec![Place { a: Mat3::IDENTITY, r: ZERO, e: v3(0.0, 0.0, 1.0) }; nb],
             motions: vec![Motion::default(); nb],
             moments: vec![ZERO; nb],
@@ -123,9 +135,9 @@ impl Data {
         }
     }
 
-    /// Takes the joint coordinates and the base's attitude.
-    pub(crate) fn set_position(&mut self, model: &Model, q: &[f64]) {
+    fn take(&mut self, model: &Model, q: &[f64]) {
         assert_eq!(q.len(), model.nq(), "length of q");
+        self.origin = V3::from_slice(q);
         self.base = Mat3::from_quaternion([q[3], q[4], q[5], q[6]]);
         sin_cos(&q[7..], &mut self.sin, &mut self.cos);
         let turned = self.sin.iter().zip(&self.cos).zip(&q[7..]);

@@ -20,10 +20,15 @@ impl Model {
         force: &[f64],
         acceleration: &mut [f64],
     ) {
+        self.set_position(data, q);
+        self.forward_dynamics_here(data, v, force, acceleration);
+    }
+
+    /// [`Model::forward_dynamics`] at the configuration that `data` has.
+    pub fn forward_dynamics_here(&self, data: &mut Data, v: &[f64], force: &[f64], acceleration: &mut [f64]) {
         assert_eq!(force.len(), self.nv(), "length of the generalized force");
-        data.set_position(self, q);
         self.rows(data);
-        self.bias(data, v, acceleration);
+        self.nonlinear_terms_here(data, v, acceleration);
         for (a, f) in acceleration.iter_mut().zip(force) {
             *a = f - *a;
         }

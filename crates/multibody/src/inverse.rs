@@ -10,8 +10,10 @@
 //! The sweep needs no linear velocities. Gravity enters as the base's acceleration -g with g = (0, 0, -9.81); the
 //! print of (2.36) has the opposite sign (errata).
 
+use nalgebra::Vector3;
+
 use crate::data::{Data, Local, with_turn};
-use crate::model::{Body, G, Model};
+use crate::model::{Body, Frame, G, Model};
 use crate::space::{V3, ZERO};
 use crate::turn::Turn;
 
@@ -25,9 +27,14 @@ impl Model {
         acceleration: &[f64],
         force: &mut [f64],
     ) {
+        self.set_position(data, q);
+        self.inverse_dynamics_here(data, v, acceleration, force);
+    }
+
+    /// [`Model::inverse_dynamics`] at the configuration that `data` has.
+    pub fn inverse_dynamics_here(&self, data: &mut Data, v: &[f64], acceleration: &[f64], force: &mut [f64]) {
         assert_eq!(acceleration.len(), self.nv(), "length of the acceleration");
         assert_eq!(force.len(), self.nv(), "length of the generalized force");
-        data.set_position(self, q);
         let base = (V3::from_slice(acceleration), V3::from_slice(&acceleration[3..]));
         self.sweeps(data, v, base, |k| acceleration[k + 5], |k, x| force[k + 5] = x);
         collect(data, force);
@@ -36,16 +43,26 @@ impl Model {
 
     /// Nonlinear terms h at `q`, `v`: Coriolis, centrifugal and weight; M v' + h = generalized force.
     pub fn nonlinear_terms(&self, data: &mut Data, q: &[f64], v: &[f64], h: &mut [f64]) {
-        data.set_position(self, q);
-        self.bias(data, v, h);
+        self.set_position(data, q);
+        self.nonlinear_terms_here(data, v, h);
     }
 
-    /// Nonlinear terms, the position being set.
-    pub(crate) fn bias(&self, data: &mut Data, v: &[f64], h: &mut [f64]) {
+    /// [`Model::nonlinear_terms`] at the configuration that `data` has.
+    pub fn nonlinear_terms_here(&self, data: &mut Data, v: &[f64], h: &mut [f64]) {
         assert_eq!(h.len(), self.nv(), "length of the generalized force");
         self.sweeps(data, v, (ZERO, ZERO), |_| 0.0, |k, x| h[k + 5] = x);
         collect(data, h);
         self.load_joints(data, h);
+    }
+
+    /// Force \[N\], and moment \[N m\] about the frame's origin, world axes, that the frame's body and all it carries need
+    /// for the motion and against the weight that [`Model::inverse_dynamics`] was last asked about. What a sensor between
+    /// the body and its parent measures is this less what acts on these bodies from outside. Needs the pose of the
+    /// frame's body at the same configuration.
+    pub fn carried_wrench(&self, data: &Data, frame: &Frame) -> (Vector3<f64>, Vector3<f64>) {
+        let (place, local) = (&data.places[frame.body], &data.locals[frame.body]);
+        let n = local.n - frame.r.cross(local.f);
+        ((place.a * local.f).into(), (place.a * n).into())
     }
 
     /// Both sweeps, with the base's acceleration; leaves force and moment of every body in `data` and hands the force of

@@ -27,12 +27,24 @@ pub struct Twist {
     pub angular: Vector3<f64>,
 }
 
+/// The bodies between the base and some frames, for queries about these frames alone; made once by [`Model::limbs`].
+#[derive(Clone, Debug)]
+pub struct Limbs {
+    /// Parents first, without the base.
+    bodies: Vec<usize>,
+}
+
 impl Model {
     /// Poses of all bodies at `q`. Motions in `data` are then stale.
     pub fn forward_kinematics(&self, data: &mut Data, q: &[f64]) {
-        data.set_position(self, q);
-        let Data { joints, oblique, places, base, .. } = data;
-        places[0] = Place { a: *base, r: V3::from_slice(q), e: ZERO };
+        self.set_position(data, q);
+        self.forward_kinematics_here(data);
+    }
+
+    /// [`Model::forward_kinematics`] at the configuration that `data` has.
+    pub fn forward_kinematics_here(&self, data: &mut Data) {
+        let Data { joints, oblique, places, base, origin, .. } = data;
+        places[0] = Place { a: *base, r: *origin, e: ZERO };
         for (k, body) in self.bodies.iter().enumerate().skip(1) {
             let (p, j) = (places[body.parent], &joints[k]);
             with_turn!(body, j, &oblique[k], t => {
@@ -53,28 +65,43 @@ impl Model {
         assert_eq!(v.len(), self.nv(), "length of v");
         let Data { places, motions, spins, .. } = data;
         self.rotor_speeds(spins, v);
-        let a = places[0].a;
-        let (w, vel) = (a * V3::from_slice(&v[3..]), a * V3::from_slice(v));
-        motions[0] = Motion { w, v: vel, dw: ZERO, dv: w.cross(vel) };
+        motions[0] = base_motion(&places[0], v);
         for (k, (body, &qd)) in self.bodies.iter().skip(1).zip(&v[6..]).enumerate() {
-            let (place, p) = (&places[k + 1], motions[body.parent]);
-            let d = place.r - places[body.parent].r;
-            let e = place.e * qd;
-            let mut m = Motion {
-                w: p.w,
-                v: p.v + p.w.cross(d),
-                dw: p.dw,
-                dv: p.dv + p.dw.cross(d) + p.w.cross(p.w.cross(d)),
-            };
-            if let Kind::Along(_) = body.kind {
-                m.v += e;
-                m.dv += p.w.cross(e) * 2.0;
-            } else {
-                m.w += e;
-                m.dw += p.w.cross(e);
-            }
-            motions[k + 1] = m;
+            let d = places[k + 1].r - places[body.parent].r;
+            motions[k + 1] = carried_on(&motions[body.parent], body.kind, d, places[k + 1].e * qd);
         }
+    }
+
+    /// Poses, velocities and velocity-product accelerations of the bodies of some limbs at the configuration that `data`
+    /// has; those of all other bodies are then stale.
+    pub fn limb_motion_here(&self, data: &mut Data, limbs: &Limbs, v: &[f64]) {
+        assert_eq!(v.len(), self.nv(), "length of v");
+        let Data { joints, oblique, places, motions, base, origin, .. } = data;
+        places[0] = Place { a: *base, r: *origin, e: ZERO };
+        motions[0] = base_motion(&places[0], v);
+        for &k in &limbs.bodies {
+            let (body, j) = (&self.bodies[k], &joints[k]);
+            let p = places[body.parent];
+            let d = p.a * j.r;
+            with_turn!(body, j, &oblique[k], t => {
+                let a = t.chain(p.a);
+                places[k] = Place { a, r: p.r + d, e: t.column_of(&a) * body.sign };
+            });
+            motions[k] = carried_on(&motions[body.parent], body.kind, d, places[k].e * v[k + 5]);
+        }
+    }
+
+    /// The limbs that carry some frames.
+    pub fn limbs(&self, frames: &[Frame]) -> Limbs {
+        let mut needed = vec![false; self.bodies.len()];
+        for frame in frames {
+            let mut k = frame.body;
+            while k != 0 && !needed[k] {
+                needed[k] = true;
+                k = self.bodies[k].parent;
+            }
+        }
+        Limbs { bodies: (1..needed.len()).filter(|&k| needed[k]).collect() }
     }
 
     /// world_from_frame, after [`Model::forward_kinematics`].
@@ -132,6 +159,32 @@ impl Model {
         add(&mut generalized[..3], base.a, f);
         add(&mut generalized[3..6], base.a, n + (at - base.r).cross(f));
     }
+}
+
+/// The base's motion from v.
+#[inline(always)]
+fn base_motion(place: &Place, v: &[f64]) -> Motion {
+    let (w, vel) = (place.a * V3::from_slice(&v[3..]), place.a * V3::from_slice(v));
+    Motion { w, v: vel, dw: ZERO, dv: w.cross(vel) }
+}
+
+/// A body's motion from that of its parent `p`, whose origin is -d away; e has the length of the joint's speed.
+#[inline(always)]
+fn carried_on(p: &Motion, kind: Kind, d: V3, e: V3) -> Motion {
+    let mut m = Motion {
+        w: p.w,
+        v: p.v + p.w.cross(d),
+        dw: p.dw,
+        dv: p.dv + p.dw.cross(d) + p.w.cross(p.w.cross(d)),
+    };
+    if let Kind::Along(_) = kind {
+        m.v += e;
+        m.dv += p.w.cross(e) * 2.0;
+    } else {
+        m.w += e;
+        m.dw += p.w.cross(e);
+    }
+    m
 }
 
 fn add(out: &mut [f64], a: Mat3, world: V3) {

@@ -47,6 +47,6 @@ pub use centroid::Momentum;
 pub use data::Data;
 pub use error::ModelError;
 pub use inertia::Inertia;
-pub use kinematics::Twist;
+pub use kinematics::{Limbs, Twist};
 pub use model::{Frame, GRAVITY, Model};
 pub use rotor::Rotor;

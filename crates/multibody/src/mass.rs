@@ -16,7 +16,12 @@ use crate::turn::Turn;
 impl Model {
     /// Mass matrix at `q`, n_v x n_v, symmetric, both triangles.
     pub fn mass_matrix<'d>(&self, data: &'d mut Data, q: &[f64]) -> &'d DMatrix<f64> {
-        data.set_position(self, q);
+        self.set_position(data, q);
+        self.mass_matrix_here(data)
+    }
+
+    /// [`Model::mass_matrix`] at the configuration that `data` has.
+    pub fn mass_matrix_here<'d>(&self, data: &'d mut Data) -> &'d DMatrix<f64> {
         self.rows(data);
         let Data { m, mass_matrix, .. } = data;
         let full = mass_matrix.as_mut_slice();

@@ -19,8 +19,18 @@ impl Model {
         v: &[f64],
         joint_acceleration: &[f64],
     ) -> (Matrix6<f64>, Vector6<f64>) {
+        self.set_position(data, q);
+        self.base_dynamics_here(data, v, joint_acceleration)
+    }
+
+    /// [`Model::base_dynamics`] at the configuration that `data` has.
+    pub fn base_dynamics_here(
+        &self,
+        data: &mut Data,
+        v: &[f64],
+        joint_acceleration: &[f64],
+    ) -> (Matrix6<f64>, Vector6<f64>) {
         assert_eq!(joint_acceleration.len(), self.n(), "length of the joint acceleration");
-        data.set_position(self, q);
         self.composites(data);
         self.sweeps(data, v, (ZERO, ZERO), |k| joint_acceleration[k - 1], |_, _| ());
         let (c, l, m) = (&data.composites[0], &data.locals[0], self.mass());

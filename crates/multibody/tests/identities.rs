@@ -181,6 +181,86 @@ proptest! {
         let weight = multibody::GRAVITY * c.model.mass();
         prop_assert!(error(&rate, &both(f + weight, n + arm.cross(&f))) < 1e-6);
     }
+
+    /// The functions that go on from a configuration give to the bit what those that take it give.
+    #[test]
+    fn here_is_where_the_configuration_was_taken(links in 0usize..20, seed: u64) {
+        let mut c = case(links, seed);
+        let (model, mut d) = (&c.model, Data::new(&c.model));
+        let (mut x, mut y) = (c.v.clone(), c.v.clone());
+        model.set_position(&mut d, &c.q);
+        model.inverse_dynamics(&mut c.data, &c.q, &c.v, &c.a, &mut x);
+        model.inverse_dynamics_here(&mut d, &c.v, &c.a, &mut y);
+        prop_assert_eq!(&x, &y);
+        model.nonlinear_terms(&mut c.data, &c.q, &c.v, &mut x);
+        model.nonlinear_terms_here(&mut d, &c.v, &mut y);
+        prop_assert_eq!(&x, &y);
+        model.forward_dynamics(&mut c.data, &c.q, &c.v, &c.a, &mut x);
+        model.forward_dynamics_here(&mut d, &c.v, &c.a, &mut y);
+        prop_assert_eq!(&x, &y);
+        prop_assert_eq!(model.mass_matrix(&mut c.data, &c.q), model.mass_matrix_here(&mut d));
+        let base = model.base_dynamics(&mut c.data, &c.q, &c.v, &c.a[6..]);
+        prop_assert_eq!(base, model.base_dynamics_here(&mut d, &c.v, &c.a[6..]));
+        let frame = c.last_frame();
+        model.limb_motion_here(&mut d, &model.limbs(&[frame]), &c.v);
+        c.model.forward_motion(&mut c.data, &c.q, &c.v);
+        let seen = |d: &Data| {
+            let (p, t, b) = (model.frame_pose(d, &frame), model.frame_velocity(d, &frame), model.frame_bias(d, &frame));
+            [p.rotation.matrix().as_slice(), &both(t.linear, t.angular), &both(b.linear, b.angular)].concat()
+        };
+        prop_assert!(error(&seen(&d), &seen(&c.data)) < 1e-13);
+        let at = |d: &Data| model.frame_position(d, &frame);
+        prop_assert_eq!(at(&d), at(&c.data));
+        model.forward_kinematics_here(&mut d);
+        prop_assert_eq!(model.cog(&mut d), model.cog(&mut c.data));
+    }
+
+    /// Newton and Euler for what a frame's body carries: for the base that is all, and for the last link, if it moves by a
+    /// joint of its own, what the robot has more than the robot without it.
+    #[test]
+    fn carried_wrench_changes_the_momentum_of_what_is_carried(links in 1usize..20, seed: u64) {
+        let mut c = case(links, seed);
+        let mut force = c.v.clone();
+        c.model.inverse_dynamics(&mut c.data, &c.q, &c.v, &c.a, &mut force);
+        c.model.forward_motion(&mut c.data, &c.q, &c.v);
+        let base = c.model.frame("link 0", [0.0; 3]).unwrap();
+        let (f, n) = c.model.carried_wrench(&c.data, &base);
+        let to_base = c.model.frame_pose(&c.data, &base).rotation.inverse();
+        prop_assert!(error(&both(to_base * f, to_base * n), &force[..6]) < 1e-12);
+
+        let frame = c.last_frame();
+        let (f, n) = c.model.carried_wrench(&c.data, &frame);
+        let at = c.model.frame_position(&c.data, &frame);
+        let mut outside = vec![0.0; c.model.nv()];
+        c.model.add_wrench(&c.data, &frame, &f, &n, &mut outside);
+        if let Some(joint) = frame.joint() {
+            prop_assert!((outside[6 + joint] - force[6 + joint]).abs() < 1e-12 * (1.0 + f.norm() + n.norm()));
+        }
+        let rest = tree::random(&mut Dice(seed), links - 1);
+        if rest.n() + 1 == c.model.n() {
+            let mut d = Data::new(&rest);
+            let all = c.model.cog(&mut c.data) * c.model.mass();
+            let of_link = c.rate(|m, data, q, v| {
+                let mut d = Data::new(&rest);
+                m.forward_motion(data, q, v);
+                rest.forward_motion(&mut d, &q[..rest.nq()], &v[..rest.nv()]);
+                let (whole, rest) = (about(m, data, at), about(&rest, &mut d, at));
+                whole.iter().zip(rest).map(|(a, b)| a - b).collect()
+            });
+            let mass = c.model.mass() - rest.mass();
+            rest.forward_kinematics(&mut d, &c.q[..rest.nq()]);
+            let moment = all - rest.cog(&mut d) * rest.mass();
+            let weight = multibody::GRAVITY * mass;
+            let needed = both(f + weight, n + (moment - at * mass).cross(&multibody::GRAVITY));
+            prop_assert!(error(&of_link, &needed) < 1e-6, "{of_link:?} {needed:?}");
+        }
+    }
+}
+
+/// Momentum, and moment of momentum about a point.
+fn about(model: &Model, data: &mut Data, at: Vector3<f64>) -> Vec<f64> {
+    let p = model.momentum(data);
+    both(p.linear, p.angular + (model.cog(data) - at).cross(&p.linear))
 }
 
 fn both(a: Vector3<f64>, b: Vector3<f64>) -> Vec<f64> {

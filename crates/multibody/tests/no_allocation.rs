@@ -56,6 +56,8 @@ fn every_function_works_in_the_memory_made_at_the_start() {
     let (mut c, mut c_joints) = (Matrix3xX::zeros(model.nv()), Matrix3xX::zeros(model.n()));
     let frame = model.frame("link 20", [0.1, 0.2, 0.3]).expect("the link exists");
 
+    let limbs = model.limbs(&[frame]);
+
     let before = COUNT.get();
     model.integrate(&q, &v, 1e-3, &mut next);
     model.configuration_rate(&q, &v, &mut rate);
@@ -78,9 +80,13 @@ fn every_function_works_in_the_memory_made_at_the_start() {
     let spin = model.rotor_acceleration(&d, 1);
     plain.forward_dynamics_articulated(&mut d, &q, &v, &a, &mut out);
     model.solve_mass_matrix(&mut d, &mut out);
+    model.set_position(&mut d, &q);
+    model.limb_motion_here(&mut d, &limbs, &v);
+    model.inverse_dynamics_here(&mut d, &v, &a, &mut out);
+    let carried = model.carried_wrench(&d, &frame);
     let base = model.base_dynamics(&mut d, &q, &v, &a[6..]);
     let allocations = COUNT.get() - before;
-    std::hint::black_box((seen, whole, base, next, rate, spin));
+    std::hint::black_box((seen, whole, base, next, rate, spin, carried));
     assert_eq!(allocations, 0);
 
     drop(Box::new(std::hint::black_box(1)));
