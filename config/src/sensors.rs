@@ -98,13 +98,21 @@ pub struct Imu {
     pub acceleration: Signal,
 }
 
-/// White noise and quantisation of one signal, in its unit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Noise, quantisation and range of one signal, in its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signal {
-    /// Standard deviation of each component.
+    /// Standard deviation of the white noise of each component.
     pub noise: f64,
     /// Quantisation.
     pub step: f64,
+    /// Largest absolute value of each component; infinite where there is no limit, as for orientations.
+    pub range: f64,
+}
+
+impl Default for Signal {
+    fn default() -> Self {
+        Self { noise: 0.0, step: 0.0, range: f64::INFINITY }
+    }
 }
 
 /// A number per joint, or one for all.
@@ -220,17 +228,25 @@ impl ForceTorque {
 
 impl Imu {
     fn build(table: &Section<'_, '_>) -> Self {
-        let signal = |name: &str, unit: &str| {
-            let number =
-                |what| optional(table, &format!("{name}_{what}"), |t, k| t.number(k, unit, 0.0..=1e3));
-            Signal { noise: number("noise"), step: number("step") }
+        let number = |key: String, unit: &str, most: f64| {
+            optional(table, &key, |t, key| t.number(key, unit, 0.0..=most))
+        };
+        let signal = |name: &str, unit: &str, most: f64| Signal {
+            noise: number(format!("{name}_noise"), unit, most),
+            step: number(format!("{name}_step"), unit, most),
+            range: f64::INFINITY,
+        };
+        let ranged = |name: &str, unit: &str| {
+            let key = format!("{name}_range");
+            let range = if table.has(&key) { table.number(&key, unit, 1e-3..=1e6) } else { f64::INFINITY };
+            Signal { range, ..signal(name, unit, 1e3) }
         };
         Self {
             bandwidth: optional(table, "bandwidth", |t, key| t.number(key, "Hz", 1e-3..=1e5)),
             bias: optional(table, "bias_rad", |t, key| t.numbers(key, "rad", -1.0..=1.0)),
-            orientation: signal("orientation", "rad"),
-            rate: signal("rate", "rad/s"),
-            acceleration: signal("acceleration", "m/s^2"),
+            orientation: signal("orientation", "rad", 0.1),
+            rate: ranged("rate", "rad/s"),
+            acceleration: ranged("acceleration", "m/s^2"),
         }
     }
 }

@@ -14,5 +14,6 @@ pub mod integrate;
 pub mod plant;
 pub mod power;
 mod robot;
+pub mod sensors;
 
 pub use robot::SimBackend;

@@ -1,0 +1,84 @@
+//! Force/torque sensors of the feet (thesis 2.5.2, figure 2.23).
+//!
+//! | symbol | name | unit | frame |
+//! |---|---|---|---|
+//! | F_c, T_c | wrench of the ground on everything below the sensor | N, N m | sensor |
+//! | F_i, T_i | sum of m (a - g) over the bodies below, and its moment: what moves and carries them | N, N m | sensor |
+//! | F_0, T_0 | F_i, T_i while the robot hangs at rest with level feet | N, N m | sensor |
+//!
+//! The strain gauges see what the bodies below press on the ankle: F = F_c - F_i. It is set to zero while hanging, where
+//! F_c = 0: F = F_c - F_i + F_0 (errata 1, 4.13). A foot that stands still and level reads F_c exactly; one that is
+//! tilted, or swings, does not. Then: anti-aliasing filter, noise, converter, range.
+
+use messages::Wrench;
+use nalgebra::Vector3;
+
+use super::converter::Converter;
+use super::low_pass::LowPass;
+use super::noise::Noise;
+
+/// One sensor: forces, then moments.
+#[derive(Clone, Debug)]
+pub struct ForceTorque {
+    inertia: bool,
+    /// Wrench that is added: F_0, T_0, if it was set to zero while hanging.
+    zero: Option<[f64; 6]>,
+    low_pass: [LowPass<1>; 6],
+    converters: [Converter; 6],
+}
+
+impl ForceTorque {
+    /// `hanging`: F_0, T_0 of this foot, as [`weight`] gives it. `cycle` in s. `stream(i)`: noise of the six signals.
+    pub fn new(
+        errors: &config::sensors::ForceTorque,
+        hanging: &Wrench,
+        cycle: f64,
+        stream: impl Fn(u64) -> Noise,
+    ) -> Self {
+        let converter = |i: usize| {
+            let (kind, axis) = (i / 3, i % 3);
+            let range = [errors.force_range, errors.moment_range][kind][axis];
+            Converter::new(errors.noise[kind], errors.step[kind], range, stream(i as u64))
+        };
+        Self {
+            inertia: errors.inertia,
+            zero: (errors.inertia && errors.bias_compensation).then(|| components(hanging)),
+            low_pass: std::array::from_fn(|_| LowPass::new(errors.filter_time, cycle)),
+            converters: std::array::from_fn(converter),
+        }
+    }
+
+    /// Whether F_i, T_i matter.
+    pub fn needs_inertia(&self) -> bool {
+        self.inertia
+    }
+
+    /// One reading; `contact` F_c, T_c and `inertial` F_i, T_i, both of now. What is not finite is read as NaN.
+    pub fn measure(&mut self, contact: &Wrench, inertial: &Wrench, clipped: &mut u32) -> Wrench {
+        let mut x = components(contact);
+        let inertial = components(inertial);
+        for i in 0..6 {
+            if self.inertia {
+                x[i] -= inertial[i];
+            }
+            if let Some(zero) = &self.zero {
+                x[i] += zero[i];
+            }
+            let [filtered] = self.low_pass[i].filter([x[i]]);
+            x[i] = self.converters[i].convert(filtered, clipped);
+        }
+        Wrench { force: [x[0], x[1], x[2]], moment: [x[3], x[4], x[5]] }
+    }
+}
+
+/// F_0, T_0: what carries `mass` \[kg\] with its centre of gravity at `cog` \[m, sensor frame\] at rest, when `gravity`
+/// \[m/s^2\] is that in the sensor frame: (0, 0, -9.81) with level feet.
+pub fn weight(mass: f64, cog: [f64; 3], gravity: [f64; 3]) -> Wrench {
+    let force = -mass * Vector3::from(gravity);
+    Wrench { force: force.into(), moment: Vector3::from(cog).cross(&force).into() }
+}
+
+fn components(w: &Wrench) -> [f64; 6] {
+    let ([a, b, c], [d, e, f]) = (w.force, w.moment);
+    [a, b, c, d, e, f]
+}
