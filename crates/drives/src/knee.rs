@@ -19,7 +19,7 @@ use nalgebra::Vector3;
 use crate::turn::Turn;
 use crate::{Gear, OutOfDomain};
 
-/// \[1\] Lever over length at which the screw counts as pointing at the joint.
+/// \[1\] Lever, and length of the screw, over the size of the linkage that count as none.
 const LEAST_LEVER: f64 = 1e-6;
 
 /// Where a knee's parts are.
@@ -52,6 +52,8 @@ pub struct Knee {
     rest: f64,
     /// Sign of l' at angle 0: the side of the joint on which the screw stays.
     side: f64,
+    /// Least lever and length \[m\].
+    least: f64,
 }
 
 impl Knee {
@@ -62,7 +64,8 @@ impl Knee {
             (Vector3::from(geometry.axis).normalize(), Vector3::from(geometry.attachment));
         let r = base + attachment;
         let side = axis.cross(&attachment).dot(&r).signum();
-        let knee = Self { axis, base, attachment, turns: TAU / geometry.lead, rest: r.norm(), side };
+        let least = LEAST_LEVER * (base.norm() + attachment.norm());
+        let knee = Self { axis, base, attachment, turns: TAU / geometry.lead, rest: r.norm(), side, least };
         knee.at(0.0, 0.0).map(|_| knee)
     }
 
@@ -74,7 +77,7 @@ impl Knee {
         let rpp = self.axis.cross(&rp);
         let l = r.norm(); // (2.16)
         let lever = rp.dot(&r) / l; // l' (2.17)
-        if !(lever * self.side > LEAST_LEVER * l) {
+        if !(lever * self.side > self.least && l > self.least) {
             return Err(if lever.is_finite() {
                 OutOfDomain::Lever { margin: lever * self.side }
             } else {

@@ -12,6 +12,7 @@
 mod ankle;
 mod elasticity;
 mod friction;
+mod inverse;
 mod knee;
 mod motor;
 mod transmission;
