@@ -91,6 +91,8 @@ pub struct Control {
     pub height_d: f64,
     /// \[1\] F_z,max over the robot's weight (5.12).
     pub force_max: f64,
+    /// \[1\] How much of the shift of normal force between the feet (5.14) is used; 0: moments of the feet alone.
+    pub force_shift: f64,
     /// \[1/s\] K_lambda of normal force, moment about x, moment about y (5.26).
     pub force_gain: [f64; 3],
     /// \[1\] K_lambda,FF (5.31).
@@ -239,6 +241,7 @@ impl Control {
             height_p: table.number("height_p", "N/m", NOT_NEGATIVE),
             height_d: table.number("height_d", "N s/m", NOT_NEGATIVE),
             force_max: table.number("force_max", "times the weight", 1.0..=5.0),
+            force_shift: table.number("force_shift", "", 0.0..=1.0),
             force_gain: table.numbers("force_gain", "1/s", 0.0..=500.0),
             force_feed_forward: table.number("force_feed_forward", "", 0.0..=1.0),
             force_blend: table.interval("force_blend", "N", NOT_NEGATIVE),

@@ -43,6 +43,7 @@ pub const PARAMETERS: &[Parameter] = &[
     parameter("position_gain", "1/s", [0.0, 100.0], "return of a modification to zero (5.32)", |c| &mut c.position_gain),
     parameter("drift_gain", "1/s", [0.0, 500.0], "K_x, drift compensation of the inverse kinematics", |c| &mut c.drift_gain),
     parameter("force_filter", "s", [1e-4, 0.1], "time constant of the force sensor filter", |c| &mut c.force_filter),
+    parameter("force_shift", "", [0.0, 1.0], "share of the shift of normal force (5.14)", |c| &mut c.force_shift),
 ];
 
 impl Parameter {

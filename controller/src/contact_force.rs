@@ -76,7 +76,7 @@ pub fn distribute(
     let f = force + Vector3::z() * lift; // (5.5)
     let t = planned + moment_com + (com - r_ref).cross(&f); // (5.6)
 
-    let (delta, rest) = shift_normal_force(gains.force_max * weight, f.z, t, feet);
+    let (delta, rest) = shift_normal_force(gains, weight, f.z, t, feet);
     let mut wrenches = [
         FootWrench { force: f * rho_0 + Vector3::z() * delta, moment: rest * rho_0 }, // (5.15), (5.17)
         FootWrench { force: f * rho_1 - Vector3::z() * delta, moment: rest * rho_1 }, // (5.16), (5.18)
@@ -86,7 +86,14 @@ pub fn distribute(
 }
 
 /// Delta F_z,stab and the moment that remains for the feet, (5.10)-(5.14), (5.19).
-fn shift_normal_force(f_max: f64, f_z: f64, t: Vector3<f64>, feet: &[Support; 2]) -> (f64, Vector3<f64>) {
+fn shift_normal_force(
+    gains: &Control,
+    weight: f64,
+    f_z: f64,
+    t: Vector3<f64>,
+    feet: &[Support; 2],
+) -> (f64, Vector3<f64>) {
+    let f_max = gains.force_max * weight;
     let r = feet[0].sensor - feet[1].sensor; // Delta r_ref,01
     let d = r.xy().norm();
     let [rho_0, rho_1] = [feet[0].load, feet[1].load];
@@ -96,7 +103,7 @@ fn shift_normal_force(f_max: f64, f_z: f64, t: Vector3<f64>, feet: &[Support; 2]
         return (0.0, t);
     }
     let axis = Vector3::new(r.y / d, -r.x / d, 0.0); // x axis of frame N (5.11)
-    let delta = (t.dot(&axis) / d).clamp(low, high); // (5.13), (5.14)
+    let delta = gains.force_shift * (t.dot(&axis) / d).clamp(low, high); // (5.13), (5.14)
     (delta, t - axis * (delta * d)) // (5.19)
 }
 
@@ -175,13 +182,19 @@ mod tests {
         let (f, zmp, com) =
             (Vector3::new(12.0, 30.0, 610.0), Vector2::new(0.02, 0.03), Vector3::new(0.0, 0.01, 0.8));
         let (dt, df) = (Vector3::new(15.0, -20.0, 0.0), 13.0);
-        let w = distribute(&gains(), 597.0, (f, zmp, com), (dt, df), &feet);
-        let total: Vector3<f64> = w[0].force + w[1].force;
-        assert!((total - f - Vector3::z() * df).norm() < 1e-10);
-        let about_com: Vector3<f64> =
-            (0..2).map(|i| w[i].moment + (feet[i].sensor - com).cross(&w[i].force)).sum();
-        let wanted = (Vector3::new(zmp.x, zmp.y, 0.0) - com).cross(&f) + dt;
-        assert!((about_com - wanted).norm() < 1e-10);
+        let mut shifted = Vec::new();
+        for force_shift in [0.0, 0.5, 1.0] {
+            let w = distribute(&Control { force_shift, ..gains() }, 597.0, (f, zmp, com), (dt, df), &feet);
+            let total: Vector3<f64> = w[0].force + w[1].force;
+            assert!((total - f - Vector3::z() * df).norm() < 1e-10);
+            let about_com: Vector3<f64> =
+                (0..2).map(|i| w[i].moment + (feet[i].sensor - com).cross(&w[i].force)).sum();
+            let wanted = (Vector3::new(zmp.x, zmp.y, 0.0) - com).cross(&f) + dt;
+            assert!((about_com - wanted).norm() < 1e-10);
+            shifted.push(w[0].force.z - feet[0].load * total.z);
+        }
+        assert!(shifted[0].abs() < 1e-10 && shifted[2].abs() > 10.0);
+        assert!((shifted[1] - 0.5 * shifted[2]).abs() < 1e-10);
     }
 
     #[test]

@@ -31,6 +31,7 @@ pub(crate) fn test_gains() -> config::gait::Control {
         height_p: 2000.0,
         height_d: 400.0,
         force_max: 2.0,
+        force_shift: 1.0,
         force_gain: [20.0; 3],
         force_feed_forward: 1.0,
         force_blend: [5.0, 50.0],

@@ -15,6 +15,6 @@ pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
         chart
     };
     Ok(Figure::new("Inclination error of the upper body", &walk.about)
-        .with(chart("About x (to the side)", 0, BLUE))
-        .with(chart("About y (forward)", 1, VERMILION)))
+        .with(chart("φ_x, forwards and backwards", 0, BLUE))
+        .with(chart("φ_y, to the sides", 1, VERMILION)))
 }

@@ -53,6 +53,7 @@ pub fn gait() -> Gait {
             height_p: 0.0,
             height_d: 0.0,
             force_max: 2.0,
+            force_shift: 1.0,
             force_gain: [0.0; 3],
             force_feed_forward: 0.0,
             force_blend: [5.0, 50.0],
