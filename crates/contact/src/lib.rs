@@ -4,5 +4,25 @@
 //! | part | where |
 //! |---|---|
 //! | independent points, closed form | [`point`] |
+//! | one node with any damping | [`node`] |
+//! | bricks, their mesh, the matrices of a pad | [`hexahedron`], [`mesh`], [`layer`], [`coupling`] |
+//! | a pad on a segment | [`pad`] |
+//! | its solvers: over forces (algorithm 1), over velocities | `prox`, `velocity` |
 
+pub mod coupling;
+pub mod frame;
+pub mod hexahedron;
+pub mod law;
+pub mod layer;
+pub mod memory;
+pub mod mesh;
+pub mod node;
+pub mod pad;
 pub mod point;
+mod prox;
+mod velocity;
+
+pub use law::{Method, Report, Settings};
+pub use layer::{Layer, Material};
+pub use memory::Memory;
+pub use pad::{Ground, Outcome, Pad, Twist};

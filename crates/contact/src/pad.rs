@@ -1,0 +1,212 @@
+//! A contact pad of finite elements on a segment: rates of its nodes, force and moment on the segment (thesis 2.3.1).
+//!
+//! The layer is massless: `B d' + K d = f` (2.37, corrected), f the force of the ground on the nodes, handed on to the
+//! segment. All vectors have the axes of the segment; places are from its origin.
+//!
+//! | symbol | name | unit | shape |
+//! |---|---|---|---|
+//! | d | displacement of the free nodes from rest; the first ones are those of the sole | m | 3m |
+//! | d' | its rate | m/s | 3m |
+//! | v, omega | velocity of the segment's origin and angular velocity, relative to the ground | m/s, rad/s | 3 |
+//! | g_N | height of a deformed node above the ground | m | |
+//! | n | normal of the ground there, out of it, length 1 | 1 | 3 |
+//! | F, T | force on the segment, moment about its origin (2.38), (2.39) | N, N m | 3 |
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use crate::frame::frame;
+use crate::law::{Method, Report, Settings, TOUCHING};
+use crate::layer::Layer;
+use crate::memory::Memory;
+use crate::{prox, velocity};
+
+/// The ground at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    /// \[m\] g_N of the deformed node; negative inside the ground.
+    pub gap: f64,
+    /// \[1\] n, in the axes of the segment.
+    pub normal: Vector3<f64>,
+}
+
+/// Motion of the segment relative to the ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Twist {
+    /// \[m/s\] @segment Velocity of the segment's origin.
+    pub linear: Vector3<f64>,
+    /// \[rad/s\] @segment
+    pub angular: Vector3<f64>,
+}
+
+/// What a pad does to its segment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// \[N\] @segment (2.38)
+    pub force: Vector3<f64>,
+    /// \[N m\] @segment About the segment's origin (2.39).
+    pub moment: Vector3<f64>,
+    /// How the solver ended.
+    pub report: Report,
+}
+
+/// A pad: a layer, which equal pads share, and where it is bonded.
+#[derive(Clone, Debug)]
+pub struct Pad {
+    layer: Arc<Layer>,
+    at: Vector3<f64>,
+}
+
+impl Pad {
+    /// A pad whose sole has its middle at `at` \[m\] in the segment; its axes are the segment's.
+    pub fn new(layer: Arc<Layer>, at: Vector3<f64>) -> Self {
+        Self { layer, at }
+    }
+
+    /// The layer.
+    pub fn layer(&self) -> &Layer {
+        &self.layer
+    }
+
+    /// A memory for this pad, cold.
+    pub fn memory(&self) -> Memory {
+        Memory::new(&self.layer.coupling)
+    }
+
+    /// \[m\] @segment Place of a free node at rest; the first [`Layer::contacts`] are those of the sole.
+    pub fn place(&self, node: usize) -> Vector3<f64> {
+        self.at + self.layer.places[node]
+    }
+
+    /// Rates `dd` of the displacements `d` (both 3 numbers per free node) and the force on the segment. `ground` has one
+    /// entry per node of the sole, `None` where the ground is far.
+    ///
+    /// With data that are not finite the pad relaxes freely as far as it can be told, carries nothing and reports an
+    /// infinite residual.
+    pub fn solve(
+        &self,
+        memory: &mut Memory,
+        d: &[f64],
+        ground: &[Option<Ground>],
+        twist: &Twist,
+        settings: &Settings,
+        dd: &mut [f64],
+    ) -> Outcome {
+        debug_assert!(d.len() == 3 * self.layer.nodes() && dd.len() == d.len(), "3 numbers per free node");
+        debug_assert!(ground.len() == self.layer.contacts(), "one ground per node of the sole");
+        let finite = self.load(memory, d, ground, twist, settings);
+        if !finite {
+            memory.clear();
+            self.relax(d, dd);
+            let report = Report { residual: f64::INFINITY, ..Report::default() };
+            return Outcome { report, ..Outcome::default() };
+        }
+        if memory.active.is_empty() {
+            memory.clear();
+            self.relax(d, dd);
+            return Outcome {
+                report: Report { converged: true, unique: true, ..Report::default() },
+                ..Outcome::default()
+            };
+        }
+        let report = find(&self.layer, memory, settings);
+        self.rates(memory, d, dd);
+        let (force, moment) = self.sum(memory, d);
+        Outcome { force, moment, report }
+    }
+
+    /// c, active nodes, normals; whether all of it is finite.
+    fn load(
+        &self,
+        memory: &mut Memory,
+        d: &[f64],
+        ground: &[Option<Ground>],
+        twist: &Twist,
+        settings: &Settings,
+    ) -> bool {
+        memory.active.clear();
+        let mut sum = 0.0;
+        for (i, ground) in ground.iter().enumerate().take(self.layer.contacts()) {
+            let own = Vector3::new(d[3 * i], d[3 * i + 1], d[3 * i + 2]);
+            let w = twist.linear + twist.angular.cross(&(self.place(i) + own));
+            let mut c = w - own / self.layer.alpha;
+            memory.touching[i] = false;
+            if let Some(Ground { gap, normal }) = ground {
+                c += normal * (settings.recovery * gap.min(0.0));
+                if *gap < TOUCHING {
+                    memory.touching[i] = true;
+                    memory.active.push(i);
+                }
+                memory.normals[i] = *normal;
+                sum += gap;
+            }
+            if !memory.touching[i] {
+                memory.f[i] = Vector3::zeros();
+            }
+            sum += c.x + c.y + c.z;
+            memory.c[i] = c;
+        }
+        sum.is_finite()
+    }
+
+    /// The free layer: d' = -d/alpha.
+    fn relax(&self, d: &[f64], dd: &mut [f64]) {
+        for (dd, d) in dd.iter_mut().zip(d) {
+            *dd = -d / self.layer.alpha;
+            if !dd.is_finite() {
+                *dd = 0.0;
+            }
+        }
+    }
+
+    /// d' = y - d/alpha, the nodes inside by those of the sole.
+    fn rates(&self, memory: &Memory, d: &[f64], dd: &mut [f64]) {
+        let n = 3 * self.layer.contacts();
+        let (sole, inside) = dd.split_at_mut(n);
+        for (dd, y) in sole.chunks_exact_mut(3).zip(&memory.y) {
+            dd.copy_from_slice(&y[..3]);
+        }
+        inside.fill(0.0);
+        for (k, y) in sole.iter().enumerate() {
+            for (at, m) in inside.iter_mut().zip(self.layer.inside.column(k).iter()) {
+                *at += m * y;
+            }
+        }
+        for (dd, d) in dd.iter_mut().zip(d) {
+            *dd -= d / self.layer.alpha;
+        }
+    }
+
+    /// (2.38), (2.39) with the deformed places of the nodes.
+    fn sum(&self, memory: &Memory, d: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
+        let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
+        for &i in &memory.active {
+            let f = memory.f[i];
+            let r = self.place(i) + Vector3::new(d[3 * i], d[3 * i + 1], d[3 * i + 2]);
+            force += f; // (2.38)
+            moment += r.cross(&f); // (2.39)
+        }
+        (force, moment)
+    }
+}
+
+/// Share of the sole that must be at the ground for sweeps over velocities to be the faster ones.
+const MOST: f64 = 0.5;
+
+fn find(layer: &Layer, memory: &mut Memory, settings: &Settings) -> Report {
+    let coupling = &layer.coupling;
+    let most = memory.active.len() as f64 > MOST * coupling.nodes() as f64;
+    let over_velocities = settings.method == Method::Velocity || (settings.method == Method::Fastest && most);
+    if over_velocities {
+        let report = velocity::solve(coupling, memory, settings);
+        if report.converged || settings.method == Method::Velocity {
+            return report;
+        }
+    }
+    for k in 0..memory.active.len() {
+        let i = memory.active[k];
+        memory.frames[i] = frame(&memory.normals[i]);
+    }
+    prox::solve(coupling, memory, settings)
+}
