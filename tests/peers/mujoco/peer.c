@@ -32,12 +32,14 @@
 #include <string.h>
 #include <time.h>
 
+#define DEGREE (mjPI / 180)
+
 enum { LARGEST = 64, MOST_RUNS = 101 };
 
 struct options {
   const char *scene, *integrator;
   int runs;
-  double step, duration, before, slope, direction, friction;
+  double step, duration, before, slope, direction, friction; // angles in degrees
 };
 
 // State in our coordinates; joints in the order of the file.
@@ -98,8 +100,8 @@ static void set(struct options* o, mjOption* opt, const char* argument) {
   else if (!strcmp(key, "duration")) o->duration = number(key, value);
   else if (!strcmp(key, "before")) o->before = number(key, value);
   else if (!strcmp(key, "runs")) o->runs = (int)number(key, value);
-  else if (!strcmp(key, "slope")) o->slope = number(key, value) * mjPI / 180;
-  else if (!strcmp(key, "direction")) o->direction = number(key, value) * mjPI / 180;
+  else if (!strcmp(key, "slope")) o->slope = number(key, value);
+  else if (!strcmp(key, "direction")) o->direction = number(key, value);
   else if (!strcmp(key, "friction")) o->friction = number(key, value);
   else fail("unknown key", key);
 }
@@ -323,17 +325,18 @@ static void print_contact(const mjModel* m, const mjData* d, const struct seen* 
 
 // Along the line of fall and across: speed at the end, acceleration over the second half.
 static void print_incline(const mjData* d, const struct options* o, const struct seen* seen) {
-  const double c = cos(o->direction), s = sin(o->direction), half = d->time - steps(o->duration, o->step) / 2 * o->step;
+  const double c = cos(o->direction * DEGREE), s = sin(o->direction * DEGREE), slope = o->slope * DEGREE;
+  const double half = d->time - o->before - steps(o->duration, o->step) / 2 * o->step;
   const double* v = d->qvel;
   const double* w = seen->middle_speed;
-  print_value("slope_deg", o->slope * 180 / mjPI);
-  print_value("direction_deg", o->direction * 180 / mjPI);
+  print_value("slope_deg", o->slope);
+  print_value("direction_deg", o->direction);
   print_value("friction", o->friction);
   print_value("speed", c * v[0] + s * v[1]);
   print_value("speed_across", c * v[1] - s * v[0]);
   print_value("acceleration", (c * (v[0] - w[0]) + s * (v[1] - w[1])) / half);
   print_value("acceleration_across", (c * (v[1] - w[1]) - s * (v[0] - w[0])) / half);
-  print_value("acceleration_exact", mju_max(0, 9.81 * (sin(o->slope) - o->friction * cos(o->slope))));
+  print_value("acceleration_exact", mju_max(0, 9.81 * (sin(slope) - o->friction * cos(slope))));
 }
 
 int main(int argc, char** argv) {
@@ -341,7 +344,7 @@ int main(int argc, char** argv) {
   mju_setLogHandler(report);
   mjModel* m = mj_loadModel(argv[1], NULL);
   if (!m || m->nv > LARGEST) fail("no model, or too large", argv[1]);
-  struct options o = {NULL, NULL, 5, 1e-3, 1, 0, 20 * mjPI / 180, 0, 0.8};
+  struct options o = {NULL, NULL, 5, 1e-3, 1, 0, 20, 0, 0.8};
   set(&o, &m->opt, "integrator=Euler");
   for (int i = 3; i < argc; i++) set(&o, &m->opt, argv[i]);
   if (!o.scene) fail("missing", "scene=SCENE");
@@ -349,10 +352,10 @@ int main(int argc, char** argv) {
   if (o.runs < 1 || o.runs > MOST_RUNS) fail("runs", "1..101");
   m->opt.timestep = o.step;
   if (!strcmp(o.scene, "incline")) {
-    const double down = 9.81 * sin(o.slope);
-    const mjtNum g[3] = {down * cos(o.direction), down * sin(o.direction), -9.81 * cos(o.slope)};
+    const double slope = o.slope * DEGREE, direction = o.direction * DEGREE, down = 9.81 * sin(slope);
+    const mjtNum g[3] = {down * cos(direction), down * sin(direction), -9.81 * cos(slope)};
     mju_copy3(m->opt.gravity, g);
-    for (int g = 0; g < m->ngeom; g++) m->geom_friction[3 * g] = o.friction;
+    for (int k = 0; k < m->ngeom; k++) m->geom_friction[3 * k] = o.friction;
   }
 
   static struct state s;
