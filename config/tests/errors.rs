@@ -131,7 +131,7 @@ fn all_problems_at_once_in_the_order_of_lines() {
          line 12: step.change: has 2 entries; it takes 3 numbers, each a number above 0 m, m, rad\n  \
          line 22: model.stand_time: missing; it takes a number from 0.1 to 20 s\n  \
          line 33: limits.side: its lower end 0.2 must lie below its upper end -0.2 m\n  \
-         line 51: control.force_filter: is of type boolean; it takes a number from 0 to 1 s"
+         line 52: control.force_filter: is of type boolean; it takes a number from 0 to 1 s"
     );
 }
 
