@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Layers from the bottom to the top. A crate depends only on crates of layers below its own, or of its own layer if
 /// that is not the processes'.
 const LAYERS: [&[&str]; 6] = [
-    &["contact", "curves", "drawing", "drives", "multibody"],
+    &["contact", "curves", "drawing", "drives", "environment", "multibody"],
     &["messages"],
     &["ipc", "realtime", "config", "recording", "daemon"],
     &["planner", "controller", "lowlevel", "sim-backend", "broker", "watchdog", "logger"],

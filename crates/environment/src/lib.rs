@@ -1,0 +1,27 @@
+//! What a robot stands on: the plane z = 0 and rigid objects on it (thesis 2.3.2), and the distance of a point to them.
+//!
+//! - [`Environment`]: ground and objects; [`Environment::query`] answers with gap, normal and what was hit.
+//! - [`Object`]: a [`Mesh`] with a pose; it may appear, move and vanish while nothing touches it.
+//! - [`Mesh`]: the surface of a solid, from triangles, from a file ([`Mesh::read`]: STL, OBJ, glTF, VRML 97) or a box.
+//!
+//! Lengths in m, z up. Everything is allocated in `new`; queries and [`Environment::advance`] allocate nothing and
+//! answer every input: where a point is no number, the answer is [`Surface::Far`].
+
+mod bounds;
+mod error;
+mod hierarchy;
+mod mesh;
+mod object;
+mod point_triangle;
+mod query;
+mod schedule;
+mod shapes;
+mod topology;
+
+pub use bounds::Bounds;
+pub use error::MeshError;
+pub use mesh::{Mesh, Nearest, Report};
+pub use object::{Object, Pose};
+pub use point_triangle::{Feature, closest};
+pub use query::{Environment, Hit, REACH, Surface};
+pub use schedule::{Event, Schedule};

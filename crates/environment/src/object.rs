@@ -1,0 +1,178 @@
+//! A solid at a place.
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+use crate::bounds::Bounds;
+use crate::mesh::{Mesh, Nearest};
+use crate::schedule::Schedule;
+
+/// Where an object is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// \[m\] @world Origin of the mesh.
+    pub position: Vector3<f64>,
+    /// world_from_mesh
+    pub rotation: UnitQuaternion<f64>,
+}
+
+/// A solid with its pose, its friction and what is planned for it.
+#[derive(Clone, Debug)]
+pub struct Object {
+    pub(crate) name: String,
+    pub(crate) mesh: Mesh,
+    pub(crate) friction: Option<f64>,
+    pub(crate) schedule: Schedule,
+    pub(crate) present: bool,
+    /// \[s\] How far its schedule has come.
+    pub(crate) clock: f64,
+    /// Its next change is waiting.
+    pub(crate) refused: bool,
+    pose: Pose,
+    /// world_from_mesh
+    rotation: Matrix3<f64>,
+    /// @world around the mesh at its pose.
+    bounds: Bounds,
+    /// Triangles that lie in or below the ground: no surface of ground and object together.
+    buried: Vec<bool>,
+    any_buried: bool,
+    /// Triangles one can stand on.
+    floor: Vec<bool>,
+}
+
+/// \[m\] A face this little above the ground lies on it.
+const FLUSH: f64 = 1e-6;
+/// \[1\] Least upward part of the normal of a face one can stand on: 45 degrees.
+const STANDABLE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// \[1\] How many times as deep as the nearest face a face one can stand on may be and still be the one a point came
+/// through.
+const FLOOR_FAVOUR: f64 = 4.0;
+
+impl Pose {
+    /// At the origin, not turned.
+    pub fn identity() -> Self {
+        Self { position: Vector3::zeros(), rotation: UnitQuaternion::identity() }
+    }
+
+    /// Turned by `roll`, then `pitch`, then `yaw` \[rad\] about x, y and z of the world, and moved to `position` \[m\].
+    pub fn new(position: [f64; 3], [roll, pitch, yaw]: [f64; 3]) -> Self {
+        Self { position: position.into(), rotation: UnitQuaternion::from_euler_angles(roll, pitch, yaw) }
+    }
+
+    /// `s` of the way to `other`: straight, and about one axis.
+    pub(crate) fn towards(&self, other: &Self, s: f64) -> Self {
+        if self == other {
+            return *self;
+        }
+        let rotation = self.rotation.try_slerp(&other.rotation, s, 1e-9).unwrap_or(other.rotation);
+        Self { position: self.position.lerp(&other.position, s), rotation }
+    }
+}
+
+impl Object {
+    /// The solid `mesh` for the whole of a run or as `schedule` says; `friction` \[1\] if not that of the robot's soles.
+    pub fn new(name: impl Into<String>, mesh: Mesh, friction: Option<f64>, schedule: Schedule) -> Self {
+        let pose = schedule.pose(0.0);
+        let mut object = Self {
+            name: name.into(),
+            present: schedule.is_present(0.0),
+            clock: 0.0,
+            refused: false,
+            buried: vec![false; mesh.len()],
+            floor: vec![false; mesh.len()],
+            any_buried: false,
+            bounds: Bounds::NOTHING,
+            rotation: Matrix3::identity(),
+            mesh,
+            friction,
+            schedule,
+            pose,
+        };
+        object.place(pose);
+        object
+    }
+
+    /// Name in messages.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The surface, in its own frame.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Where it is.
+    pub fn pose(&self) -> &Pose {
+        &self.pose
+    }
+
+    /// Is it there now?
+    pub fn is_present(&self) -> bool {
+        self.present
+    }
+
+    /// \[m\] @world The box around it.
+    pub fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    pub(crate) fn place(&mut self, pose: Pose) {
+        self.pose = pose;
+        self.rotation = pose.rotation.to_rotation_matrix().into_inner();
+        let (rotation, position) = (self.rotation, pose.position);
+        let world = |v: Vector3<f64>| rotation * v + position;
+        self.bounds = Bounds::of(self.mesh.triangles().iter().flat_map(|t| t.corners.map(world)));
+        self.any_buried = false;
+        for (i, t) in self.mesh.triangles().iter().enumerate() {
+            self.buried[i] = t.corners.iter().all(|v| world(*v).z <= FLUSH);
+            self.floor[i] = (rotation * t.normal).z >= STANDABLE;
+            self.any_buried |= self.buried[i];
+        }
+    }
+
+    /// Places it at `pose` unless it would enclose one of the `nodes` \[m\] @world there; says whether it did.
+    pub(crate) fn moved_clear_of(&mut self, nodes: &[[f64; 3]], pose: Pose) -> bool {
+        let before = self.pose;
+        self.place(pose);
+        let inside = |p: &[f64; 3]| {
+            let p = Vector3::from(*p);
+            self.bounds.distance_squared(&p) == 0.0 && self.query(&p, 0.0).is_some_and(|(gap, _)| gap < 0.0)
+        };
+        let clear = !nodes.iter().any(inside);
+        if !clear {
+            self.place(before);
+        }
+        clear
+    }
+
+    /// Gap \[m\] and normal @world at `p` \[m\] @world: exact outside, and inside the face the point came through.
+    ///
+    /// Inside, the nearest face is not always that one: 2 mm below the top of a board and 1 mm from its side, the side
+    /// is nearer, but a foot comes from above. A face one can stand on is taken if it is at most four times as deep as
+    /// the nearest one; the factor bounds how much deeper than it is a point may seem, and with it the jump of the gap.
+    pub(crate) fn query(&self, p: &Vector3<f64>, within: f64) -> Option<(f64, Vector3<f64>)> {
+        let local = self.rotation.tr_mul(&(p - self.pose.position));
+        // Inside the box of the mesh a point may be inside the mesh, however far from its surface.
+        let within = if self.mesh.bounds().distance_squared(&local) > 0.0 { within } else { f64::INFINITY };
+        let nearest = if self.any_buried {
+            self.mesh.nearest_of(&local, within, |i| !self.buried[i])
+        } else {
+            self.mesh.nearest_of(&local, within, |_| true)
+        }?;
+        let mut found = nearest;
+        if nearest.gap < 0.0 && (self.rotation * nearest.normal).z < STANDABLE {
+            found = self.floor_above(&local, -nearest.gap).unwrap_or(nearest);
+        }
+        Some((found.gap, self.rotation * found.normal))
+    }
+
+    /// The face to stand on right above a point that is `depth` \[m\] inside.
+    fn floor_above(&self, local: &Vector3<f64>, depth: f64) -> Option<Nearest> {
+        let above =
+            |i: usize| self.floor[i] && !self.buried[i] && self.mesh.triangles()[i].height(local) < 0.0;
+        let floor = self.mesh.nearest_of(local, FLOOR_FAVOUR * depth, above)?;
+        // Beside the face, not below it: it is another step's.
+        let normal = self.mesh.triangles()[floor.triangle].normal;
+        ((local - floor.point).cross(&normal).norm() <= 1e-9 && floor.gap < 0.0).then_some(floor)
+    }
+}
