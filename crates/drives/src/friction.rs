@@ -48,6 +48,15 @@ pub struct ScrewFriction {
     pub indirect: f64,
 }
 
+/// Friction as a law of dry and viscous friction at one load: `T_f = -s dry - viscous ω`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sliding {
+    /// \[N m\] Dry part, at rest up to this size either way.
+    pub dry: f64,
+    /// \[N m s/rad\] Viscous part.
+    pub viscous: f64,
+}
+
 /// The load torque is not unique: speed or friction are outside of what the model was made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoLoadTorque {
@@ -75,6 +84,19 @@ impl Friction {
             Self::Harmonic(harmonic) => Ok(harmonic.load_torque(speed, motor, smooth)? - motor), // (2.63)
             Self::Screw(screw) => Ok(screw.torque(speed, motor, smooth)),
         }
+    }
+
+    /// The law that holds while the load stays what it is at ω = `speed` \[rad/s\] and T_mot = `motor` \[N m\]; for implicit
+    /// steps, which keep a rotor at rest where a sign would chatter.
+    pub fn sliding(&self, speed: f64, motor: f64) -> Result<Sliding, NoLoadTorque> {
+        Ok(match self {
+            Self::Free => Sliding::default(),
+            Self::Harmonic(h) => {
+                let load = h.load_torque(speed, motor, 0.0)?.abs();
+                Sliding { dry: h.starting + h.load * load, viscous: h.viscous + h.coupled * load }
+            }
+            Self::Screw(screw) => Sliding { dry: screw.part(speed * motor) * motor.abs(), viscous: 0.0 },
+        })
     }
 
     /// \[rad/s\] Speed below which the load torque is unique.
@@ -109,8 +131,21 @@ impl HarmonicFriction {
 impl ScrewFriction {
     /// \[N m\] T_f at ω = `speed` \[rad/s\] and T_mot = `motor` \[N m\].
     pub fn torque(&self, speed: f64, motor: f64, smooth: f64) -> f64 {
-        let part = if speed * motor > 0.0 { 1.0 - self.direct } else { 1.0 / self.indirect - 1.0 };
-        -sign(speed, smooth) * part * motor.abs() // (2.68)
+        -sign(speed, smooth) * self.part(speed * motor) * motor.abs() // (2.68)
+    }
+
+    /// Friction torque over motor torque, for a motor that drives (power > 0) or is driven; at rest it would have to drive.
+    fn part(&self, power: f64) -> f64 {
+        if power >= 0.0 { 1.0 - self.direct } else { 1.0 / self.indirect - 1.0 }
+    }
+}
+
+impl Sliding {
+    /// \[rad/s\] Speed after an implicit step that without friction would have ended with the speed `free`;
+    /// `mobility` = h/J \[s/(kg m^2)\]: time step over inertia of the rotor. Exactly 0 while dry friction holds.
+    pub fn speed_after(&self, free: f64, mobility: f64) -> f64 {
+        let left = (free.abs() - mobility * self.dry).max(0.0) / (1.0 + mobility * self.viscous);
+        if left > 0.0 { left.copysign(free) } else { 0.0 }
     }
 }
 

@@ -5,12 +5,14 @@
 //!   [`Ankle`] slider-crank with belt (2.22)-(2.33); first and second derivatives; errors where a linkage has none.
 //! - [`Friction`]: of gears (2.61) and roller screws (2.65)-(2.68), with the load torque (2.63), (2.64).
 //! - [`Elasticity`]: of harmonic drives (2.69).
+//! - [`fit`]: friction parameters from efficiencies (2.62); off-line, it allocates.
 //!
-//! Pure mathematics: no file, no clock, and after construction no allocation. All quantities of a motor are those of its
+//! Pure mathematics: no file, no clock, and but for [`fit`] no allocation after construction. All quantities of a motor are those of its
 //! rotor relative to its stator: angle, speed \[rad/s\] and torque count about the rotor's axis, not about the joint's.
 
 mod ankle;
 mod elasticity;
+pub mod fit;
 mod friction;
 mod inverse;
 mod knee;
@@ -20,7 +22,7 @@ mod turn;
 
 pub use ankle::{Ankle, AnkleGeometry};
 pub use elasticity::Elasticity;
-pub use friction::{Friction, HarmonicFriction, NoLoadTorque, ScrewFriction};
+pub use friction::{Friction, HarmonicFriction, NoLoadTorque, ScrewFriction, Sliding};
 pub use knee::{Knee, KneeGeometry};
 pub use motor::Motor;
 pub use transmission::{Gear, OutOfDomain, Transmission};
