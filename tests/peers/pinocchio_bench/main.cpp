@@ -1,16 +1,21 @@
-// Times Pinocchio's mass matrix, nonlinear terms and forward dynamics on given states, and writes its results.
+// Times Pinocchio's dynamics and Jacobians on given states, and writes its results.
 //
 // usage: pinocchio_bench ROBOT STATES RESULTS
 // ROBOT: one line per body: name of its joint, index of the parent's line, axis (x, y or z), origin in the parent's
 // frame, mass, centre of mass, moments xx xy yy xz yz zz about it. The base comes first. No URDF: the wheel's parser is
 // compiled for other vector registers than this program and hands over memory aligned for those.
-// STATES: names of the joints on one line, then one line of q, v, force per state in the order of those names.
+// STATES: names of the joints on one line, names of the joints that move the feet on the next, then one line of q, v,
+// force per state in the order of the joints.
 // RESULTS: per state M (lower triangle by rows), h, forward dynamics, in the same order, as raw doubles.
 // Prints: name, then for the time of one call in us the minimum, median, and 90th percentile over batches.
+// Steps of the recursions have up to seven arguments.
+#define BOOST_FUSION_INVOKE_MAX_ARITY 10
 #include <pinocchio/multibody.hpp>
 #include <pinocchio/algorithm/aba.hpp>
+#include <pinocchio/algorithm/center-of-mass.hpp>
 #include <pinocchio/algorithm/cholesky.hpp>
 #include <pinocchio/algorithm/crba.hpp>
+#include <pinocchio/algorithm/jacobian.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 
 #include <algorithm>
@@ -69,6 +74,9 @@ int main(int argc, char** argv) {
   std::getline(in, line);
   std::vector<int> at = {0, 1, 2, 3, 4, 5};  // their v index of our v index
   for (std::istringstream names(line); names >> name;) at.push_back(model.joints[model.getJointId(name)].idx_v());
+  std::vector<pin::JointIndex> feet;
+  std::getline(in, line);
+  for (std::istringstream names(line); names >> name;) feet.push_back(model.getJointId(name));
   const int nv = model.nv;
   if (int(at.size()) != nv || model.nq != nv + 1) return std::fprintf(stderr, "joints do not match\n"), 1;
   std::vector<State> states;
@@ -83,6 +91,7 @@ int main(int argc, char** argv) {
   }
 
   measure("mass_matrix", states, [&](const State& s) { pin::crba(model, data, s.q, pin::Convention::LOCAL); });
+  measure("inverse_dynamics", states, [&](const State& s) { pin::rnea(model, data, s.q, s.v, s.force); });
   measure("nonlinear_terms", states, [&](const State& s) { pin::nonLinearEffects(model, data, s.q, s.v); });
   VectorXd x(nv);
   measure("forward_matrix", states, [&](const State& s) {
@@ -94,6 +103,13 @@ int main(int argc, char** argv) {
   measure("forward_articulated", states, [&](const State& s) {
     pin::aba(model, data, s.q, s.v, s.force, pin::Convention::LOCAL);
   });
+  pin::Data::Matrix6x jacobian = pin::Data::Matrix6x::Zero(6, nv);
+  measure("foot_jacobians", states, [&](const State& s) {
+    pin::computeJointJacobians(model, data, s.q);
+    for (pin::JointIndex foot : feet)
+      pin::getJointJacobian(model, data, foot, pin::LOCAL_WORLD_ALIGNED, jacobian.setZero());
+  });
+  measure("cog_jacobian", states, [&](const State& s) { pin::jacobianCenterOfMass(model, data, s.q, false); });
 
   std::ofstream out(argv[3], std::ios::binary);
   auto put = [&](double d) { out.write(reinterpret_cast<const char*>(&d), sizeof d); };

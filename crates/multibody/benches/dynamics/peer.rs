@@ -5,22 +5,22 @@ use std::fmt::Write as _;
 use std::process::Command;
 
 use multibody::{Data, Model};
-use urdf_rs::{JointType, Robot};
+use urdf_rs::JointType;
 
+use crate::robot::Robot;
 use crate::{Row, State, difference};
 
 /// Runs the peer on the same states: its times and its results.
 pub(crate) fn run(
     peer: &str,
     robot: &Robot,
-    names: &[&str],
     states: &[State],
 ) -> Result<(Vec<Row>, Vec<f64>), Box<dyn Error>> {
     let folder = std::env::temp_dir().join(format!("multibody_bench_{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
     let (bodies, input, output) = (folder.join("robot"), folder.join("states"), folder.join("results"));
-    std::fs::write(&bodies, describe(robot)?)?;
-    let mut text = names.join(" ") + "\n";
+    std::fs::write(&bodies, describe(&robot.urdf)?)?;
+    let mut text = format!("{}\n{}\n", robot.joints.join(" "), Robot::FEET.join(" "));
     for s in states {
         for x in s.q.iter().chain(&s.v).chain(&s.force) {
             write!(text, "{x:?} ")?;
@@ -40,13 +40,13 @@ pub(crate) fn run(
     for line in String::from_utf8(answer.stdout)?.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
         let time = |k: usize| words[k].parse::<f64>();
-        rows.push(Row { name: "", times: [time(1)?, time(2)?, time(3)?], error: None });
+        rows.push(Row { name: words[0].into(), times: [time(1)?, time(2)?, time(3)?], error: None });
     }
     Ok((rows, results))
 }
 
 /// One line per body, as the peer wants it; only for robots whose frames are all parallel at zero, without fixed joints.
-fn describe(robot: &Robot) -> Result<String, Box<dyn Error>> {
+fn describe(robot: &urdf_rs::Robot) -> Result<String, Box<dyn Error>> {
     let mut lines = String::new();
     let mut links = vec!["torso"];
     writeln!(lines, "base 0 x 0 0 0 {}", inertia(robot, "torso")?)?;
@@ -65,7 +65,7 @@ fn describe(robot: &Robot) -> Result<String, Box<dyn Error>> {
     Ok(lines)
 }
 
-fn inertia(robot: &Robot, link: &str) -> Result<String, Box<dyn Error>> {
+fn inertia(robot: &urdf_rs::Robot, link: &str) -> Result<String, Box<dyn Error>> {
     let link = robot.links.iter().find(|l| l.name == link).ok_or("a joint names no link")?;
     let (o, i) = (&link.inertial.origin, &link.inertial.inertia);
     if o.rpy.0 != [0.0; 3] {
