@@ -51,6 +51,15 @@ pub enum Integrator {
     Euler,
     /// Classical Runge-Kutta, fourth order between contact changes.
     RungeKutta4,
+    /// Drives implicit, contact and bodies explicit, first order: dry friction sticks, and motors do not limit the step.
+    SemiImplicit,
+}
+
+impl Integrator {
+    /// All of them, in the order of [`Integrator::WORDS`].
+    pub const ALL: [Self; 3] = [Self::Euler, Self::RungeKutta4, Self::SemiImplicit];
+    /// Their names in scene files.
+    pub const WORDS: [&str; 3] = ["euler", "rk4", "semi_implicit"];
 }
 
 impl Scene {
@@ -72,8 +81,7 @@ impl Scene {
             robot: top.text("robot"),
             gait: top.text("gait"),
             depth: top.integer("depth", 1..=5) as u8,
-            integrator: [Integrator::Euler, Integrator::RungeKutta4]
-                [top.word("integrator", &["euler", "rk4"])],
+            integrator: Integrator::ALL[top.word("integrator", &Integrator::WORDS)],
             substeps: top.integer("substeps", 1..=1000) as u32,
             cycle: top.number("cycle", "s", 1e-4..=0.02),
             start_pose: top.text("start_pose"),

@@ -4,16 +4,24 @@
 //! |---|---|
 //! | frames from the bus → joint targets; sensor data → frames | [`SimBackend::step`] |
 //! | motor power line | [`power`] |
-//! | drives | [`drive`] |
-//! | bodies: reduced model (type 1) | [`plant`] |
+//! | joint references | [`drive`] |
+//! | equations of motion, types 1 to 5 of the thesis | [`plant`] |
+//! | their states | [`layout`] |
+//! | their drives, and these in an implicit step | [`train`], [`implicit`] |
+//! | their contact | [`feet`] |
 //! | time steps | [`integrate`] |
+//! | what the sensors make of it | [`sensors`] |
 
 pub mod daemon;
 pub mod drive;
+pub mod feet;
+pub mod implicit;
 pub mod integrate;
+pub mod layout;
 pub mod plant;
 pub mod power;
 mod robot;
 pub mod sensors;
+pub mod train;
 
 pub use robot::SimBackend;

@@ -22,7 +22,11 @@ pub struct SimBackend {
     plant: Plant,
     stepper: Stepper,
     state: Vec<f64>,
+    /// How the joints are to move in this cycle.
     drives: Vec<Drive>,
+    /// Where that ends.
+    goals: Vec<Motion>,
+    /// How they move.
     motions: Vec<Motion>,
     sensor_frames: [Frame; 2],
     power: PowerLine,
@@ -43,14 +47,15 @@ pub struct SimBackend {
 impl SimBackend {
     /// The robot of a scene in its start pose.
     pub fn new(robot: &Robot, scene: &Scene) -> Result<Self, ModelError> {
-        let mut plant = Plant::new(robot)?;
         let pose = &robot.poses[&scene.start_pose];
+        let mut plant = Plant::new(robot, scene.depth, pose)?;
         let state = plant.standing(pose);
         let sensor = |i: usize| plant.model().frame(&robot.feet[i].sensor_link, robot.feet[i].sensor);
         let mut sim = Self {
             sensor_frames: [sensor(0)?, sensor(1)?],
             stepper: Stepper::new(state.len()),
             drives: pose.iter().map(|&q| Drive::resting(q)).collect(),
+            goals: pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect(),
             motions: pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect(),
             initial_height: state[2],
             robot: robot.clone(),
@@ -88,7 +93,7 @@ impl SimBackend {
         &self.sim_state
     }
 
-    /// State of the equations of motion, as [`crate::plant`] lays it out.
+    /// State of the equations of motion, as [`crate::layout`] has it.
     pub fn integrated(&self) -> &[f64] {
         &self.state
     }
@@ -103,25 +108,24 @@ impl SimBackend {
     /// A fallen robot stays as it fell: only soles meet the ground in this model.
     pub fn step(&mut self, frames: Option<&BusFrames>, power: Option<&Power>) -> (&BusFrames, &SimState) {
         let powered = self.power.step(power);
-        let outside = Outside { push: self.current_push() };
         let dt = self.scene.cycle;
+        let mut outside = Outside { push: self.current_push(), powered: false };
         if !self.fallen {
-            self.begin_cycle(frames, powered);
+            outside.powered = self.begin_cycle(frames, powered);
             let h = dt / f64::from(self.scene.substeps);
             for i in 0..self.scene.substeps {
                 let Self { plant, stepper, state, drives, .. } = self;
-                stepper.step(self.scene.integrator, f64::from(i) * h, h, state, |tau, x, dx| {
-                    plant.rate(tau, x, drives, &outside, dx);
-                });
+                stepper.step(self.scene.integrator, plant, f64::from(i) * h, h, state, drives, &outside);
             }
             let unit = orientation(&self.state);
             self.state[3..7].copy_from_slice(unit.coords.as_slice());
-            for (motion, drive) in self.motions.iter_mut().zip(&self.drives) {
-                *motion = drive.at(dt);
+            for (goal, drive) in self.goals.iter_mut().zip(&self.drives) {
+                *goal = drive.at(dt);
             }
         }
         self.cycles += 1;
         let snapshot = self.plant.snapshot(dt, &self.state, &self.drives, &outside);
+        self.plant.joints(&self.state, &self.goals, &mut self.motions);
         self.check_fall();
         if let Some(frames) = frames {
             self.sensors.header = frames.header;
@@ -132,8 +136,8 @@ impl SimBackend {
         (&self.frames, &self.sim_state)
     }
 
-    /// Chooses how each joint moves during this cycle.
-    fn begin_cycle(&mut self, frames: Option<&BusFrames>, powered: bool) {
+    /// Chooses how each joint is to move during this cycle; true if the drives may act.
+    fn begin_cycle(&mut self, frames: Option<&BusFrames>, powered: bool) -> bool {
         let dt = self.scene.cycle;
         let fresh = frames.is_some_and(|f| {
             f.header.tick > self.followed
@@ -144,14 +148,16 @@ impl SimBackend {
         }
         let driven = powered && self.targets.mode != JointMode::Off as u64;
         for j in 0..self.drives.len() {
-            let (now, joint) = (self.motions[j], &self.robot.joints[j]);
+            let (from, joint) = (self.goals[j], &self.robot.joints[j]);
             self.drives[j] = match (driven, fresh) {
-                (false, _) => Drive::brake(joint, now, dt),
-                (true, true) => Drive::follow(now, self.targets.angle[j], self.targets.speed[j], dt),
+                (false, _) if self.plant.layout().joints > 0 => Drive::resting(self.motions[j].angle),
+                (false, _) => Drive::brake(joint, from, dt),
+                (true, true) => Drive::follow(from, self.targets.angle[j], self.targets.speed[j], dt),
                 // No new frame: the local controllers carry on at the last speed.
-                (true, false) => Drive::follow(now, now.angle + now.speed * dt, now.speed, dt),
+                (true, false) => Drive::follow(from, from.angle + from.speed * dt, from.speed, dt),
             };
         }
+        driven
     }
 
     /// Sum of the pushes that act now \[N\].
@@ -200,7 +206,8 @@ impl SimBackend {
             sensors.foot_wrench[i].moment = (back * moment).into();
         }
         let o = orientation(x);
-        let (imu, omega) = (Vector3::from(self.robot.imu), Vector3::new(x[10], x[11], x[12]));
+        let speed = &x[self.plant.layout().speed()];
+        let (imu, omega) = (Vector3::from(self.robot.imu), Vector3::from_column_slice(&speed[3..6]));
         sensors.imu = Imu {
             orientation: o.coords.into(),
             angular_velocity: omega.into(),
@@ -210,7 +217,7 @@ impl SimBackend {
         truth.time = self.cycles as f64 * self.scene.cycle;
         truth.position = [x[0], x[1], x[2]];
         truth.orientation = o.coords.into();
-        truth.velocity = [x[7], x[8], x[9]];
+        truth.velocity = [speed[0], speed[1], speed[2]];
         truth.angular_velocity = omega.into();
         truth.com = s.com.into();
         truth.foot_wrench = s.foot_wrench;

@@ -133,7 +133,8 @@ type Trajectory = Vec<([f64; 7], f64)>;
 
 fn simulations(motion: &str, setup: &Setup) -> Result<Vec<Simulation>, Box<dyn Error>> {
     let second = Second::record(setup)?;
-    let mut plant = Plant::new(&setup.robot)?;
+    let pose = &setup.robot.poses[&setup.scene.start_pose];
+    let mut plant = Plant::new(&setup.robot, setup.scene.depth, pose)?;
     let mut simulate = |method, steps| second.simulate(&mut plant, setup, method, steps);
     let (reference, _) = simulate(Integrator::RungeKutta4, 64);
     use Integrator::{Euler, RungeKutta4};
@@ -185,7 +186,7 @@ impl Second {
         steps: u32,
     ) -> (Trajectory, f64) {
         let (n, dt) = (setup.robot.joints.len(), setup.scene.cycle);
-        let (mut x, none) = (self.state.clone(), Outside::default());
+        let (mut x, none) = (self.state.clone(), Outside { powered: true, ..Outside::default() });
         let mut stepper = Stepper::new(x.len());
         let motion =
             |t: &JointTargets, j: usize| Motion { angle: t.angle[j], speed: t.speed[j], acceleration: 0.0 };
@@ -201,7 +202,7 @@ impl Second {
             let h = dt / f64::from(steps);
             for i in 0..steps {
                 let tau = f64::from(i) * h;
-                stepper.step(method, tau, h, &mut x, |tau, x, dx| plant.rate(tau, x, &drives, &none, dx));
+                stepper.step(method, plant, tau, h, &mut x, &drives, &none);
             }
             let seen = plant.snapshot(dt, &x, &drives, &none);
             let mut pose = [0.0; 7];

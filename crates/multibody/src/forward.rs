@@ -41,7 +41,7 @@ impl Model {
     }
 
     /// Angular accelerations of all bodies, their angular velocities being known.
-    fn turn_bodies(&self, data: &mut Data, v: &[f64], acceleration: &[f64]) {
+    pub(crate) fn turn_bodies(&self, data: &mut Data, v: &[f64], acceleration: &[f64]) {
         let Data { joints, oblique, locals, .. } = data;
         locals[0].dw = V3::from_slice(&acceleration[3..]);
         for (k, body) in self.bodies.iter().enumerate().skip(1) {
@@ -70,7 +70,7 @@ fn turning<T: Turn>(t: T, p_dw: V3, w: V3, qd: f64, qdd: f64) -> V3 {
 /// L^T D L in place; the diagonal holds 1/D.
 ///
 /// Every row begins with the six columns of the base, which are updated at their fixed length.
-fn factor(paths: &Paths, l: &mut [f64]) {
+pub(crate) fn factor(paths: &Paths, l: &mut [f64]) {
     let nv = paths.start.len() - 1;
     let mut base = [[0.0; 6]; 6];
     for k in (6..nv).rev() {
@@ -125,7 +125,7 @@ fn subtract(x: &mut [f64; 6], y: &[f64; 6], a: f64) {
 }
 
 /// x <- L^-1 D^-1 L^-T x
-fn solve(paths: &Paths, l: &[f64], x: &mut [f64]) {
+pub(crate) fn solve(paths: &Paths, l: &[f64], x: &mut [f64]) {
     let nv = paths.start.len() - 1;
     let Some((base, joints)) = x.split_first_chunk_mut::<6>() else { return };
     for k in (6..nv).rev() {

@@ -25,6 +25,7 @@ mod articulated;
 mod builder;
 mod centroid;
 mod configuration;
+mod damper;
 mod data;
 mod error;
 mod forward;
@@ -44,6 +45,7 @@ mod urdf;
 
 pub use builder::{JointKind, ModelBuilder};
 pub use centroid::Momentum;
+pub use damper::Damper;
 pub use data::Data;
 pub use error::ModelError;
 pub use inertia::Inertia;

@@ -135,33 +135,38 @@ impl Model {
             return Err(format!("joint {j} does not exist; name one below {}", self.n()));
         }
         let geared: Vec<usize> = rotor.joints.iter().map(|j| j + 1).collect();
+        if let Some(&k) = geared.iter().find(|&&k| k == link.body || !self.carries(link.body, k)) {
+            return Err(format!(
+                "joint `{}` is not carried by link `{}`; name a link between it and the base",
+                self.joint_names[k - 1],
+                rotor.link
+            ));
+        }
+        let entries = self.pairs(&rotor.joints)?;
+        let index = self.gyros.len();
+        Ok(Gyro { index, body: link.body, j: rotor.inertia, e: e.into(), geared, entries })
+    }
+
+    /// For every pair a, b <= a of joints of one limb the place of its entry in the rows of the mass matrix.
+    pub(crate) fn pairs(&self, joints: &[usize]) -> Result<Vec<[usize; 3]>, String> {
         let mut entries = Vec::new();
-        for (a, &k) in geared.iter().enumerate() {
-            if k == link.body || !self.carries(link.body, k) {
-                return Err(format!(
-                    "joint `{}` is not carried by link `{}`; name a link between it and the base",
-                    self.joint_names[k - 1],
-                    rotor.link
-                ));
-            }
-            for (b, &l) in geared.iter().enumerate().take(a + 1) {
+        for (a, &k) in joints.iter().enumerate() {
+            for (b, &l) in joints.iter().enumerate().take(a + 1) {
                 if (a == b) != (k == l) {
-                    return Err(format!("joint `{}` is listed twice", self.joint_names[k - 1]));
+                    return Err(format!("joint `{}` is listed twice", self.joint_names[k]));
                 }
-                let (row, column) = (k.max(l) + 5, k.min(l) + 5);
+                let (row, column) = (k.max(l) + 6, k.min(l) + 6);
                 let columns = &self.paths.column[self.paths.row(row)];
                 let at = columns.iter().position(|&c| c == column).ok_or_else(|| {
                     format!(
                         "joints `{}` and `{}` are on different limbs; split the rotor",
-                        self.joint_names[l - 1],
-                        self.joint_names[k - 1]
+                        self.joint_names[l], self.joint_names[k]
                     )
                 })?;
                 entries.push([a, b, self.paths.start[row] + at]);
             }
         }
-        let index = self.gyros.len();
-        Ok(Gyro { index, body: link.body, j: rotor.inertia, e: e.into(), geared, entries })
+        Ok(entries)
     }
 
     /// True if the body k is `carrier` or hangs on it.

@@ -1,0 +1,72 @@
+//! One pad over level ground, for tests.
+#![allow(dead_code, reason = "each test uses its part")]
+
+use std::sync::Arc;
+
+use contact::hexahedron::{Elasticity, Volume};
+use contact::{Ground, Layer, Material, Memory, Outcome, Pad, Settings, Twist};
+use nalgebra::Vector3;
+
+/// \[s\]
+pub(crate) const ALPHA: f64 = 0.008;
+
+pub(crate) struct Sole {
+    pub(crate) pad: Pad,
+    pub(crate) memory: Memory,
+    pub(crate) d: Vec<f64>,
+    pub(crate) dd: Vec<f64>,
+    ground: Vec<Option<Ground>>,
+}
+
+impl Sole {
+    /// A pad of Lola's size, its middle 0.1 m ahead of and 0.05 m left of the segment's origin.
+    pub(crate) fn new(poisson: f64) -> Self {
+        let elasticity = Elasticity { modulus: 6e5, poisson };
+        let size = [0.06, 0.03, 0.012];
+        let material =
+            Material { size, bricks: [5, 5, 1], elasticity, volume: Volume::Full, damping_time: ALPHA };
+        let layer = Layer::new(&material).unwrap();
+        let pad = Pad::new(Arc::new(layer), Vector3::new(0.1, 0.05, 0.0));
+        let states = 3 * pad.layer().nodes();
+        let ground = vec![None; pad.layer().contacts()];
+        Self { memory: pad.memory(), pad, d: vec![0.0; states], dd: vec![0.0; states], ground }
+    }
+
+    /// One evaluation; the undeformed sole is `height` above level ground.
+    pub(crate) fn rates(&mut self, height: f64, twist: &Twist, settings: &Settings) -> Outcome {
+        for (i, ground) in self.ground.iter_mut().enumerate() {
+            *ground = Some(Ground { gap: height + self.d[3 * i + 2], normal: Vector3::z() });
+        }
+        self.pad.solve(&mut self.memory, &self.d, &self.ground, twist, settings, &mut self.dd)
+    }
+
+    /// One step of explicit Euler.
+    pub(crate) fn step(&mut self, h: f64, height: f64, twist: &Twist, settings: &Settings) -> Outcome {
+        let outcome = self.rates(height, twist, settings);
+        self.advance(h);
+        outcome
+    }
+
+    /// The same over ground of any height: `of` says for x of a node what is below its undeformed place.
+    pub(crate) fn step_on(
+        &mut self,
+        h: f64,
+        of: &dyn Fn(f64) -> Option<Ground>,
+        twist: &Twist,
+        settings: &Settings,
+    ) -> Outcome {
+        for i in 0..self.ground.len() {
+            let below = of(self.pad.place(i).x);
+            self.ground[i] = below.map(|g| Ground { gap: g.gap + self.d[3 * i + 2], ..g });
+        }
+        let outcome = self.pad.solve(&mut self.memory, &self.d, &self.ground, twist, settings, &mut self.dd);
+        self.advance(h);
+        outcome
+    }
+
+    fn advance(&mut self, h: f64) {
+        for (d, dd) in self.d.iter_mut().zip(&self.dd) {
+            *d += h * dd;
+        }
+    }
+}

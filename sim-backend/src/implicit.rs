@@ -1,0 +1,216 @@
+//! The drive trains in an implicit step: motors, controllers, springs and dry friction at the end of the step.
+//!
+//! Over a step h each drive is linear in the speed w+ at its end: its shaft gives `T0 - b w+`, with the current and the
+//! elastic gear eliminated, so b goes to the mass matrix and nothing of it limits the step. Dry friction is set-valued:
+//! a shaft either sticks (w+ = 0, friction inside of its cone) or turns (friction C against the direction), found by
+//! trying, as for the contact points; that is the proximal point of (2.44), (2.45) with each state solved exactly.
+
+use drives::{Elasticity, Sliding};
+use multibody::{Data, Model};
+
+use crate::train::{CURRENT_BANDWIDTH, Given, POSITION_GAIN, Shaft, Train};
+
+/// How many times the shaft's inertia per step a sticking shaft resists.
+const STICKING: f64 = 1e7;
+/// Rounds after which the states of friction are taken as they are.
+const ROUNDS: usize = 12;
+
+/// A torque over one step: `t - b w`, w the speed at its end.
+#[derive(Clone, Copy, Default)]
+struct Line {
+    t: f64,
+    b: f64,
+}
+
+/// What dry friction does during a step.
+#[derive(Clone, Copy, Default, PartialEq)]
+enum Slip {
+    /// The shaft sticks.
+    #[default]
+    Sticks,
+    /// It turns in the direction +1 or -1.
+    Turns(f64),
+}
+
+/// A shaft over one step.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Step {
+    motor: Line,
+    coulomb: f64,
+    viscous: f64,
+    slip: Slip,
+    /// Speed at the end \[rad/s\].
+    end: f64,
+    /// Torque on a rotor behind an elastic gear \[N m\].
+    torque: f64,
+}
+
+impl Train {
+    /// Solves M a = `force` - (bias, contact: all in `force`) with the drives at the end of a step `h` \[s\].
+    ///
+    /// In: generalized force without the drives, mass matrix in `data`. Out: acceleration in `out`. Returns the rounds it
+    /// took to find which shafts stick.
+    pub fn solve(
+        &mut self,
+        h: f64,
+        given: &Given<'_>,
+        model: &Model,
+        data: &mut Data,
+        force: &[f64],
+        out: &mut [f64],
+    ) -> usize {
+        for s in &mut self.shafts {
+            s.begin(h, given);
+        }
+        for round in 1..=ROUNDS {
+            out.copy_from_slice(force);
+            for (k, s) in self.shafts.iter().enumerate() {
+                let (line, ratio) = s.line(h, given);
+                let now: f64 = (0..3).map(|i| ratio[i] * given.joint.1[s.joints[i]]).sum();
+                let bias = if s.elastic.is_some() { 0.0 } else { s.gear.bias };
+                let push = line.t - line.b * (now + h * bias);
+                for i in 0..3 {
+                    out[6 + s.joints[i]] += ratio[i] * push;
+                }
+                self.dampers[k].set(ratio, h * line.b);
+            }
+            model.solve_damped(data, &self.dampers, out);
+            let mut settled = true;
+            for s in &mut self.shafts {
+                s.finish(h, given, &out[6..]);
+                settled &= s.settle(h);
+            }
+            if settled {
+                return round;
+            }
+        }
+        ROUNDS
+    }
+
+    /// What the free rotors do to their stators: the torque that the step before found.
+    pub fn free_rotors(&self, data: &mut Data) {
+        for s in self.shafts.iter().filter(|s| s.elastic.is_some()) {
+            data.set_free_rotor(s.motor, s.speed, s.step.torque);
+        }
+    }
+
+    /// Moves currents and rotors to the end of the step, after [`Train::solve`].
+    pub fn end(&self, h: f64, current: &mut [f64], rotor: (&mut [f64], &mut [f64])) {
+        for (k, s) in self.shafts.iter().enumerate() {
+            let Line { t, b } = s.step.motor;
+            current[k] = (t - b * s.step.end) / s.drive.motor.torque_constant;
+            if let Some((e, _)) = s.elastic {
+                rotor.1[e] = s.step.end / s.gear.ratio[0];
+                rotor.0[e] += h * rotor.1[e];
+            }
+        }
+    }
+
+    /// Whether a drive's only joint is held by friction at the end of the step.
+    pub fn held_joints(&self) -> impl Iterator<Item = usize> + '_ {
+        let held = |s: &&Shaft| s.step.slip == Slip::Sticks && s.elastic.is_none() && s.drive.joints.len() == 1;
+        self.shafts.iter().filter(held).map(|s| s.joints[0])
+    }
+}
+
+impl Shaft {
+    /// Motor and friction as functions of the speed at the end of the step.
+    fn begin(&mut self, h: f64, given: &Given<'_>) {
+        let current = given.current[self.motor];
+        let driving = self.drive.motor.torque(current);
+        let before = Sliding { dry: self.step.coulomb, viscous: self.step.viscous };
+        let Sliding { dry, viscous } = self.drive.friction.sliding(self.speed, driving).unwrap_or(before);
+        let brake = if given.powered { 0.0 } else { self.brake() };
+        let motor = self.motor_line(h, given.powered, current);
+        self.step = Step { motor, coulomb: dry + brake, viscous, ..self.step };
+    }
+
+    /// Torque of the motor: (2.57) and the control laws, implicit.
+    fn motor_line(&self, h: f64, powered: bool, current: f64) -> Line {
+        let motor = &self.drive.motor;
+        let constant = motor.torque_constant;
+        let at_voltage = |voltage: f64| {
+            let a = 1.0 / (1.0 + h / motor.time_constant());
+            let per = h / motor.inductance * a * constant;
+            Line { t: constant * a * current + per * voltage, b: per * constant }
+        };
+        if !powered {
+            return at_voltage(0.0);
+        }
+        let voltage = self.voltage(current);
+        if voltage.abs() >= self.drive.voltage_limit {
+            return at_voltage(voltage);
+        }
+        let a = 1.0 / (1.0 + h * (CURRENT_BANDWIDTH + 1.0 / motor.time_constant()));
+        let (limit, ahead) = (self.drive.current_limit, 1.0 + h * POSITION_GAIN);
+        let wanted = self.speed_gain * self.lag;
+        if wanted.abs() >= limit {
+            return Line { t: constant * (a * current + (1.0 - a) * wanted.clamp(-limit, limit)), b: 0.0 };
+        }
+        let share = constant * (1.0 - a) * self.speed_gain;
+        Line { t: constant * a * current + share * (self.lag + self.speed), b: share * ahead }
+    }
+
+    /// Motor and friction together.
+    fn shaft(&self, h: f64) -> Line {
+        let Step { motor: Line { t, b }, coulomb, viscous, slip, .. } = self.step;
+        match slip {
+            Slip::Turns(s) => Line { t: t - s * coulomb, b: b + viscous },
+            Slip::Sticks => Line { t, b: b + STICKING * self.inertia / h },
+        }
+    }
+
+    /// The drive as its joints see it, and the ratios along which it works.
+    fn line(&self, h: f64, given: &Given<'_>) -> (Line, [f64; 3]) {
+        let shaft = self.shaft(h);
+        let Some((e, spring)) = &self.elastic else { return (shaft, self.gear.ratio) };
+        let twist = given.joint.0[self.joints[0]] - given.rotor.0[*e];
+        let (free, share) = self.rotor(h, given, *e, spring, shaft);
+        let stiff = spring.tangent(twist) * h;
+        (Line { t: stiff * free - spring.torque(twist), b: stiff * (1.0 - share) }, [1.0, 0.0, 0.0])
+    }
+
+    /// Rotor behind an elastic gear: th'+ = A + B q'+.
+    fn rotor(&self, h: f64, given: &Given<'_>, e: usize, spring: &Elasticity, shaft: Line) -> (f64, f64) {
+        let n = self.gear.ratio[0];
+        let inertia = self.drive.rotor_inertia * n * n;
+        let twist = given.joint.0[self.joints[0]] - given.rotor.0[e];
+        let stiff = h * h * spring.tangent(twist);
+        let total = inertia + h * n * n * shaft.b + stiff;
+        let free = inertia * given.rotor.1[e] + h * (n * shaft.t + spring.torque(twist));
+        (free / total, stiff / total)
+    }
+
+    /// Speed of the shaft at the end of the step for joint accelerations `a`.
+    fn finish(&mut self, h: f64, given: &Given<'_>, a: &[f64]) {
+        self.step.end = match &self.elastic {
+            None => {
+                let change: f64 = (0..3).map(|i| self.gear.ratio[i] * a[self.joints[i]]).sum();
+                self.speed + h * (change + self.gear.bias)
+            }
+            Some((e, spring)) => {
+                let (free, share) = self.rotor(h, given, *e, spring, self.shaft(h));
+                let joint = given.joint.1[self.joints[0]] + h * a[self.joints[0]];
+                let end = self.gear.ratio[0] * (free + share * joint);
+                self.step.torque = self.drive.rotor_inertia * (end - self.speed) / h;
+                end
+            }
+        };
+    }
+
+    /// Corrects what friction does; true if it was right.
+    fn settle(&mut self, h: f64) -> bool {
+        let Step { coulomb, slip, end, .. } = self.step;
+        let right = match slip {
+            Slip::Turns(s) => s * end >= 0.0,
+            Slip::Sticks => STICKING * self.inertia / h * end.abs() <= coulomb,
+        };
+        if !right {
+            self.step.slip = match slip {
+                Slip::Turns(_) => Slip::Sticks,
+                Slip::Sticks => Slip::Turns(end.signum()),
+            };
+        }
+        right
+    }
+}

@@ -1,0 +1,302 @@
+//! Drive trains with their local controllers: from joint targets to torques, by motor, gear and friction (thesis 2.4).
+//!
+//! Every motor is controlled on its own side by a cascade of position, speed and current, as Lola's servo drives are
+//! (thesis 5.5.2, App. G), here without the delay of sampling:
+//!
+//! ```text
+//! w_d = c (q'_d + K_p (q_d - q)),   I_d = K_v (w_d - w),   U = R I_d + k_M w + L w_c (I_d - I)
+//! ```
+//!
+//! | symbol | name | unit |
+//! |---|---|---|
+//! | c | speed of the motor by the speeds of its joints, d phi / d q | 1 |
+//! | w | speed of the rotor relative to its housing, c q' or N th' | rad/s |
+//! | K_p, K_v, w_c | gains of position, speed and current | 1/s, A s/rad, 1/s |
+//! | U, I, R, L, k_M | voltage, current, resistance, inductance, constant of the motor (2.57) | V, A, Ohm, H, N m/A |
+//! | T_f | friction torque on the motor shaft (2.61), (2.68) | N m |
+//! | T | torque of the elastic gear on its output side (2.69) | N m |
+
+use config::Robot;
+use config::robot::Drive as Description;
+use drives::{Elasticity, Gear, NoLoadTorque, OutOfDomain};
+use multibody::{Damper, Data, Model, ModelError};
+
+use crate::drive::Motion;
+use crate::implicit::Step;
+
+/// \[1/s\] Gain K_p of the position loop.
+pub(crate) const POSITION_GAIN: f64 = 50.0;
+/// \[rad/s\] Bandwidth of the speed loop with the inertia of a hanging robot.
+const SPEED_BANDWIDTH: f64 = 600.0;
+/// \[rad/s\] Bandwidth w_c of the current loop.
+pub(crate) const CURRENT_BANDWIDTH: f64 = 3000.0;
+/// \[rad/s\] Speed of a rotor over which explicit methods see dry friction change its sign.
+pub(crate) const SLOW: f64 = 1.0;
+
+/// All drives of a robot.
+pub struct Train {
+    pub(crate) shafts: Vec<Shaft>,
+    elastic: usize,
+    fault: Option<Fault>,
+    /// What an implicit step adds to the mass matrix, one per drive.
+    pub(crate) dampers: Vec<Damper>,
+}
+
+/// A drive outside of what its model holds for; what it did last goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fault {
+    /// Number of the drive.
+    pub drive: usize,
+    /// What is wrong.
+    pub why: Why,
+}
+
+/// Why a drive has a [`Fault`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Why {
+    /// The linkage is at its dead point, or beyond.
+    Linkage(OutOfDomain),
+    /// The friction has no unique load torque.
+    Friction(NoLoadTorque),
+}
+
+/// One motor with its gear.
+pub(crate) struct Shaft {
+    pub(crate) drive: Description,
+    /// Place among the motors.
+    pub(crate) motor: usize,
+    /// Joints it moves; unused ones repeat the first with ratio zero.
+    pub(crate) joints: [usize; 3],
+    /// Place among the elastic rotors, and the spring.
+    pub(crate) elastic: Option<(usize, Elasticity)>,
+    /// Inertia the motor feels of a hanging robot, on its shaft \[kg m^2\].
+    pub(crate) inertia: f64,
+    pub(crate) speed_gain: f64,
+    pub(crate) gear: Gear,
+    /// Speed w \[rad/s\].
+    pub(crate) speed: f64,
+    /// w_d - w with the position and speed of now \[rad/s\].
+    pub(crate) lag: f64,
+    /// Of an implicit step, see there.
+    pub(crate) step: Step,
+}
+
+/// What the shafts are told from outside: joints, rotors, references.
+pub struct Given<'a> {
+    /// \[rad\], \[rad/s\] Joint angles and speeds.
+    pub joint: (&'a [f64], &'a [f64]),
+    /// \[rad\], \[rad/s\] Rotors behind elastic gears.
+    pub rotor: (&'a [f64], &'a [f64]),
+    /// \[A\]
+    pub current: &'a [f64],
+    /// How the joints are to move.
+    pub reference: &'a [Motion],
+    /// Whether the motor supply is on; without it the terminals are shorted and brakes hold.
+    pub powered: bool,
+}
+
+impl Train {
+    /// The drives of `robot`, whose rotors `model` has; gears with elasticity are elastic if `elastic`. The speed loops are
+    /// tuned for the robot hanging in the pose `hanging` \[rad\].
+    pub fn new(robot: &Robot, model: &Model, elastic: bool, hanging: &[f64]) -> Result<Self, ModelError> {
+        let mut count = 0;
+        let shaft = |(k, d): (usize, &Description)| Shaft::new(d, k, elastic, &mut count);
+        let mut shafts: Vec<Shaft> = robot.drives.iter().enumerate().map(shaft).collect();
+        tune(&mut shafts, model, hanging);
+        let dampers = robot.drives.iter().map(|d| model.damper(&d.joints)).collect::<Result<_, _>>()?;
+        Ok(Self { shafts, elastic: count, fault: None, dampers })
+    }
+
+    /// Elastic gears.
+    pub fn elastic(&self) -> usize {
+        self.elastic
+    }
+
+    /// Motors.
+    pub fn motors(&self) -> usize {
+        self.shafts.len()
+    }
+
+    /// The first fault since the last call.
+    pub fn take_fault(&mut self) -> Option<Fault> {
+        self.fault.take()
+    }
+
+    /// Sets the gears for the joints' angles and speeds.
+    pub fn load(&mut self, given: &Given<'_>, data: &mut Data) {
+        for (k, s) in self.shafts.iter_mut().enumerate() {
+            if let Err(why) = s.load(given) {
+                self.fault.get_or_insert(Fault { drive: k, why: Why::Linkage(why) });
+            }
+            if s.elastic.is_none() {
+                data.set_gear(k, s.gear.ratio, s.gear.bias);
+            }
+        }
+    }
+
+    /// Torques and rates at the state of [`Train::load`], dry friction smoothed: what explicit methods integrate.
+    ///
+    /// Adds to the joints' torques; writes the currents' rates.
+    pub fn explicit(&mut self, given: &Given<'_>, data: &mut Data, torque: &mut [f64], rate: &mut [f64]) {
+        for (k, s) in self.shafts.iter().enumerate() {
+            let current = given.current[k];
+            let voltage = if given.powered { s.voltage(current) } else { 0.0 };
+            rate[k] = s.drive.motor.current_rate(current, voltage, s.speed); // (2.57)
+            let driving = s.drive.motor.torque(current);
+            let friction = s.drive.friction.torque(s.speed, driving, SLOW).unwrap_or_else(|why| {
+                self.fault.get_or_insert(Fault { drive: k, why: Why::Friction(why) });
+                0.0
+            });
+            let brake = if given.powered { 0.0 } else { s.brake() * (s.speed / SLOW).clamp(-1.0, 1.0) };
+            s.apply(given, driving + friction - brake, data, torque);
+        }
+    }
+
+    /// Sets the gears for prescribed joints: rotors turn with them, and nothing else of the drives is computed.
+    pub fn load_prescribed(&mut self, q: &[f64], qd: &[f64], data: &mut Data) {
+        for (k, s) in self.shafts.iter_mut().enumerate() {
+            let at = |x: &[f64]| s.joints.map(|j| x[j]);
+            match s.drive.transmission.at(at(q), at(qd)) {
+                Ok(gear) => data.set_gear(k, gear.ratio, gear.bias),
+                Err(why) => _ = self.fault.get_or_insert(Fault { drive: k, why: Why::Linkage(why) }),
+            }
+        }
+    }
+
+    /// Rotor angles with relaxed gears.
+    pub fn relax(&self, joints: &[f64], rotor: &mut [f64]) {
+        for s in &self.shafts {
+            if let Some((e, _)) = s.elastic.filter(|_| !rotor.is_empty()) {
+                rotor[e] = joints[s.joints[0]];
+            }
+        }
+    }
+
+    /// Rates of the elastic rotors' speeds, after the forward dynamics.
+    pub fn rotor_rates(&self, model: &Model, data: &Data, rate: &mut [f64]) {
+        for (k, s) in self.shafts.iter().enumerate() {
+            if let Some((e, _)) = s.elastic {
+                rate[e] = model.rotor_acceleration(data, k) / s.gear.ratio[0];
+            }
+        }
+    }
+}
+
+impl Shaft {
+    fn new(drive: &Description, motor: usize, elastic: bool, count: &mut usize) -> Self {
+        let first = drive.joints[0];
+        let joint = |i: usize| drive.joints.get(i).copied().unwrap_or(first);
+        let mut place = || {
+            *count += 1;
+            *count - 1
+        };
+        Self {
+            motor,
+            joints: [joint(0), joint(1), joint(2)],
+            elastic: drive.elasticity.filter(|_| elastic).map(|spring| (place(), spring)),
+            inertia: drive.rotor_inertia,
+            speed_gain: 0.0,
+            gear: Gear::default(),
+            speed: 0.0,
+            lag: 0.0,
+            step: Step::default(),
+            drive: drive.clone(),
+        }
+    }
+
+    fn load(&mut self, given: &Given<'_>) -> Result<(), OutOfDomain> {
+        let at = |x: &[f64]| self.joints.map(|j| x[j]);
+        let (q, qd) = (at(given.joint.0), at(given.joint.1));
+        let fault = match self.drive.transmission.at(q, qd) {
+            Ok(gear) => {
+                self.gear = gear;
+                Ok(())
+            }
+            Err(dead) => Err(dead),
+        };
+        let (mut angle, mut speed) = (q, qd);
+        if let Some((e, _)) = self.elastic {
+            (angle[0], speed[0]) = (given.rotor.0[e], given.rotor.1[e]);
+        }
+        let mut wanted = 0.0;
+        self.speed = 0.0;
+        for i in 0..3 {
+            let r = &given.reference[self.joints[i]];
+            self.speed += self.gear.ratio[i] * speed[i];
+            wanted += self.gear.ratio[i] * (r.speed + POSITION_GAIN * (r.angle - angle[i]));
+        }
+        self.lag = wanted - self.speed;
+        fault
+    }
+
+    /// Current the speed loop asks for \[A\].
+    fn wanted_current(&self) -> f64 {
+        let limit = self.drive.current_limit;
+        (self.speed_gain * self.lag).clamp(-limit, limit)
+    }
+
+    /// Voltage the current loop sets \[V\].
+    pub(crate) fn voltage(&self, current: f64) -> f64 {
+        let (motor, wanted) = (&self.drive.motor, self.wanted_current());
+        let voltage = motor.voltage(wanted, self.speed)
+            + motor.inductance * CURRENT_BANDWIDTH * (wanted - current);
+        voltage.clamp(-self.drive.voltage_limit, self.drive.voltage_limit)
+    }
+
+    /// Torque of the brake \[N m\]: what the motor could hold.
+    pub(crate) fn brake(&self) -> f64 {
+        self.drive.motor.torque(self.drive.current_limit)
+    }
+
+    /// Hands the torque of the shaft on to the joints, through the gear.
+    fn apply(&self, given: &Given<'_>, shaft: f64, data: &mut Data, torque: &mut [f64]) {
+        match &self.elastic {
+            None => {
+                for i in 0..3 {
+                    torque[self.joints[i]] += self.gear.ratio[i] * shaft;
+                }
+            }
+            Some((e, spring)) => {
+                let twist = spring.torque(given.joint.0[self.joints[0]] - given.rotor.0[*e]);
+                torque[self.joints[0]] -= twist; // (2.70)
+                data.set_free_rotor(self.motor, self.speed, shaft + twist / self.gear.ratio[0]);
+            }
+        }
+    }
+}
+
+/// Sets the gains of the speed loops for the inertia that each motor feels of the robot hanging in a pose.
+fn tune(shafts: &mut [Shaft], model: &Model, hanging: &[f64]) {
+    let mut data = Data::new(model);
+    let mut q = model.neutral();
+    q[7..].copy_from_slice(hanging);
+    let rest = vec![Motion::default(); model.n()];
+    let zero = vec![0.0; model.n().max(shafts.len())];
+    let given = Given {
+        joint: (hanging, &zero),
+        rotor: (&zero, &zero),
+        current: &zero,
+        reference: &rest,
+        powered: true,
+    };
+    for (k, s) in shafts.iter_mut().enumerate() {
+        let _ = s.load(&given); // A pose beyond a dead point is refused where the robot is loaded.
+        if s.elastic.is_none() {
+            data.set_gear(k, s.gear.ratio, 0.0);
+        }
+    }
+    model.mass_matrix(&mut data, &q);
+    for s in shafts {
+        let mut x = vec![0.0; model.nv()];
+        for i in 0..3 {
+            x[6 + s.joints[i]] += s.gear.ratio[i];
+        }
+        let c = x.clone();
+        model.solve_mass_matrix(&mut data, &mut x);
+        s.inertia = 1.0 / x.iter().zip(&c).map(|(x, c)| x * c).sum::<f64>();
+        if s.elastic.is_some() {
+            s.inertia += s.drive.rotor_inertia; // not in the mass matrix
+        }
+        s.speed_gain = SPEED_BANDWIDTH * s.inertia / s.drive.motor.torque_constant;
+    }
+}
