@@ -48,6 +48,8 @@ pub struct Encoder {
     pub bias: PerJoint,
     /// Speed by finite differences of the measured angle over one cycle.
     pub speed_by_difference: bool,
+    /// \[s\] Dead time, in whole cycles.
+    pub delay: f64,
 }
 
 /// Errors of the force/torque sensors. Zeros stand for "none".
@@ -67,6 +69,8 @@ pub struct ForceTorque {
     pub force_range: [f64; 3],
     /// \[N m\] Largest moment about x, y, z; infinite where there is no limit.
     pub moment_range: [f64; 3],
+    /// \[s\] Dead time, in whole cycles.
+    pub delay: f64,
 }
 
 impl Default for ForceTorque {
@@ -79,6 +83,7 @@ impl Default for ForceTorque {
             step: [0.0; 2],
             force_range: [f64::INFINITY; 3],
             moment_range: [f64::INFINITY; 3],
+            delay: 0.0,
         }
     }
 }
@@ -96,6 +101,10 @@ pub struct Imu {
     pub rate: Signal,
     /// Of the specific force \[m/s^2\].
     pub acceleration: Signal,
+    /// \[s\] Between two readings, in whole cycles; 0: one in every cycle.
+    pub period: f64,
+    /// \[s\] Dead time, in whole cycles.
+    pub delay: f64,
 }
 
 /// Noise, quantisation and range of one signal, in its unit.
@@ -196,6 +205,7 @@ impl Encoder {
             counts: PerJoint::default(),
             bias: PerJoint::build(table, "bias_rad", "rad", -1.0..=1.0),
             speed_by_difference: table.flag("speed_by_difference"),
+            delay: delay(table),
         }
     }
 }
@@ -215,6 +225,7 @@ impl ForceTorque {
             step: pair("step"),
             force_range: range("force_range", "N"),
             moment_range: range("moment_range", "N m"),
+            delay: delay(table),
         };
         if built.bias_compensation && !built.inertia {
             table.problem(
@@ -247,6 +258,8 @@ impl Imu {
             orientation: signal("orientation", "rad", 0.1),
             rate: ranged("rate", "rad/s"),
             acceleration: ranged("acceleration", "m/s^2"),
+            period: optional(table, "period", |t, key| t.number(key, "s", 0.0..=0.1)),
+            delay: delay(table),
         }
     }
 }
@@ -292,6 +305,11 @@ impl PerJoint {
         }
         Self { all: self.all.zip(other.all).map(|(a, b)| a * b), own }
     }
+}
+
+/// Dead time \[s\]; none if it is not there.
+fn delay(table: &Section<'_, '_>) -> f64 {
+    optional(table, "delay", |t, key| t.number(key, "s", 0.0..=0.1))
 }
 
 /// Asks for a key only if it is there.

@@ -243,6 +243,52 @@ fn scene_that_robot_and_gait_cannot_do() {
 }
 
 #[test]
+fn sensors_of_a_scene() {
+    let copy = Copy::new("sensors").spoil(
+        "scenes/stand.toml",
+        "seed = 1",
+        "seed = 1\n\
+         [sensors.encoder]\n\
+         bits = { all = 17.5, right_toe_flexion = 40 }\n\
+         [sensors.motor_encoder]\n\
+         counts = 11520\n\
+         [sensors.force_torque]\n\
+         bias_compensation = true\n\
+         noise = [1.0, -0.1]\n\
+         inertai = true\n\
+         [sensors.imu]\n\
+         bandwidth = 0\n\
+         rate_noise = true",
+    );
+    assert_eq!(
+        text(&copy.scene("stand")),
+        "stand.toml: 8 problems\n  \
+         line 12: sensors.encoder.bits.right_toe_flexion: 40 is not allowed; it takes a number from 1 to 32 bit\n  \
+         line 12: sensors.encoder.bits: 17.5 is not a whole number\n  \
+         line 13: sensors.motor_encoder.gear_ratio: missing; counts are those of one turn of the motor\n  \
+         line 16: sensors.force_torque.bias_compensation: takes away the weight below the sensor: it needs inertia = true\n  \
+         line 17: sensors.force_torque.noise[1]: -0.1 is not allowed; it takes a number from 0 to 10000 N, N m\n  \
+         line 18: sensors.force_torque.inertai: unknown key; the nearest known one is `inertia`\n  \
+         line 20: sensors.imu.bandwidth: 0 is not allowed; it takes a number from 0.001 to 100000 Hz\n  \
+         line 21: sensors.imu.rate_noise: is of type boolean; it takes a number from 0 to 1000 rad/s"
+    );
+}
+
+#[test]
+fn sensors_of_joints_that_the_robot_lacks() {
+    let copy = Copy::new("sensor-joint").spoil(
+        "scenes/stand.toml",
+        "seed = 1",
+        "seed = 1\n[sensors.encoder]\nbias_rad = { right_ankle_flexoin = -0.05 }",
+    );
+    assert_eq!(
+        text(&copy.scene("stand")),
+        "stand.toml: sensors.encoder.bias_rad: robot lola has no joint `right_ankle_flexoin`; \
+         the nearest is `right_ankle_flexion`"
+    );
+}
+
+#[test]
 fn system_row_of_no_process() {
     let copy = Copy::new("system").spoil("system.toml", "[process.planner]", "[process.planer]");
     let error = System::load(&copy.path("system.toml")).unwrap_err();

@@ -16,6 +16,8 @@ use std::f64::consts::TAU;
 use config::Robot;
 use messages::{Joints, MAX_JOINTS};
 
+use super::latency::Latency;
+
 /// Encoder of one joint.
 #[derive(Clone, Copy, Debug)]
 struct Encoder {
@@ -40,6 +42,7 @@ pub struct Encoders {
     encoders: Vec<Encoder>,
     /// \[s\] Cycle T of the differences; none: the speed is measured by itself.
     difference: Option<f64>,
+    latency: Latency<[Joints; 2]>,
 }
 
 impl Encoders {
@@ -53,6 +56,7 @@ impl Encoders {
         Self {
             encoders: robot.joints.iter().take(MAX_JOINTS).map(encoder).collect(),
             difference: errors.speed_by_difference.then_some(cycle),
+            latency: Latency::new(errors.delay, 0.0, cycle),
         }
     }
 
@@ -61,15 +65,19 @@ impl Encoders {
     /// The first difference is that of a joint at rest. An angle that is not finite is read as NaN, and so are the two
     /// speeds that would need it.
     pub fn measure(&mut self, [angle, speed]: [&Joints; 2], out: [&mut Joints; 2]) {
-        let [out_angle, out_speed] = out;
+        let mut read = [[0.0; MAX_JOINTS]; 2];
         for (j, encoder) in self.encoders.iter_mut().enumerate() {
-            let read = if angle[j].is_finite() { encoder.read(angle[j]) } else { f64::NAN };
-            out_angle[j] = read;
-            out_speed[j] = match self.difference {
-                Some(cycle) => (read - encoder.last.unwrap_or(read)) / cycle,
+            let now = if angle[j].is_finite() { encoder.read(angle[j]) } else { f64::NAN };
+            read[0][j] = now;
+            read[1][j] = match self.difference {
+                Some(cycle) => (now - encoder.last.unwrap_or(now)) / cycle,
                 None => speed[j],
             };
-            encoder.last = Some(read);
+            encoder.last = Some(now);
+        }
+        let n = self.encoders.len();
+        for (out, read) in out.into_iter().zip(self.latency.pass(read)) {
+            out[..n].copy_from_slice(&read[..n]);
         }
     }
 }

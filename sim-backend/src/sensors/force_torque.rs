@@ -8,12 +8,12 @@
 //!
 //! The strain gauges see what the bodies below press on the ankle: F = F_c - F_i. It is set to zero while hanging, where
 //! F_c = 0: F = F_c - F_i + F_0 (errata 1, 4.13). A foot that stands still and level reads F_c exactly; one that is
-//! tilted, or swings, does not. Then: anti-aliasing filter, noise, converter, range.
+//! tilted, or swings, does not. Then: anti-aliasing filter, noise, converter, range, dead time.
 
 use messages::Wrench;
-use nalgebra::Vector3;
 
 use super::converter::Converter;
+use super::latency::Latency;
 use super::low_pass::LowPass;
 use super::noise::Noise;
 
@@ -25,10 +25,11 @@ pub struct ForceTorque {
     zero: Option<[f64; 6]>,
     low_pass: [LowPass<1>; 6],
     converters: [Converter; 6],
+    latency: Latency<[f64; 6]>,
 }
 
 impl ForceTorque {
-    /// `hanging`: F_0, T_0 of this foot, as [`weight`] gives it. `cycle` in s. `stream(i)`: noise of the six signals.
+    /// `hanging`: F_0, T_0 of this foot, as [`super::carried::hanging`] gives it. `cycle` in s. `stream(i)`: noise of the six signals.
     pub fn new(
         errors: &config::sensors::ForceTorque,
         hanging: &Wrench,
@@ -45,6 +46,7 @@ impl ForceTorque {
             zero: (errors.inertia && errors.bias_compensation).then(|| components(hanging)),
             low_pass: std::array::from_fn(|_| LowPass::new(errors.filter_time, cycle)),
             converters: std::array::from_fn(converter),
+            latency: Latency::new(errors.delay, 0.0, cycle),
         }
     }
 
@@ -67,15 +69,9 @@ impl ForceTorque {
             let [filtered] = self.low_pass[i].filter([x[i]]);
             x[i] = self.converters[i].convert(filtered, clipped);
         }
+        let x = self.latency.pass(x);
         Wrench { force: [x[0], x[1], x[2]], moment: [x[3], x[4], x[5]] }
     }
-}
-
-/// F_0, T_0: what carries `mass` \[kg\] with its centre of gravity at `cog` \[m, sensor frame\] at rest, when `gravity`
-/// \[m/s^2\] is that in the sensor frame: (0, 0, -9.81) with level feet.
-pub fn weight(mass: f64, cog: [f64; 3], gravity: [f64; 3]) -> Wrench {
-    let force = -mass * Vector3::from(gravity);
-    Wrench { force: force.into(), moment: Vector3::from(cog).cross(&force).into() }
 }
 
 fn components(w: &Wrench) -> [f64; 6] {

@@ -1,4 +1,5 @@
-//! Inertial measurement unit (thesis 2.5.3, figure 2.24): limited bandwidth, misaligned mounting, noise, converter.
+//! Inertial measurement unit (thesis 2.5.3, figure 2.24): limited bandwidth, misaligned mounting, noise, converter, dead
+//! time.
 //!
 //! | symbol | name | unit | frame |
 //! |---|---|---|---|
@@ -16,6 +17,7 @@ use messages::Imu as Reading;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::converter::{Converter, round_to};
+use super::latency::Latency;
 use super::low_pass::{LowPass, OrientationLowPass, time_constant};
 use super::noise::Noise;
 
@@ -26,6 +28,7 @@ pub struct Imu {
     low_pass: [LowPass<3>; 2],
     rate: Converter,
     acceleration: Converter,
+    latency: Latency<Reading>,
 }
 
 /// How the orientation is spoilt.
@@ -57,6 +60,7 @@ impl Imu {
             low_pass: std::array::from_fn(|_| LowPass::new(time, cycle)),
             rate: converter(&errors.rate, 1),
             acceleration: converter(&errors.acceleration, 2),
+            latency: Latency::new(errors.delay, errors.period, cycle),
         }
     }
 
@@ -68,11 +72,11 @@ impl Imu {
             Some(errors) => errors.measure(truth.orientation),
             None => truth.orientation,
         };
-        Reading {
+        self.latency.pass(Reading {
             orientation,
             angular_velocity: rate.map(|x| self.rate.convert(x, clipped)),
             acceleration: acceleration.map(|x| self.acceleration.convert(x, clipped)),
-        }
+        })
     }
 }
 

@@ -7,14 +7,18 @@
 //! | inertial measurement unit | [`imu`] |
 //! | limited bandwidth | [`low_pass`] |
 //! | noise, quantisation, range | [`converter`] |
+//! | dead time, readings per second | [`latency`] |
+//! | what the force sensors carry | [`carried`] |
 //! | random numbers | [`noise`] |
 //!
 //! A sensor that the scene does not name copies the truth, bit for bit, and computes nothing.
 
+pub mod carried;
 pub mod converter;
 pub mod encoder;
 pub mod force_torque;
 pub mod imu;
+pub mod latency;
 pub mod low_pass;
 pub mod noise;
 
@@ -76,7 +80,7 @@ impl SensorSet {
     /// Sensors of `robot`, read once per `cycle` \[s\]; noise from `seed`.
     ///
     /// `hanging`: wrench that carries the bodies below each force sensor while the robot hangs at rest with level feet,
-    /// see [`force_torque::weight`]; it is used where the scene asks for compensation of the bias.
+    /// see [`carried::hanging`]; it is used where the scene asks for compensation of the bias.
     pub fn new(
         errors: &config::Sensors,
         robot: &Robot,
