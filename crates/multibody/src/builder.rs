@@ -112,7 +112,8 @@ impl ModelBuilder {
     }
 
     fn body(&self, k: usize) -> Body {
-        let i = &self.inertias[k];
+        let inertia = &self.inertias[k];
+        let i = Sym3::from_matrix(&inertia.moments_about_origin());
         let (parent, origin, (kind, sign)) = match k {
             0 => (0, Vector3::zeros(), (Kind::Base, 1.0)),
             _ => {
@@ -125,9 +126,10 @@ impl ModelBuilder {
             kind,
             sign,
             r: origin.into(),
-            m: i.mass,
-            mc: (i.center * i.mass).into(),
-            i: Sym3::from_matrix(&i.moments_about_origin()),
+            m: inertia.mass,
+            mc: (inertia.center * inertia.mass).into(),
+            i,
+            s: Body::second_moments(i),
         }
     }
 }

@@ -115,11 +115,11 @@ impl Model {
     }
 }
 
+#[inline(always)]
 fn set<S>(jacobian: &mut Matrix<f64, Const<3>, Dyn, S>, column: usize, v: V3)
 where
     S: RawStorageMut<f64, Const<3>, Dyn>,
 {
-    for (to, x) in jacobian.column_mut(column).iter_mut().zip(v.array()) {
-        *to = x;
-    }
+    let mut to = jacobian.column_mut(column);
+    (to[0], to[1], to[2]) = (v.x, v.y, v.z);
 }

@@ -2,9 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use crate::model::{Kind, Model};
+use crate::model::{Body, Kind, Model};
 use crate::rotor::Spin;
-use crate::space::{Mat3, Sym3, V3, ZERO, v3};
+use crate::space::{Mat3, Sym3, Twin, V3, ZERO, v3};
 use crate::trigonometry::sin_cos;
 
 /// Results and scratch for one [`Model`]. Nothing allocates after [`Data::new`].
@@ -27,7 +27,7 @@ pub struct Data {
     pub(crate) locals: Vec<Local>,
     pub(crate) composites: Vec<Composite>,
     /// Momentum and moment of momentum of each composite, on its way to the base.
-    pub(crate) momenta: Vec<[V3; 2]>,
+    pub(crate) momenta: Vec<Twin>,
     pub(crate) articulated: Vec<Articulated>,
     pub(crate) spins: Vec<Spin>,
     /// Mass matrix and its factors as rows of [`crate::sparsity::Paths`].
@@ -42,6 +42,16 @@ pub(crate) struct Position {
     pub c: f64,
     pub s: f64,
     pub r: V3,
+    /// False if r is zero for good, as where the axes of a hip meet.
+    pub apart: bool,
+}
+
+impl Position {
+    /// r, none where it is zero: the kernels then save all that it would be multiplied with.
+    #[inline(always)]
+    pub(crate) fn offset(&self) -> Option<V3> {
+        self.apart.then_some(self.r)
+    }
 }
 
 /// A body in the world: rotation world_from_body, origin, axis of its joint along the coordinate.
@@ -61,12 +71,13 @@ pub(crate) struct Motion {
     pub dv: V3,
 }
 
-/// A body in its own axes: angular velocity, angular acceleration, acceleration of the origin less gravity, and the
-/// force and the moment about the origin that give them to the body and all it carries.
+/// A body in its own axes: angular velocity, angular acceleration, the matrix k with which a point r of the body is
+/// accelerated by a + k r, acceleration a of the origin less gravity, and the force and the moment about the origin that give them to the body and all it carries.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Local {
     pub w: V3,
     pub dw: V3,
+    pub k: Mat3,
     pub a: V3,
     pub f: V3,
     pub n: V3,
@@ -112,7 +123,11 @@ impl Data {
     /// Allocates for a model.
     pub fn new(model: &Model) -> Data {
         let (nb, nv) = (model.bodies.len(), model.nv());
-        let joints = model.bodies.iter().map(|b| Position { c: 1.0, s: 0.0, r: b.r }).collect();
+        let position = |b: &Body| {
+            let apart = b.r != ZERO || matches!(b.kind, Kind::Along(_));
+            Position { c: 1.0, s: 0.0, r: b.r, apart }
+        };
+        let joints = model.bodies.iter().map(position).collect();
         let entries = model.paths.column.len();
         Data {
             sin: vec![0.0; model.n()],
@@ -126,7 +141,7 @@ impl Data {
             moments: vec![ZERO; nb],
             locals: vec![Local::default(); nb],
             composites: vec![Composite::default(); nb],
-            momenta: vec![[ZERO; 2]; nb],
+            momenta: vec![Twin::default(); nb],
             articulated: vec![Articulated::NONE; nb],
             spins: vec![Spin::default(); model.gyros.len()],
             m: vec![0.0; entries],

@@ -3,9 +3,10 @@
 //! | symbol | name | unit | axes |
 //! |---|---|---|---|
 //! | w, dw | angular velocity and acceleration of a body | rad/s | body |
+//! | k | `dw~ + w~ w~`: a point r of the body has the acceleration a + k r | 1/s^2 | body |
 //! | a | acceleration of its origin, less gravity | m/s^2 | body |
 //! | f, n | force, and moment about its origin, for the body and all it carries | N, N m | body |
-//! | m, mc, i | mass, first moment, moments of inertia about the origin | | body |
+//! | m, mc, s | mass, first moment, second moments about the origin (integral of r r^T) | | body |
 //!
 //! The sweep needs no linear velocities. Gravity enters as the base's acceleration -g with g = (0, 0, -9.81); the
 //! print of (2.36) has the opposite sign (errata).
@@ -14,7 +15,7 @@ use nalgebra::Vector3;
 
 use crate::data::{Data, Local, with_turn};
 use crate::model::{Body, Frame, G, Model};
-use crate::space::{V3, ZERO};
+use crate::space::{Mat3, V3, ZERO, v3};
 use crate::turn::Turn;
 
 impl Model {
@@ -84,7 +85,7 @@ impl Model {
         for (k, body) in self.bodies.iter().enumerate().skip(1) {
             let (p, j) = (&locals[body.parent], &joints[k]);
             let (qd, qdd) = (v[k + 5] * body.sign, qdd(k) * body.sign);
-            with_turn!(body, j, &oblique[k], t => locals[k] = out(t, p, j.r, qd, qdd, body));
+            with_turn!(body, j, &oblique[k], t => locals[k] = out(t, p, j.offset(), qd, qdd, body));
         }
         self.load_stators(locals, spins, v, &qdd);
         for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
@@ -94,7 +95,10 @@ impl Model {
                 joint(k, t.part(choose(t, own.n, own.f)) * body.sign);
                 let f = t.up(own.f);
                 p.f += f;
-                p.n += t.up(own.n) + j.r.cross(f);
+                p.n += t.up(own.n);
+                if let Some(r) = j.offset() {
+                    p.n += r.cross(f);
+                }
             });
         }
     }
@@ -115,10 +119,10 @@ pub(crate) fn choose<T: Turn>(_: T, turning: V3, sliding: V3) -> V3 {
 
 /// Motion of a body from its parent's, and the load of its own inertia.
 #[inline(always)]
-fn out<T: Turn>(t: T, p: &Local, r: V3, qd: f64, qdd: f64, body: &Body) -> Local {
+fn out<T: Turn>(t: T, p: &Local, r: Option<V3>, qd: f64, qdd: f64, body: &Body) -> Local {
     let w = t.down(p.w);
     let dw = t.down(p.dw);
-    let a = t.down(p.a + p.dw.cross(r) + p.w.cross(p.w.cross(r)));
+    let a = t.down(r.map_or(p.a, |r| p.a + p.k * r));
     if T::SLIDES {
         load(body, w, dw, t.plus(a + t.across(w, 2.0 * qd), qdd))
     } else {
@@ -126,10 +130,23 @@ fn out<T: Turn>(t: T, p: &Local, r: V3, qd: f64, qdd: f64, body: &Body) -> Local
     }
 }
 
-/// Force and moment about the origin that a body's own inertia asks for (2.36).
+/// Force and moment about the origin that a body's own inertia asks for (2.36), as integrals over its mass of a + k r
+/// and r x (a + k r).
 #[inline(always)]
 fn load(b: &Body, w: V3, dw: V3, a: V3) -> Local {
-    let f = a * b.m + dw.cross(b.mc) + w.cross(w.cross(b.mc));
-    let n = b.i * dw + b.mc.cross(a) + w.cross(b.i * w);
-    Local { w, dw, a, f, n }
+    let (xy, xz, yz) = (w.x * w.y, w.x * w.z, w.y * w.z);
+    let (xx, yy, zz) = (w.x * w.x, w.y * w.y, w.z * w.z);
+    let k = Mat3 {
+        x: v3(-yy - zz, xy + dw.z, xz - dw.y),
+        y: v3(xy - dw.z, -xx - zz, yz + dw.x),
+        z: v3(xz + dw.y, yz - dw.x, -xx - yy),
+    };
+    let (f, s) = (a * b.m + k * b.mc, &b.s);
+    // Components of the integral of r x k r: (k s)_zy - (k s)_yz and so on.
+    let n = v3(
+        k.x.z * s.xy - k.x.y * s.xz + k.y.z * s.yy - k.z.y * s.zz + (zz - yy) * s.yz,
+        k.y.x * s.yz - k.y.z * s.xy + k.z.x * s.zz - k.x.z * s.xx + (xx - zz) * s.xz,
+        k.z.y * s.xz - k.z.x * s.yz + k.x.y * s.xx - k.y.x * s.yy + (yy - xx) * s.xy,
+    );
+    Local { w, dw, k, a, f, n: n + b.mc.cross(a) }
 }

@@ -7,7 +7,7 @@ use nalgebra::{Const, Dyn, Matrix, RawStorageMut};
 
 use crate::data::Data;
 use crate::model::{Frame, Kind, Model};
-use crate::space::V3;
+use crate::space::{V3, ZERO};
 
 /// A matrix with 6 rows, the caller's: owned or a view into a larger one.
 type SixRows<S> = Matrix<f64, Const<6>, Dyn, S>;
@@ -25,7 +25,7 @@ impl Model {
         let base = &data.places[0];
         let d = at - base.r;
         for (k, e) in [base.a.x, base.a.y, base.a.z].into_iter().enumerate() {
-            set(jacobian, k, e, V3::default());
+            set(jacobian, k, e, ZERO);
             set(jacobian, k + 3, e.cross(d), e);
         }
     }
@@ -43,15 +43,18 @@ impl Model {
     where
         S: RawStorageMut<f64, Const<6>, Dyn>,
     {
-        jacobian.fill(0.0);
-        let mut k = body;
-        while k != 0 {
-            let (p, column) = (&data.places[k], first + k - 1);
-            match self.bodies[k].kind {
-                Kind::Along(_) => set(jacobian, column, p.e, V3::default()),
+        let mut on_path = body;
+        for (k, (body, p)) in self.bodies.iter().zip(&data.places).enumerate().skip(1).rev() {
+            let column = first + k - 1;
+            if k != on_path {
+                set(jacobian, column, ZERO, ZERO);
+                continue;
+            }
+            on_path = body.parent;
+            match body.kind {
+                Kind::Along(_) => set(jacobian, column, p.e, ZERO),
                 _ => set(jacobian, column, p.e.cross(at - p.r), p.e),
             }
-            k = self.bodies[k].parent;
         }
     }
 }
@@ -61,12 +64,12 @@ fn point(data: &Data, frame: &Frame) -> V3 {
     p.r + p.a * frame.r
 }
 
+#[inline(always)]
 fn set<S>(jacobian: &mut SixRows<S>, column: usize, linear: V3, angular: V3)
 where
     S: RawStorageMut<f64, Const<6>, Dyn>,
 {
-    let values = linear.array().into_iter().chain(angular.array());
-    for (to, x) in jacobian.column_mut(column).iter_mut().zip(values) {
-        *to = x;
-    }
+    let mut to = jacobian.column_mut(column);
+    (to[0], to[1], to[2]) = (linear.x, linear.y, linear.z);
+    (to[3], to[4], to[5]) = (angular.x, angular.y, angular.z);
 }

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use crate::data::{Composite, Data, with_turn};
 use crate::inverse::choose;
 use crate::model::Model;
-use crate::space::{Sym3, V3};
+use crate::space::{Twin, V3};
 use crate::turn::Turn;
 
 impl Model {
@@ -41,7 +41,7 @@ impl Model {
         for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
             let (own, j) = (composites[k], &joints[k]);
             let p = &mut composites[body.parent];
-            with_turn!(body, j, &oblique[k], t => carry(t, &own, self.carried[k], j.r, p));
+            with_turn!(body, j, &oblique[k], t => carry(t, &own, self.carried[k], j.offset(), p));
         }
     }
 
@@ -64,19 +64,19 @@ impl Model {
             let (own, j) = (composites[k], &joints[k]);
             let (p, members, mass) = (&mut composites[body.parent], self.subtrees.of(k), self.carried[k]);
             with_turn!(body, j, &oblique[k], t => {
-                momenta[k] = momentum(t, &own, mass).map(|x| x * body.sign);
-                pass(t, j.r, body.sign, members, momenta, m);
-                carry(t, &own, mass, j.r, p);
+                momenta[k] = momentum(t, &own, mass, body.sign);
+                pass(t, j.offset(), body.sign, members, momenta, m);
+                carry(t, &own, mass, j.offset(), p);
             });
         }
         base_rows(self.mass(), &composites[0], m);
         for g in gyros {
             g.add_momenta(&spins[g.index], momenta);
         }
-        for (k, [f, n]) in momenta.iter().enumerate().skip(1) {
+        for (k, t) in momenta.iter().enumerate().skip(1) {
             let at = self.paths.start[k + 5];
-            m[at..at + 3].copy_from_slice(&f.array());
-            m[at + 3..at + 6].copy_from_slice(&n.array());
+            let six = [t.x[0], t.y[0], t.z[0], t.x[1], t.y[1], t.z[1]];
+            m[at..at + 6].copy_from_slice(&six);
         }
         for g in &self.gyros {
             g.add_entries(&spins[g.index], m);
@@ -86,40 +86,44 @@ impl Model {
 
 /// Takes the entries of a joint out of the momenta that pass it, and carries these to the parent's origin and axes.
 #[inline(always)]
-fn pass<T: Turn>(t: T, r: V3, sign: f64, members: &[[u32; 2]], momenta: &mut [[V3; 2]], m: &mut [f64]) {
+fn pass<T: Turn>(t: T, r: Option<V3>, sign: f64, members: &[[u32; 2]], momenta: &mut [Twin], m: &mut [f64]) {
     for &[d, at] in members {
-        let [f, n] = momenta[d as usize];
-        m[at as usize] = t.part(choose(t, n, f)) * sign;
-        let f = t.up(f);
-        momenta[d as usize] = [f, t.up(n) + r.cross(f)];
+        let Some(momentum) = momenta.get_mut(d as usize) else { continue };
+        m[at as usize] = t.part(choose(t, momentum.second(), momentum.first())) * sign;
+        let mut up = t.up_twin(*momentum);
+        if let Some(r) = r {
+            up.add_second(r.cross(up.first()));
+        }
+        *momentum = up;
     }
 }
 
 /// Adds a composite of mass `m` whose origin is at `r` in the parent's frame.
 #[inline(always)]
-fn carry<T: Turn>(t: T, own: &Composite, m: f64, r: V3, p: &mut Composite) {
+fn carry<T: Turn>(t: T, own: &Composite, m: f64, r: Option<V3>, p: &mut Composite) {
     let mc = t.up(own.mc);
+    p.mc += mc;
+    p.i += t.up_sym(own.i);
+    let Some(r) = r else { return };
     // Moments about a point r away: I + m (r.r E - r r^T) + (2 r.mc E - r mc^T - mc r^T), with u = mc + m r/2.
+    p.mc += r * m;
     let u = mc + r * (0.5 * m);
-    let d = 2.0 * r.dot(u);
-    let (ru, s) =
-        (Sym3 { xx: r.x * u.x, yy: r.y * u.y, zz: r.z * u.z, xy: 0.0, xz: 0.0, yz: 0.0 }, t.up_sym(own.i));
-    p.mc += mc + r * m;
-    p.i.xx += s.xx + d - 2.0 * ru.xx;
-    p.i.yy += s.yy + d - 2.0 * ru.yy;
-    p.i.zz += s.zz + d - 2.0 * ru.zz;
-    p.i.xy += s.xy - (r.x * u.y + r.y * u.x);
-    p.i.xz += s.xz - (r.x * u.z + r.z * u.x);
-    p.i.yz += s.yz - (r.y * u.z + r.z * u.y);
+    let (xx, yy, zz) = (r.x * u.x, r.y * u.y, r.z * u.z);
+    p.i.xx += 2.0 * (yy + zz);
+    p.i.yy += 2.0 * (xx + zz);
+    p.i.zz += 2.0 * (xx + yy);
+    p.i.xy -= r.x * u.y + r.y * u.x;
+    p.i.xz -= r.x * u.z + r.z * u.x;
+    p.i.yz -= r.y * u.z + r.z * u.y;
 }
 
-/// Momentum and moment of momentum about the body's origin for unit speed of its joint.
+/// Momentum and moment of momentum about the body's origin for unit speed of its joint's coordinate.
 #[inline(always)]
-fn momentum<T: Turn>(t: T, c: &Composite, m: f64) -> [V3; 2] {
+fn momentum<T: Turn>(t: T, c: &Composite, m: f64, sign: f64) -> Twin {
     if T::SLIDES {
-        [t.plus(V3::default(), m), t.across(c.mc, 1.0)]
+        Twin::new(t.plus(V3::default(), m * sign), t.across(c.mc, sign))
     } else {
-        [t.across(c.mc, -1.0), t.column(c.i)]
+        Twin::new(t.across(c.mc, -sign), t.column(c.i) * sign)
     }
 }
 

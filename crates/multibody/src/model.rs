@@ -51,9 +51,17 @@ pub(crate) struct Body {
     pub mc: V3,
     /// Moments of inertia about the origin, geared rotors locked, free ones free about their axes.
     pub i: Sym3,
+    /// Second moments of mass about the origin, the integral of r r^T, as `i` says them.
+    pub s: Sym3,
 }
 
 impl Body {
+    /// Second moments of mass of the moments of inertia `i`: tr(i)/2 E - i.
+    pub(crate) fn second_moments(i: Sym3) -> Sym3 {
+        let half = 0.5 * (i.xx + i.yy + i.zz);
+        Sym3 { xx: half - i.xx, yy: half - i.yy, zz: half - i.zz, xy: -i.xy, xz: -i.xz, yz: -i.yz }
+    }
+
     pub(crate) fn is_finite(&self) -> bool {
         (self.r.dot(self.r) + self.mc.dot(self.mc)).is_finite()
     }

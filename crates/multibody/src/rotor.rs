@@ -24,8 +24,8 @@ use nalgebra::Vector3;
 use crate::data::{Data, Local};
 use crate::error::ModelError;
 use crate::inertia::{Inertia, least};
-use crate::model::Model;
-use crate::space::{Sym3, V3};
+use crate::model::{Body, Model};
+use crate::space::{Sym3, Twin, V3};
 
 /// A rotor that [`Model::with_rotors`] puts into a link.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,8 +86,9 @@ impl Model {
             }
             let gyro = self.gyro(rotor).map_err(fault)?;
             if gyro.geared.is_empty() {
-                let i = &mut self.bodies[gyro.body].i;
-                *i += gyro.inertia() * -1.0;
+                let stator = &mut self.bodies[gyro.body];
+                stator.i += gyro.inertia() * -1.0;
+                stator.s = Body::second_moments(stator.i);
             }
             self.rotor_names.push(rotor.name.clone());
             self.gyros.push(gyro);
@@ -280,9 +281,9 @@ impl Gyro {
 
     /// Adds the moment of momentum for unit speed of each joint that turns the rotor, in the stator's axes.
     #[inline(always)]
-    pub(crate) fn add_momenta(&self, spin: &Spin, momenta: &mut [[V3; 2]]) {
+    pub(crate) fn add_momenta(&self, spin: &Spin, momenta: &mut [Twin]) {
         for (&k, c) in self.geared.iter().zip(spin.ratio) {
-            momenta[k][1] += self.e * (self.j * c);
+            momenta[k].add_second(self.e * (self.j * c));
         }
     }
 

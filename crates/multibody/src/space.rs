@@ -16,8 +16,17 @@ pub(crate) struct V3 {
     pub z: f64,
 }
 
+/// Two 3-vectors that undergo the same, component by component beside each other so that both fit one register: the
+/// momentum and the moment of momentum of a body, say.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Twin {
+    pub x: [f64; 2],
+    pub y: [f64; 2],
+    pub z: [f64; 2],
+}
+
 /// A 3 x 3 matrix by its columns.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Mat3 {
     pub x: V3,
     pub y: V3,
@@ -61,6 +70,31 @@ impl V3 {
     #[inline(always)]
     pub(crate) fn from_slice(s: &[f64]) -> V3 {
         v3(s[0], s[1], s[2])
+    }
+}
+
+impl Twin {
+    #[inline(always)]
+    pub(crate) fn new(a: V3, b: V3) -> Twin {
+        Twin { x: [a.x, b.x], y: [a.y, b.y], z: [a.z, b.z] }
+    }
+
+    #[inline(always)]
+    pub(crate) fn first(&self) -> V3 {
+        v3(self.x[0], self.y[0], self.z[0])
+    }
+
+    #[inline(always)]
+    pub(crate) fn second(&self) -> V3 {
+        v3(self.x[1], self.y[1], self.z[1])
+    }
+
+    /// Adds to the second.
+    #[inline(always)]
+    pub(crate) fn add_second(&mut self, v: V3) {
+        self.x[1] += v.x;
+        self.y[1] += v.y;
+        self.z[1] += v.z;
     }
 }
 

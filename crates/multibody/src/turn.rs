@@ -4,7 +4,7 @@
 //! joints of a walking robot turn about x, y or z, and a change of frame is one plane rotation: 4 products in place of
 //! 9. The kernels are written once over [`Turn`] and compiled for each kind of joint.
 
-use crate::space::{Mat3, Sym3, V3, v3};
+use crate::space::{Mat3, Sym3, Twin, V3, v3};
 
 /// A joint in its present position: rotation `R` = parent_from_child, axis `e` (the same in both frames).
 pub(crate) trait Turn: Copy {
@@ -12,6 +12,8 @@ pub(crate) trait Turn: Copy {
     const SLIDES: bool = false;
     /// R v
     fn up(self, v: V3) -> V3;
+    /// R v of both
+    fn up_twin(self, t: Twin) -> Twin;
     /// R^T v
     fn down(self, v: V3) -> V3;
     /// R S R^T
@@ -71,6 +73,13 @@ macro_rules! plane_turn {
             fn up(self, v: V3) -> V3 {
                 let ($i, $j) = turned(v.$i, v.$j, self.0, self.1);
                 V3 { $i, $j, ..v }
+            }
+            #[inline(always)]
+            fn up_twin(self, t: Twin) -> Twin {
+                let (a, b, c, s) = (t.$i, t.$j, self.0, self.1);
+                let $i = [c * a[0] - s * b[0], c * a[1] - s * b[1]];
+                let $j = [s * a[0] + c * b[0], s * a[1] + c * b[1]];
+                Twin { $i, $j, ..t }
             }
             #[inline(always)]
             fn down(self, v: V3) -> V3 {
@@ -138,6 +147,10 @@ impl Turn for About<'_> {
         *self.0 * v
     }
     #[inline(always)]
+    fn up_twin(self, t: Twin) -> Twin {
+        Twin::new(*self.0 * t.first(), *self.0 * t.second())
+    }
+    #[inline(always)]
     fn down(self, v: V3) -> V3 {
         self.0.t_mul(v)
     }
@@ -184,6 +197,10 @@ impl Turn for Along {
     #[inline(always)]
     fn up(self, v: V3) -> V3 {
         v
+    }
+    #[inline(always)]
+    fn up_twin(self, t: Twin) -> Twin {
+        t
     }
     #[inline(always)]
     fn down(self, v: V3) -> V3 {
