@@ -5,6 +5,8 @@
 //! parts along each joint on the way are the entries of row k. Entries between different branches are zero and are
 //! never touched.
 
+use std::ops::Range;
+
 use nalgebra::DMatrix;
 
 use crate::data::{Composite, Data, with_turn};
@@ -24,10 +26,19 @@ impl Model {
     pub fn mass_matrix_here<'d>(&self, data: &'d mut Data) -> &'d DMatrix<f64> {
         self.rows(data);
         let Data { m, mass_matrix, .. } = data;
-        let full = mass_matrix.as_mut_slice();
-        for (&x, &[at, mirror]) in m.iter().zip(&self.paths.full) {
-            full[at as usize] = x;
-            full[mirror as usize] = x;
+        let (nv, full) = (self.nv(), mass_matrix.as_mut_slice());
+        let mut put = |entries: Range<usize>| {
+            for (&x, &[at, mirror]) in m[entries.clone()].iter().zip(&self.paths.full[entries]) {
+                full[at as usize] = x;
+                full[mirror as usize] = x;
+            }
+        };
+        put(0..self.paths.start[6]);
+        (6..nv).for_each(|k| put(self.paths.joints(k)));
+        for k in 6..nv {
+            let six = &m[self.paths.start[k]..][..6];
+            full[nv * k..][..6].copy_from_slice(six);
+            (0..6).for_each(|c| full[k + nv * c] = six[c]);
         }
         &data.mass_matrix
     }
@@ -35,9 +46,7 @@ impl Model {
     /// Composite bodies, from the tips to the base.
     pub(crate) fn composites(&self, data: &mut Data) {
         let Data { joints, oblique, composites, .. } = data;
-        for (c, b) in composites.iter_mut().zip(&self.bodies) {
-            *c = Composite { mc: b.mc, i: b.i };
-        }
+        composites.copy_from_slice(&self.own);
         for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
             let (own, j) = (composites[k], &joints[k]);
             let p = &mut composites[body.parent];
@@ -51,9 +60,7 @@ impl Model {
     pub(crate) fn rows(&self, data: &mut Data) {
         let Data { joints, oblique, composites, momenta, spins, m, .. } = data;
         let mut gyros = &self.gyros[..];
-        for (c, b) in composites.iter_mut().zip(&self.bodies) {
-            *c = Composite { mc: b.mc, i: b.i };
-        }
+        composites.copy_from_slice(&self.own);
         for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
             while let Some((g, before)) = gyros.split_last()
                 && g.body == k

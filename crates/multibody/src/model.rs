@@ -3,6 +3,7 @@
 use nalgebra::{IsometryMatrix3, Vector3};
 
 use crate::builder::kernel_rotation;
+use crate::data::Composite;
 use crate::error::ModelError;
 use crate::rotor::Gyro;
 use crate::space::{Mat3, Sym3, V3};
@@ -26,6 +27,8 @@ pub(crate) const G: V3 = V3 { x: 0.0, y: 0.0, z: -9.81 };
 #[derive(Clone, Debug)]
 pub struct Model {
     pub(crate) bodies: Vec<Body>,
+    /// First moments and moments of inertia of the bodies by themselves, as the composite sweeps begin.
+    pub(crate) own: Vec<Composite>,
     pub(crate) links: Vec<Link>,
     pub(crate) joint_names: Vec<String>,
     /// \[kg\] Mass of the body and everything it carries.
@@ -60,6 +63,10 @@ impl Body {
     pub(crate) fn second_moments(i: Sym3) -> Sym3 {
         let half = 0.5 * (i.xx + i.yy + i.zz);
         Sym3 { xx: half - i.xx, yy: half - i.yy, zz: half - i.zz, xy: -i.xy, xz: -i.xz, yz: -i.yz }
+    }
+
+    pub(crate) fn own(&self) -> Composite {
+        Composite { mc: self.mc, i: self.i }
     }
 
     pub(crate) fn is_finite(&self) -> bool {
@@ -113,10 +120,11 @@ impl Model {
         for k in (1..bodies.len()).rev() {
             carried[bodies[k].parent] += carried[k];
         }
+        let own = bodies.iter().map(Body::own).collect();
         let paths = Paths::new(&bodies);
         let subtrees = Subtrees::new(&bodies, &paths);
         let (rotor_names, gyros) = (Vec::new(), Vec::new());
-        Model { bodies, links, joint_names, carried, paths, subtrees, rotor_names, gyros }
+        Model { bodies, own, links, joint_names, carried, paths, subtrees, rotor_names, gyros }
     }
 
     /// Number of joints n.

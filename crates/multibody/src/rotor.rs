@@ -89,6 +89,7 @@ impl Model {
                 let stator = &mut self.bodies[gyro.body];
                 stator.i += gyro.inertia() * -1.0;
                 stator.s = Body::second_moments(stator.i);
+                self.own[gyro.body] = stator.own();
             }
             self.rotor_names.push(rotor.name.clone());
             self.gyros.push(gyro);

@@ -42,6 +42,12 @@ impl Paths {
         p
     }
 
+    /// Entries of a joint's row beyond the base's six.
+    #[inline(always)]
+    pub(crate) fn joints(&self, k: usize) -> std::ops::Range<usize> {
+        self.start[k] + 6..self.start[k + 1]
+    }
+
     #[inline(always)]
     pub(crate) fn row(&self, k: usize) -> std::ops::Range<usize> {
         self.start[k]..self.start[k + 1]
