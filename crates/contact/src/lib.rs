@@ -7,7 +7,7 @@
 //! | one node with any damping | [`node`] |
 //! | bricks, their mesh, the matrices of a pad | [`hexahedron`], [`mesh`], [`layer`], [`coupling`] |
 //! | a pad on a segment | [`pad`] |
-//! | its solvers: over forces (algorithm 1), over velocities | `prox`, `velocity` |
+//! | its solvers: over forces (algorithm 1), over velocities | [`solver`]: `prox`, `velocity` |
 
 pub mod coupling;
 pub mod frame;
@@ -20,6 +20,7 @@ pub mod node;
 pub mod pad;
 pub mod point;
 mod prox;
+pub mod solver;
 mod velocity;
 
 pub use law::{Method, Report, Settings};

@@ -64,6 +64,29 @@ impl Memory {
         self.states.fill(State::Open);
     }
 
+    /// Begins a new problem: no node touches yet.
+    pub fn begin(&mut self) {
+        self.active.clear();
+    }
+
+    /// Next node of the problem, in ascending order: its c \[m/s\], and the normal of the ground if it touches.
+    pub fn set(&mut self, node: usize, c: Vector3<f64>, normal: Option<Vector3<f64>>) {
+        self.c[node] = c;
+        self.touching[node] = normal.is_some();
+        match normal {
+            Some(normal) => {
+                self.normals[node] = normal;
+                self.active.push(node);
+            }
+            None => self.f[node] = Vector3::zeros(),
+        }
+    }
+
+    /// \[m/s\] y of a node.
+    pub fn rate(&self, node: usize) -> Vector3<f64> {
+        Vector3::new(self.y[node][0], self.y[node][1], self.y[node][2])
+    }
+
     /// \[N\] Force of the ground on each contact node, in the axes of the segment.
     pub fn forces(&self) -> &[Vector3<f64>] {
         &self.f

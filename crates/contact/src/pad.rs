@@ -16,11 +16,10 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::frame::frame;
-use crate::law::{Method, Report, Settings, TOUCHING};
+use crate::law::{Report, Settings, TOUCHING};
 use crate::layer::Layer;
 use crate::memory::Memory;
-use crate::{prox, velocity};
+use crate::solver;
 
 /// The ground at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +109,7 @@ impl Pad {
                 ..Outcome::default()
             };
         }
-        let report = find(&self.layer, memory, settings);
+        let report = solver::solve(&self.layer.coupling, memory, settings);
         self.rates(memory, d, dd);
         let (force, moment) = self.sum(memory, d);
         Outcome { force, moment, report }
@@ -125,27 +124,20 @@ impl Pad {
         twist: &Twist,
         settings: &Settings,
     ) -> bool {
-        memory.active.clear();
+        memory.begin();
         let mut sum = 0.0;
         for (i, ground) in ground.iter().enumerate().take(self.layer.contacts()) {
             let own = Vector3::new(d[3 * i], d[3 * i + 1], d[3 * i + 2]);
             let w = twist.linear + twist.angular.cross(&(self.place(i) + own));
             let mut c = w - own / self.layer.alpha;
-            memory.touching[i] = false;
-            if let Some(Ground { gap, normal }) = ground {
-                c += normal * (settings.recovery * gap.min(0.0));
-                if *gap < TOUCHING {
-                    memory.touching[i] = true;
-                    memory.active.push(i);
-                }
-                memory.normals[i] = *normal;
-                sum += gap;
+            let mut normal = None;
+            if let Some(ground) = ground.filter(|ground| ground.gap < TOUCHING) {
+                c += ground.normal * (settings.recovery * ground.gap.min(0.0));
+                normal = Some(ground.normal);
             }
-            if !memory.touching[i] {
-                memory.f[i] = Vector3::zeros();
-            }
-            sum += c.x + c.y + c.z;
-            memory.c[i] = c;
+            // A gap that is no number must not pass for a distance.
+            sum += ground.map_or(0.0, |ground| ground.gap) + c.x + c.y + c.z;
+            memory.set(i, c, normal);
         }
         sum.is_finite()
     }
@@ -189,24 +181,4 @@ impl Pad {
         }
         (force, moment)
     }
-}
-
-/// Share of the sole that must be at the ground for sweeps over velocities to be the faster ones.
-const MOST: f64 = 0.5;
-
-fn find(layer: &Layer, memory: &mut Memory, settings: &Settings) -> Report {
-    let coupling = &layer.coupling;
-    let most = memory.active.len() as f64 > MOST * coupling.nodes() as f64;
-    let over_velocities = settings.method == Method::Velocity || (settings.method == Method::Fastest && most);
-    if over_velocities {
-        let report = velocity::solve(coupling, memory, settings);
-        if report.converged || settings.method == Method::Velocity {
-            return report;
-        }
-    }
-    for k in 0..memory.active.len() {
-        let i = memory.active[k];
-        memory.frames[i] = frame(&memory.normals[i]);
-    }
-    prox::solve(coupling, memory, settings)
 }

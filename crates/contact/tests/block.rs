@@ -159,26 +159,54 @@ fn a_wide_layer_is_confined() {
     assert!((layer.block_stiffness(0) / shear - 1.0).abs() < 0.02, "{}", layer.block_stiffness(0) / shear);
 }
 
-/// How much too stiff the pad of the thesis (5 x 5 x 1 bricks) is when pressed, against a fine mesh, and what nearly
-/// incompressible rubber does to it: full integration locks, mean dilatation does not. Figures as measured, to 10 % of
-/// the excess, so that a change of the element shows.
+/// \[N/m\] The sole pressed by a plane without friction: its nodes are free along the plane.
+fn slippery_stiffness(layer: &Layer) -> f64 {
+    let k = layer.stiffness();
+    let (held, free): (Vec<_>, Vec<_>) = (0..k.nrows()).partition(|i| i % 3 == 2 && i / 3 < layer.contacts());
+    let part = |rows: &[usize], columns: &[usize]| {
+        DMatrix::from_fn(rows.len(), columns.len(), |i, j| k[(rows[i], columns[j])])
+    };
+    let ones = DVector::from_element(held.len(), 1.0);
+    let give = part(&free, &free).cholesky().unwrap().solve(&(part(&free, &held) * &ones));
+    (part(&held, &held) * ones - part(&held, &free) * give).sum()
+}
+
+/// The pad of the thesis has no nodes between sole and segment. Glued to a plane it can nowhere bulge: it is confined
+/// exactly, for every brick, and that much too stiff. This is the price of the mesh, small for nu = 0.3, but at 0.45 the
+/// pad is twice as stiff as rubber and at 0.49 seven times.
+#[test]
+fn one_brick_between_glued_planes_is_confined() {
+    for (poisson, excess) in [(0.3, 0.109), (0.45, 0.97), (0.49, 5.6)] {
+        for volume in KINDS {
+            let nu = poisson;
+            let confined = 5e5 * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) * 0.06 * 0.03 / 0.012;
+            let coarse = pad([5, 5, 1], poisson, volume).block_stiffness(2);
+            assert!((coarse / confined - 1.0).abs() < 1e-12, "{coarse} {confined}");
+            let fine = pad([8, 8, 3], poisson, Volume::Mean).block_stiffness(2);
+            let more = coarse / fine - 1.0;
+            assert!((more / excess - 1.0).abs() < 0.1, "nu {nu}: {more} too stiff");
+        }
+    }
+}
+
+/// Locking: pressed by a plane it slides on, the pad may bulge at its sole, and full integration hinders it where nu
+/// comes near 1/2; mean dilatation does less so. Refinement brings both down to one value, from above.
 #[test]
 fn stiffness_falls_with_refinement_and_locks_with_nu() {
-    for (poisson, full, mean) in [(0.3, 0.0, 0.0), (0.45, 0.0, 0.0), (0.49, 0.0, 0.0)] {
-        let of = |bricks, volume| pad(bricks, poisson, volume).block_stiffness(2);
-        let fine = of([10, 10, 4], Volume::Mean);
-        let excess = |volume| of([5, 5, 1], volume) / fine - 1.0;
-        let (f, m) = (excess(Volume::Full), excess(Volume::Mean));
+    for (poisson, full, mean) in [(0.3, 0.0434, 0.0173), (0.49, 1.0, 1.0)] {
+        let of = |bricks, volume| slippery_stiffness(&pad(bricks, poisson, volume));
+        let fine = of([8, 8, 3], Volume::Mean);
+        let excess = |bricks, volume| of(bricks, volume) / fine - 1.0;
+        let (f, m) = (excess([5, 5, 1], Volume::Full), excess([5, 5, 1], Volume::Mean));
         println!(
-            "nu {poisson}: full {f:.3} mean {m:.3}; full 10x10x4 {:.3}",
-            of([10, 10, 4], Volume::Full) / fine - 1.0
+            "{poisson} {f} {m} ; 5x5x2 {} {}",
+            excess([5, 5, 2], Volume::Full),
+            excess([5, 5, 2], Volume::Mean)
         );
-        println!(
-            "   full 5x5x2 {:.3} mean {:.3}",
-            of([5, 5, 2], Volume::Full) / fine - 1.0,
-            of([5, 5, 2], Volume::Mean) / fine - 1.0
+        assert!(
+            (f / full - 1.0).abs() < 0.1 && (m / mean - 1.0).abs() < 0.1,
+            "nu {poisson}: {f} and {m} too stiff"
         );
-        assert!((f - full).abs() < 10.1 * full.abs() + 10.0 && (m - mean).abs() < 10.0);
     }
 }
 

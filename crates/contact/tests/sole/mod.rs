@@ -18,15 +18,17 @@ pub(crate) struct Sole {
     ground: Vec<Option<Ground>>,
 }
 
+/// A layer of a pad of Lola's size.
+pub(crate) fn layer(poisson: f64, bricks: [usize; 3]) -> Layer {
+    let elasticity = Elasticity { modulus: 6e5, poisson };
+    let size = [0.06, 0.03, 0.012];
+    Layer::new(&Material { size, bricks, elasticity, volume: Volume::Full, damping_time: ALPHA }).unwrap()
+}
+
 impl Sole {
     /// A pad of Lola's size, its middle 0.1 m ahead of and 0.05 m left of the segment's origin.
     pub(crate) fn new(poisson: f64) -> Self {
-        let elasticity = Elasticity { modulus: 6e5, poisson };
-        let size = [0.06, 0.03, 0.012];
-        let material =
-            Material { size, bricks: [5, 5, 1], elasticity, volume: Volume::Full, damping_time: ALPHA };
-        let layer = Layer::new(&material).unwrap();
-        let pad = Pad::new(Arc::new(layer), Vector3::new(0.1, 0.05, 0.0));
+        let pad = Pad::new(Arc::new(layer(poisson, [5, 5, 1])), Vector3::new(0.1, 0.05, 0.0));
         let states = 3 * pad.layer().nodes();
         let ground = vec![None; pad.layer().contacts()];
         Self { memory: pad.memory(), pad, d: vec![0.0; states], dd: vec![0.0; states], ground }

@@ -1,0 +1,32 @@
+//! Forces between coupled nodes and the ground, by the method of the settings.
+//!
+//! The problem is one [`Coupling`] and, per node, c and the normal of the ground if it touches; both stand in the
+//! [`Memory`], which also holds the answer. What a pad adds is where they come from: [`crate::pad`].
+
+use crate::coupling::Coupling;
+use crate::frame::frame;
+use crate::law::{Method, Report, Settings};
+use crate::memory::Memory;
+use crate::{prox, velocity};
+
+/// Share of the nodes that must touch for sweeps over velocities to be the faster ones.
+const MOST: f64 = 0.5;
+
+/// Finds forces and velocities of the nodes that were [set](Memory::set), starting from those of the last call.
+pub fn solve(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> Report {
+    let most = memory.active.len() as f64 > MOST * coupling.nodes() as f64;
+    let mut before = 0;
+    if settings.method == Method::Velocity || (settings.method == Method::Fastest && most) {
+        let report = velocity::solve(coupling, memory, settings);
+        if report.converged || settings.method == Method::Velocity {
+            return report;
+        }
+        before = report.sweeps;
+    }
+    for k in 0..memory.active.len() {
+        let i = memory.active[k];
+        memory.frames[i] = frame(&memory.normals[i]);
+    }
+    let report = prox::solve(coupling, memory, settings);
+    Report { sweeps: before + report.sweeps, ..report }
+}
