@@ -67,7 +67,9 @@ mod tests {
     fn takes_no_room_beyond_the_longest_dead_time() {
         for delay in [1e9, f64::INFINITY, f64::NAN] {
             let mut latency = Latency::new(delay, delay, 1e-3);
-            assert_eq!((0..3000).map(|i| latency.pass(i)).max(), Some(if delay > 0.0 { 2000 } else { 2999 }));
+            // In the 3000th cycle: the value held 1000 cycles before, itself taken in cycle 1000.
+            let last = (0..3000).map(|i| latency.pass(i)).last();
+            assert_eq!(last, Some(if delay > 0.0 { 1000 } else { 2999 }));
             assert!(latency.waiting.capacity() <= 1000);
         }
     }

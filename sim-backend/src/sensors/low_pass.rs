@@ -100,7 +100,8 @@ mod tests {
     #[test]
     fn step_and_ramp_are_exact() {
         let (mut step, mut ramp) = (LowPass::new(T, H), LowPass::new(T, H));
-        (step.filter([0.0]), ramp.filter([0.0]));
+        step.filter([0.0]);
+        ramp.filter([0.0]);
         for k in 1..200 {
             let t = f64::from(k) * H;
             let [y] = step.filter([1.0]);
