@@ -70,6 +70,8 @@ pub struct Foot {
     pub sensor: [f64; 3],
     /// Contact points: link and position in it \[m\].
     pub points: Vec<(String, [f64; 3])>,
+    /// Contact pads: link and position of the middle of the sole in it \[m\]; axes as the link's. May be none.
+    pub pads: Vec<(String, [f64; 3])>,
     /// Index of the toe joint, if the foot has one.
     pub toe: Option<usize>,
 }
@@ -85,6 +87,21 @@ pub struct Contact {
     pub damping_time: f64,
     /// \[1\] Coulomb friction against the ground.
     pub friction: f64,
+    /// The same elements as blocks of rubber, for the models that resolve them.
+    pub pads: Option<Pads>,
+}
+
+/// Contact pads, all equal: a block of bricks, bonded to its link at the top.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pads {
+    /// \[m\] x, y, z.
+    pub size: [f64; 3],
+    /// Bricks along x, y, z.
+    pub bricks: [usize; 3],
+    /// \[N/m^2\] Young's modulus.
+    pub modulus: f64,
+    /// \[1\] Poisson's ratio.
+    pub poisson: f64,
 }
 
 /// \[kg\] How far the URDF's masses may be from the robot's total mass.
@@ -172,14 +189,27 @@ impl Contact {
         tangential_stiffness: f64::NAN,
         damping_time: f64::NAN,
         friction: f64::NAN,
+        pads: None,
     };
 
     fn build(table: &Section<'_, '_>) -> Self {
         Self {
+            pads: table.has("pads").then(|| table.table("pads", Pads::build)).flatten(),
             normal_stiffness: table.number("normal_stiffness", "N/m", POSITIVE),
             tangential_stiffness: table.number("tangential_stiffness", "N/m", POSITIVE),
             damping_time: table.number("damping_time", "s", NOT_NEGATIVE),
             friction: table.number("friction", "", 0.0..=2.0),
+        }
+    }
+}
+
+impl Pads {
+    fn build(table: &Section<'_, '_>) -> Self {
+        Self {
+            size: table.numbers("size", "m", 1e-4..=1.0),
+            bricks: table.numbers("bricks", "", 1.0..=20.0).map(|n: f64| n as usize),
+            modulus: table.number("modulus", "N/m^2", POSITIVE),
+            poisson: table.number("poisson", "", 0.0..=0.499),
         }
     }
 }
@@ -193,6 +223,7 @@ impl Foot {
         sensor_link: String::new(),
         sensor: [f64::NAN; 3],
         points: Vec::new(),
+        pads: Vec::new(),
         toe: None,
     };
 
@@ -202,6 +233,7 @@ impl Foot {
         let toe = table.has("toe").then(|| joint_index(table, "toe", &table.text("toe"), joints)).flatten();
         let point = |row: &Section<'_, '_>| (row.text("link"), row.numbers("at", "m", -1.0..=1.0));
         let points = table.tables("points", point);
+        let pads = if table.has("pads") { table.tables("pads", point) } else { Vec::new() };
         if points.len() < 3 {
             table
                 .problem("points", format!("there are {} contact points; it takes at least 3", points.len()));
@@ -213,6 +245,7 @@ impl Foot {
             sensor_link: table.text("sensor_link"),
             sensor: table.numbers("sensor", "m", -1.0..=1.0),
             points,
+            pads,
             toe,
         }
     }

@@ -60,11 +60,23 @@ pub enum EventCode {
     SensorNotFinite = 25,
     /// A parameter got another value; detail: its number.
     ParameterSet = 26,
+    /// A simulated drive left what its model holds for; detail: its number. Its gear and friction stay as they were.
+    DriveFault = 27,
+    /// Contact forces of the simulated soles were not found to their tolerance; detail: sweeps.
+    ContactNotConverged = 28,
+    /// An object of the scene cannot do what its schedule says, because the robot touches it; detail: its number.
+    ObjectHeld = 29,
+    /// An object of the scene goes on with its schedule; detail: its number.
+    ObjectResumed = 30,
+    /// The simulation lost its numbers: a state is not finite. The robot stays where it was last; detail: the state.
+    Diverged = 31,
+    /// A simulated sensor left its range; detail: how many numbers.
+    SensorClipped = 32,
 }
 
 impl EventCode {
     /// All codes, in order of their numbers.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 33] = [
         Self::None,
         Self::Started,
         Self::Ended,
@@ -92,6 +104,12 @@ impl EventCode {
         Self::MessagesLost,
         Self::SensorNotFinite,
         Self::ParameterSet,
+        Self::DriveFault,
+        Self::ContactNotConverged,
+        Self::ObjectHeld,
+        Self::ObjectResumed,
+        Self::Diverged,
+        Self::SensorClipped,
     ];
 
     /// The code of a number from a record.
