@@ -1,6 +1,7 @@
 #!/bin/sh
 # Times the dynamics of Lola beside Pinocchio's C++ in the same run, with the differences of the results beside the times.
-# Compiles the C++ with optimisation for this machine's processor; the Rust side is a plain release build. Needs g++.
+# First our plain release build, then ours optimised for this machine's processor, as the C++ always is: only the second
+# compares like with like. Both are pinned to one core. Needs g++.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$here/../.."
@@ -13,4 +14,10 @@ if [ ! -x "$program" ] || [ "$source" -nt "$program" ]; then
     g++ -std=c++17 -O3 -march=native -DNDEBUG -w -DBOOST_MPL_LIMIT_LIST_SIZE=30 -DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS \
         -isystem "$prefix/include" -isystem "$prefix/include/eigen3" "$source" -o "$program"
 fi
-exec cargo bench --quiet --package multibody --bench dynamics -- --peer "$PWD/$program" "$@"
+run() {
+    echo "$1"
+    taskset -c 1 cargo bench --quiet --package multibody --bench dynamics -- --peer "$PWD/$program"
+}
+run "plain release build"
+export RUSTFLAGS="-C target-cpu=native" CARGO_TARGET_DIR=target/native
+run "the same flags as the peer: optimised for this processor"
