@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`push`] | which impulse does the walking robot survive? |
 //! | [`speed`] | how fast is each part, and how accurate is it at that speed? |
+//! | [`figures_of_thesis`] | are the figures of the thesis found again? |
 //! | [`cycles`] | how well did the processes of a run keep real time? |
 //!
 //! They work on [`chain`], all steps in one process, and judge by [`figures`].
@@ -11,5 +12,6 @@
 pub mod chain;
 pub mod cycles;
 pub mod figures;
+pub mod figures_of_thesis;
 pub mod push;
 pub mod speed;
