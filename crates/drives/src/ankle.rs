@@ -59,6 +59,7 @@ pub struct AnkleGeometry {
 /// Transmission of one of the two motors of an ankle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ankle {
+    geometry: AnkleGeometry,
     adduction: Vector3<f64>,
     flexion: Vector3<f64>,
     /// s^a_r_pc - s_r_top \[m\]
@@ -92,6 +93,7 @@ impl Ankle {
     pub fn new(geometry: &AnkleGeometry) -> Result<Self, OutOfDomain> {
         let unit = |v: [f64; 3]| Vector3::from(v).normalize();
         let mut ankle = Self {
+            geometry: *geometry,
             adduction: unit(geometry.adduction_axis),
             flexion: unit(geometry.flexion_axis),
             base: Vector3::from(geometry.ankle) - Vector3::from(geometry.screw_top),
@@ -105,6 +107,11 @@ impl Ankle {
         };
         ankle.rest = ankle.nut([0.0; 2], [0.0; 2])?.l;
         Ok(ankle)
+    }
+
+    /// What it was made of.
+    pub fn geometry(&self) -> &AnkleGeometry {
+        &self.geometry
     }
 
     /// Angle, ratio and bias of the motor at joint angles `q` \[rad\] and speeds `qd` \[rad/s\].

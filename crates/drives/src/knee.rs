@@ -40,6 +40,7 @@ pub struct KneeGeometry {
 /// Transmission of a knee.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knee {
+    geometry: KneeGeometry,
     /// a
     axis: Vector3<f64>,
     /// t_r_pc - t_r_B \[m\]
@@ -65,8 +66,23 @@ impl Knee {
         let r = base + attachment;
         let side = axis.cross(&attachment).dot(&r).signum();
         let least = LEAST_LEVER * (base.norm() + attachment.norm());
-        let knee = Self { axis, base, attachment, turns: TAU / geometry.lead, rest: r.norm(), side, least };
+        let geometry = *geometry;
+        let knee = Self {
+            geometry,
+            axis,
+            base,
+            attachment,
+            turns: TAU / geometry.lead,
+            rest: r.norm(),
+            side,
+            least,
+        };
         knee.at(0.0, 0.0).map(|_| knee)
+    }
+
+    /// What it was made of.
+    pub fn geometry(&self) -> &KneeGeometry {
+        &self.geometry
     }
 
     /// Angle, ratio and bias of the motor at joint angle `q` \[rad\] and speed `qd` \[rad/s\].

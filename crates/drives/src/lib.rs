@@ -5,9 +5,10 @@
 //!   [`Ankle`] slider-crank with belt (2.22)-(2.33); first and second derivatives; errors where a linkage has none.
 //! - [`Friction`]: of gears (2.61) and roller screws (2.65)-(2.68), with the load torque (2.63), (2.64).
 //! - [`Elasticity`]: of harmonic drives (2.69).
+//! - [`lookup`]: tables of a linkage with linear interpolation, as Lola's local controllers use.
 //! - [`fit`]: friction parameters from efficiencies (2.62); off-line, it allocates.
 //!
-//! Pure mathematics: no file, no clock, and but for [`fit`] no allocation after construction. All quantities of a motor are those of its
+//! Pure mathematics: no file, no clock, and no allocation after construction. All quantities of a motor are those of its
 //! rotor relative to its stator: angle, speed \[rad/s\] and torque count about the rotor's axis, not about the joint's.
 
 mod ankle;
@@ -16,6 +17,7 @@ pub mod fit;
 mod friction;
 mod inverse;
 mod knee;
+pub mod lookup;
 mod motor;
 mod transmission;
 mod turn;

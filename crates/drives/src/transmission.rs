@@ -57,6 +57,11 @@ pub enum OutOfDomain {
         /// \[rad\] Least distance of a motor angle that was met.
         residual: f64,
     },
+    /// A joint angle lies outside of a look-up table.
+    Table {
+        /// \[rad\] The angle.
+        angle: f64,
+    },
     /// A joint angle or speed is not finite, or too large for a finite result.
     NotFinite,
 }
@@ -113,6 +118,9 @@ impl fmt::Display for OutOfDomain {
                     f,
                     "no joint angles belong to these motor angles; the nearest miss them by {residual:.3e} rad"
                 )
+            }
+            Self::Table { angle } => {
+                write!(f, "joint angle {angle:.3} rad lies outside of the look-up table")
             }
             Self::NotFinite => write!(f, "joint angle or speed not finite"),
         }

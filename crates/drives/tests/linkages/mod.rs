@@ -1,5 +1,7 @@
 //! Linkages to test with: the sample geometries of errata 1 (V3, V4), and legs of the size of Lola's.
 
+#![allow(dead_code, reason = "not every test needs all of them")]
+
 use drives::{Ankle, AnkleGeometry, Knee, KneeGeometry, Transmission};
 
 /// V3.
@@ -33,7 +35,6 @@ pub(crate) fn sample_ankle(knee_share: f64) -> AnkleGeometry {
 }
 
 /// Knee of a leg, axis mirrored for `side` = -1.
-#[allow(dead_code, reason = "not every test needs both")]
 pub(crate) fn knee(side: f64) -> Transmission {
     let geometry = KneeGeometry {
         axis: [0.0, side, 0.0],
@@ -46,7 +47,6 @@ pub(crate) fn knee(side: f64) -> Transmission {
 }
 
 /// Inner (`share` = 1) or outer (-1) ankle motor of the right leg.
-#[allow(dead_code, reason = "not every test needs both")]
 pub(crate) fn ankle(share: f64) -> Ankle {
     let geometry = AnkleGeometry {
         adduction_axis: [-1.0, 0.0, 0.0],
