@@ -179,6 +179,15 @@ enum StudyTask {
     },
     /// How fast simulation, planner and stabilizer are, and how accurate at that speed.
     Speed,
+    /// Figures of the thesis that compare two walks: 5.2, 4.17, 9.1.
+    Thesis {
+        /// Only this figure.
+        #[arg(long)]
+        figure: Option<String>,
+        /// Where the pictures go.
+        #[arg(long, value_name = "DIR", default_value = "runs/thesis")]
+        out: PathBuf,
+    },
     /// How well the processes keep real time, beside cyclictest before and after.
     Realtime {
         /// The scene that is run.
@@ -327,7 +336,7 @@ fn sim(setup: &Setup, json: bool, log: Option<PathBuf>) -> Result<ExitCode, Box<
 }
 
 fn study(config: &std::path::Path, what: StudyTask, json: bool) -> Result<ExitCode, Box<dyn Error>> {
-    use studies::{cycles, push, speed};
+    use studies::{cycles, figures_of_thesis, push, speed};
     let (object, table) = match what {
         StudyTask::Push { scene, instants } => {
             let report = push::run(config, scene.as_deref(), instants as usize)?;
@@ -336,6 +345,10 @@ fn study(config: &std::path::Path, what: StudyTask, json: bool) -> Result<ExitCo
         StudyTask::Speed => {
             let report = speed::run(config)?;
             (serde_json::to_string(&report)?, speed::table(&report))
+        }
+        StudyTask::Thesis { figure, out } => {
+            let report = figures_of_thesis::run(config, figure.as_deref(), &out)?;
+            (serde_json::to_string(&report)?, figures_of_thesis::table(&report))
         }
         StudyTask::Realtime { scene, cyclictest, out } => {
             let report = realtime_study(config, scene, cyclictest, &out)?;
