@@ -248,7 +248,7 @@ impl Train {
             lead: lead(table),
         };
         let made = Knee::new(&geometry).map(Transmission::Knee);
-        Self::linkage(table, made, moved.into_iter().collect(), joints)
+        Self::linkage(table, &made, moved.into_iter().collect(), joints)
     }
 
     fn ankle(table: &Section<'_, '_>, joints: &[Joint]) -> Self {
@@ -268,18 +268,18 @@ impl Train {
             knee_share: table.number("knee_share", "", -1.0..=1.0),
         };
         let made = Ankle::new(&geometry).map(Transmission::Ankle);
-        Self::linkage(table, made, moved.into_iter().flatten().collect(), joints)
+        Self::linkage(table, &made, moved.into_iter().flatten().collect(), joints)
     }
 
     /// A linkage that works over the ranges of its joints.
     fn linkage(
         table: &Section<'_, '_>,
-        made: Result<Transmission, OutOfDomain>,
+        made: &Result<Transmission, OutOfDomain>,
         moved: Vec<usize>,
         joints: &[Joint],
     ) -> Self {
         let [direct, indirect] = table.numbers("efficiency", "", 0.01..=1.0);
-        let tried = made.and_then(|t| {
+        let tried = (*made).and_then(|t| {
             if moved.len() == t.joints() { over_range(&t, &moved, joints).map(|()| t) } else { Ok(t) }
         });
         let transmission = tried.unwrap_or_else(|e| {

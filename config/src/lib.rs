@@ -12,6 +12,7 @@
 //! Only this crate names TOML.
 
 pub mod drive;
+pub mod efficiency;
 mod error;
 mod file;
 pub mod gait;

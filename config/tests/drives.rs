@@ -88,15 +88,12 @@ fn linkages_close_in_the_robot() {
                     };
                     // The nut at angles 0, by bisection above the foot's attachment.
                     let (mut near, mut far) = (0.0, 0.5);
-                    while far - near > 1e-15 {
+                    for _ in 0..60 {
                         let middle = 0.5 * (near + far);
                         if coupler(&zero, middle) > g.coupler {
-                            near = middle
+                            near = middle;
                         } else {
-                            far = middle
-                        }
-                        if middle == near && middle == far {
-                            break;
+                            far = middle;
                         }
                     }
                     let length = coupler(&q, near + screw * g.lead / TAU);

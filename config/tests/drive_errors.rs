@@ -1,0 +1,161 @@
+//! What a person reads whose drives or efficiencies cannot be.
+
+use std::fs;
+use std::path::PathBuf;
+
+use config::Robot;
+use config::efficiency::Efficiencies;
+
+/// A file of the shipped configuration with replacements, in a directory of its own, gone when dropped.
+struct Spoilt(PathBuf);
+
+impl Spoilt {
+    fn new(test: &str, file: &str, replacements: &[(&str, &str)]) -> Self {
+        let to = std::env::temp_dir().join(format!("gangwerk-drives-{test}-{}", std::process::id()));
+        fs::create_dir_all(&to).unwrap();
+        let from = config::root(None).join(file);
+        let mut text = fs::read_to_string(&from).unwrap();
+        for (old, new) in replacements {
+            assert!(text.contains(old), "{file} does not contain {old}");
+            text = text.replacen(old, new, 1);
+        }
+        fs::write(to.join(from.file_name().unwrap()), text).unwrap();
+        Self(to)
+    }
+}
+
+impl Drop for Spoilt {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The error of Lola's file with these replacements holds these texts and no more problems.
+fn refused(test: &str, replacements: &[(&str, &str)], wanted: &[&str]) {
+    let spoilt = Spoilt::new(test, "robots/lola/robot.toml", replacements);
+    let error = Robot::load(&spoilt.0).unwrap_err();
+    for text in wanted {
+        assert!(error.to_string().contains(text), "{text}\nis not in\n{error}");
+    }
+    assert_eq!(error.problems.len(), wanted.len(), "{error}");
+}
+
+#[test]
+fn names_that_do_not_exist() {
+    refused(
+        "names",
+        &[
+            ("gear = \"hfuc_20_100\"", "gear = \"hfuc_20_10\""),
+            ("motor = \"cha_25\"", "motor = \"cha_255\""),
+            ("flexion = \"right_ankle_flexion\"", "flexion = \"right_ankle_flexoin\""),
+        ],
+        &[
+            "drive[0].gear: there is no [gear.hfuc_20_10]; the nearest is `hfuc_20_100`",
+            "drive[4].motor: there is no [motor.cha_255]; the nearest is `cha_25`",
+            "drive[6].ankle.flexion: there is no joint `right_ankle_flexoin`; the nearest is `right_ankle_flexion`",
+        ],
+    );
+}
+
+#[test]
+fn values_that_cannot_be() {
+    refused(
+        "values",
+        &[
+            ("ratio = -100.0", "ratio = 0.5"),
+            (
+                "stiffness = [4.7e3, 6.1e3, 7.1e3], knees = [2.0, 6.9]",
+                "stiffness = [4.7e3, 6.1e3, -7.1e3], knees = [7.0, 6.9]",
+            ),
+            ("axis = [0.0, 0.0, 1.0]", "axis = [0.0, 0.5, 1.0]"),
+            ("lead = 0.010", "lead = 0.0"),
+            ("efficiency = [0.860, 0.858]", "efficiency = [1.2, 0.858]"),
+        ],
+        &[
+            "gear.hfuc_11_100.ratio: 0.5 is not allowed; a gear's ratio is at least 1, or at most -1",
+            "gear.hfuc_14_100.elasticity.stiffness[2]: -7100 is not allowed; it takes a number above 0 N m/rad",
+            "gear.hfuc_14_100.elasticity.knees: its lower end 7 must lie below its upper end 6.9 N m",
+            "drive[0].axis: has the length 1.118034; it takes a unit vector",
+            "drive[5].knee.lead: 0 is not allowed; a screw's lead is not zero",
+            "drive[5].knee.efficiency[0]: 1.2 is not allowed; it takes a number from 0.01 to 1",
+        ],
+    );
+}
+
+/// A coupler of 50 mm stands across the screw within the ankle's range; a lever straight behind the pivot has its dead
+/// point within the knee's.
+#[test]
+fn linkages_with_dead_points_in_the_range() {
+    refused(
+        "dead",
+        &[
+            ("coupler = 0.180", "coupler = 0.010"),
+            ("attachment = [0.0349, 0.0, 0.0548]", "attachment = [0.0602, 0.0, -0.0244]"),
+        ],
+        &[
+            "drive[5].knee.attachment: knee linkage at its dead point: lever = ",
+            "drive[6].ankle.attachment: ankle linkage at its dead point: margin D = ",
+        ],
+    );
+}
+
+/// HFUC-32-50 has a load torque up to 1601 rad/s of the motor: 32 rad/s of the joint.
+#[test]
+fn joint_too_fast_for_the_friction_of_its_gear() {
+    refused(
+        "fast",
+        &[(
+            "name = \"right_hip_flexion\"\nrange_deg = [-87.0, 39.9]\nspeed_limit = 9.4",
+            "name = \"right_hip_flexion\"\nrange_deg = [-87.0, 39.9]\nspeed_limit = 33.0",
+        )],
+        &[
+            "drive[4].gear: its friction holds below 1601 rad/s of the motor, but speed_limit of `right_hip_flexion` asks for 1650",
+        ],
+    );
+}
+
+#[test]
+fn drives_in_another_order() {
+    let (a, b) = (
+        "name = \"pelvis_rotation\"\njoint = \"pelvis_rotation\"",
+        "name = \"pelvis_adduction\"\njoint = \"pelvis_adduction\"",
+    );
+    let c = "name = \"x\"\njoint = \"pelvis_rotation\"";
+    refused(
+        "order",
+        &[(b, c), (a, b)],
+        &[
+            "`pelvis_adduction`, must drive joint[0], `pelvis_rotation`",
+            "`x`, must drive joint[1], `pelvis_adduction`",
+        ],
+    );
+}
+
+#[test]
+fn robot_without_drives_loads() {
+    let text = fs::read_to_string(config::root(None).join("robots/lola/robot.toml")).unwrap();
+    let rows = text.find("[[drive]]").unwrap();
+    let end = text[rows..].find("\n[sensors").map_or(text.len(), |at| rows + at);
+    let spoilt = Spoilt::new("none", "robots/lola/robot.toml", &[(&text[rows..end], "")]);
+    fs::copy(config::root(None).join("robots/lola/lola.urdf"), spoilt.0.join("lola.urdf")).unwrap();
+    assert!(Robot::load(&spoilt.0).unwrap().drives.is_empty());
+}
+
+#[test]
+fn efficiencies() {
+    let file = "gears/hfuc_25_100.toml";
+    let shipped = Efficiencies::load(&config::root(None).join(file)).unwrap();
+    assert_eq!(shipped.points.len(), 40);
+    assert!((shipped.points[0].load - 0.067).abs() < 1e-12 && (shipped.points[0].speed - 52.36).abs() < 1e-2);
+    let replacements = [("[500, 13.4, ", "[500, -13.4, "), ("[1000, 6.7, 0.", "[1000, 6.7, 3.")];
+    let spoilt = Spoilt::new("table", file, &replacements);
+    let error = Efficiencies::load(&spoilt.0.join("hfuc_25_100.toml")).unwrap_err().to_string();
+    for text in [
+        "hfuc_25_100.toml: 2 problems",
+        "points: row 1: load torque = -13.4 is not allowed; it takes above 0 to 100000 N m at the output",
+        "points: row 10: efficiency = 3.",
+        "is not allowed; it takes above 0 to 1",
+    ] {
+        assert!(error.contains(text), "{text}\nis not in\n{error}");
+    }
+}
