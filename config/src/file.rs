@@ -26,12 +26,20 @@ impl Hash {
 
 /// The text of a file; an error says what lies beside it instead.
 pub(crate) fn text(path: &Path, hash: &mut Hash) -> Result<String, ConfigError> {
-    let text = std::fs::read_to_string(path).map_err(|e| {
-        let hint = if e.kind() == std::io::ErrorKind::NotFound { neighbours(path) } else { String::new() };
-        ConfigError::of_file(path, format!("cannot be read: {e}{hint}"))
-    })?;
+    let text = std::fs::read_to_string(path).map_err(|e| unreadable(path, &e))?;
     hash.add(text.as_bytes());
     Ok(text)
+}
+
+/// Adds a file that another part reads to the hash.
+pub(crate) fn include(path: &Path, hash: &mut Hash) -> Result<(), ConfigError> {
+    hash.add(&std::fs::read(path).map_err(|e| unreadable(path, &e))?);
+    Ok(())
+}
+
+fn unreadable(path: &Path, e: &std::io::Error) -> ConfigError {
+    let hint = if e.kind() == std::io::ErrorKind::NotFound { neighbours(path) } else { String::new() };
+    ConfigError::of_file(path, format!("cannot be read: {e}{hint}"))
 }
 
 fn neighbours(path: &Path) -> String {

@@ -23,6 +23,7 @@ mod section;
 pub mod sensors;
 mod setup;
 pub mod system;
+pub mod terrain;
 pub mod timeline;
 
 pub use error::{ConfigError, Problem};

@@ -10,6 +10,7 @@ use crate::error::ConfigError;
 use crate::file::{self, Hash};
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 use crate::sensors::Sensors;
+use crate::terrain::{self, TerrainObject};
 
 /// `scenes/NAME.toml`.
 #[derive(Clone, Debug)]
@@ -36,6 +37,8 @@ pub struct Scene {
     pub duration: f64,
     /// Seed of everything random.
     pub seed: u64,
+    /// What lies on the ground.
+    pub objects: Vec<TerrainObject>,
     /// Errors of the sensors.
     pub sensors: Sensors,
     /// Commands by time \[s\], ascending.
@@ -71,7 +74,10 @@ impl Scene {
     pub(crate) fn load_hashed(path: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
         let text = file::text(path, hash)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        section::read(path, &text, |top| Self::build(top, name))
+        let mut scene = section::read(path, &text, |top| Self::build(top, name))?;
+        let root = path.parent().and_then(Path::parent).unwrap_or(Path::new("."));
+        terrain::find(&mut scene.objects, root, hash)?;
+        Ok(scene)
     }
 
     fn build(top: &Section<'_, '_>, name: String) -> Self {
@@ -87,6 +93,7 @@ impl Scene {
             start_pose: top.text("start_pose"),
             duration: top.number("duration", "s", POSITIVE),
             seed: top.integer("seed", 0..=u64::MAX),
+            objects: top.tables("object", terrain::object),
             sensors: sensors(top),
             commands: top.tables("command", command),
             pushes: top.tables("push", push),

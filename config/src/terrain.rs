@@ -1,0 +1,116 @@
+//! What lies on the ground of a scene: boxes and meshes, some of them in time.
+
+use std::path::{Component, Path, PathBuf};
+
+use crate::error::ConfigError;
+use crate::file::{self, Hash};
+use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
+
+/// One `[[object]]` of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TerrainObject {
+    /// In messages.
+    pub name: String,
+    /// What it is.
+    pub shape: Shape,
+    /// Where it is at the beginning.
+    pub pose: TerrainPose,
+    /// \[1\] Coefficient of friction, if not that of the robot's soles.
+    pub friction: Option<f64>,
+    /// \[s\] First moment it is there.
+    pub appears: f64,
+    /// \[s\] First moment it is not there any more; infinite if it stays.
+    pub vanishes: f64,
+    /// Where it is later, by time \[s\], ascending; it moves straight from one pose to the next.
+    pub poses: Vec<(f64, TerrainPose)>,
+}
+
+/// The surface of an object.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// \[m\] Lengths along x, y and z; its origin is the centre.
+    Box([f64; 3]),
+    /// A file in `objects/`.
+    Mesh {
+        /// The file.
+        file: PathBuf,
+        /// \[m\] One unit of the file.
+        scale: f64,
+    },
+}
+
+/// Where an object is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TerrainPose {
+    /// \[m\] @world
+    pub position: [f64; 3],
+    /// \[rad\] Roll, pitch and yaw: turned about x, then y, then z of the world.
+    pub rotation: [f64; 3],
+}
+
+const PLACE: std::ops::RangeInclusive<f64> = -1e3..=1e3;
+
+/// One `[[object]]`.
+pub(crate) fn object(row: &Section<'_, '_>) -> TerrainObject {
+    let optional = |key: &str, unit, range, default| {
+        if row.has(key) { row.number(key, unit, range) } else { default }
+    };
+    let object = TerrainObject {
+        name: row.text("name"),
+        shape: shape(row),
+        pose: pose(row),
+        friction: row.has("friction").then(|| row.number("friction", "", 0.0..=10.0)),
+        appears: optional("appears", "s", NOT_NEGATIVE, 0.0),
+        vanishes: optional("vanishes", "s", POSITIVE, f64::INFINITY),
+        poses: row.tables("pose", |row| (row.number("time", "s", POSITIVE), pose(row))),
+    };
+    if object.vanishes <= object.appears {
+        row.problem("vanishes", format!("must be later than it appears, {} s", object.appears));
+    }
+    for pair in object.poses.windows(2) {
+        if pair[1].0 <= pair[0].0 {
+            let text =
+                format!("its time {} s must be later than {} s of the one above it", pair[1].0, pair[0].0);
+            row.problem("pose", text);
+        }
+    }
+    object
+}
+
+fn shape(row: &Section<'_, '_>) -> Shape {
+    match (row.has("box"), row.has("mesh")) {
+        (true, false) => Shape::Box(row.numbers("box", "m", 1e-3..=1e3)),
+        (false, true) => {
+            let file = PathBuf::from(row.text("mesh"));
+            if !file.components().all(|part| matches!(part, Component::Normal(_))) {
+                row.problem("mesh", "must lie in the directory `objects` of the configuration");
+            }
+            let scale = if row.has("scale") { row.number("scale", "m", POSITIVE) } else { 1.0 };
+            Shape::Mesh { file, scale }
+        }
+        _ => {
+            row.problem(
+                "box",
+                "an object takes either `box`, three lengths in m, or `mesh`, a file in `objects`",
+            );
+            Shape::Box([f64::NAN; 3])
+        }
+    }
+}
+
+fn pose(row: &Section<'_, '_>) -> TerrainPose {
+    let rotation =
+        if row.has("rotation") { row.numbers("rotation", "deg", -360.0..=360.0) } else { [0.0; 3] };
+    TerrainPose { position: row.numbers("position", "m", PLACE), rotation: rotation.map(f64::to_radians) }
+}
+
+/// Makes the files of meshes those in `objects/` of the configuration directory `root`, and adds their bytes to `hash`.
+pub(crate) fn find(objects: &mut [TerrainObject], root: &Path, hash: &mut Hash) -> Result<(), ConfigError> {
+    for object in objects {
+        if let Shape::Mesh { file, .. } = &mut object.shape {
+            *file = root.join("objects").join(&*file);
+            file::include(file, hash)?;
+        }
+    }
+    Ok(())
+}
