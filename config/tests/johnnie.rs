@@ -28,11 +28,14 @@ fn masses_sum_to_the_40_kg_of_the_thesis() {
     robot::has_joints_and_masses(NAME, 10_500, &ORDER);
 }
 
-/// Thesis, table 2.5: 21 mechanical degrees of freedom in the full model, 24 of contact; and 17 joints on the robot.
+/// Thesis, table 2.5: 21 mechanical degrees of freedom in the full model, 26 with elastic gears, 24 of contact, 15
+/// electrical; and 17 joints on the robot.
 #[test]
 fn counts_are_those_of_table_2_5() {
     let (johnnie, model) = robot::load(NAME);
     assert_eq!(model.nv(), 21);
+    assert_eq!(johnnie.drives.len(), 15);
+    assert_eq!(model.nv() + johnnie.drives.iter().filter(|drive| drive.elasticity.is_some()).count(), 26);
     assert_eq!(3 * johnnie.feet.iter().map(|foot| foot.points.len()).sum::<usize>(), 24);
     let urdf = urdf_rs::read_from_string(&johnnie.urdf).unwrap();
     assert_eq!(urdf.joints.len(), 17);
