@@ -193,7 +193,7 @@ fn one_brick_between_glued_planes_is_confined() {
 /// comes near 1/2; mean dilatation does less so. Refinement brings both down to one value, from above.
 #[test]
 fn stiffness_falls_with_refinement_and_locks_with_nu() {
-    for (poisson, full, mean) in [(0.3, 0.0434, 0.0173), (0.49, 1.0, 1.0)] {
+    for (poisson, full, mean) in [(0.3, 0.0434, 0.0173), (0.49, 2.5, 0.0537)] {
         let of = |bricks, volume| slippery_stiffness(&pad(bricks, poisson, volume));
         let fine = of([8, 8, 3], Volume::Mean);
         let excess = |bricks, volume| of(bricks, volume) / fine - 1.0;
