@@ -92,6 +92,17 @@ enum Task {
         #[arg(long, global = true)]
         json: bool,
     },
+    /// Fit friction parameters of a gear to a table of efficiencies, with the older model beside the newer one.
+    FitFriction {
+        /// A table, for example config/gears/hfuc_25_100.toml.
+        file: PathBuf,
+        /// Where the picture goes; default: the table's name with .png, in the current directory.
+        #[arg(long, value_name = "PNG")]
+        out: Option<PathBuf>,
+        /// One JSON object on standard output, and no picture unless --out is given.
+        #[arg(long)]
+        json: bool,
+    },
     /// What this machine gives to real time, what is missing, and how to get it.
     Doctor,
     /// One process of a run; `gangwerk run` starts them.
@@ -256,6 +267,10 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             Ok(ExitCode::SUCCESS)
         }
         Task::Study { what, json } => study(&config, what, json),
+        Task::FitFriction { file, out, json } => {
+            fit_friction(&file, out, json)?;
+            Ok(ExitCode::SUCCESS)
+        }
         Task::Doctor => Ok(doctor()),
         process => daemon(process),
     }
@@ -395,6 +410,19 @@ fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Erro
     }
     for reason in &pictures.skipped {
         eprintln!("not drawn: {reason}");
+    }
+    Ok(())
+}
+
+fn fit_friction(file: &std::path::Path, out: Option<PathBuf>, json: bool) -> Result<(), Box<dyn Error>> {
+    let report = cli::fit_friction::run(file)?;
+    println!("{}", if json { report.json() } else { report.table() });
+    let beside = || file.file_stem().map(|stem| PathBuf::from(stem).with_extension("png"));
+    if let Some(out) = out.or_else(|| if json { None } else { beside() }) {
+        report.draw(&out)?;
+        if !json {
+            println!("{}", out.display());
+        }
     }
     Ok(())
 }

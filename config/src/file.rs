@@ -45,6 +45,7 @@ fn unreadable(path: &Path, e: &std::io::Error) -> ConfigError {
 fn neighbours(path: &Path) -> String {
     let wanted = path.extension();
     let Some(directory) = path.parent() else { return String::new() };
+    let directory = if directory.as_os_str().is_empty() { Path::new(".") } else { directory };
     let Ok(entries) = std::fs::read_dir(directory) else {
         return format!("; {} is no directory either, so check --config", directory.display());
     };
