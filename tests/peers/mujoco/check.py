@@ -169,8 +169,9 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         scratch = Path(scratch)
         states(made, scratch)
-        mass = dynamics(our_peer, peer, scratch, "lola_flight", (ROBOT / robot["urdf"]).read_text(), robot["torso"], "flight")
-        chain = dynamics(our_peer, peer, scratch, "chain_free", (HERE / "chain.urdf").read_text(), "torso", "chain")
+        lola, limbs = (ROBOT / robot["urdf"]).read_text(), (HERE / "chain.urdf").read_text()
+        mass = dynamics(our_peer, peer, scratch, "lola_flight", lola, robot["torso"], "flight")
+        chain = dynamics(our_peer, peer, scratch, "chain_free", limbs, "torso", "chain")
     flight(peer, "lola_flight", "flight", mass)
     flight(peer, "chain_free", "chain", chain)
     flight(peer, "chain_fixed", "chain_fixed", None)

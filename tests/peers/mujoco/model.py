@@ -17,9 +17,9 @@ points touch the floor only. The toes' points hang on the toes, so a point stays
 
 Contact of lola_layer: MuJoCo's constraint force is f = (a_ref - a)/R with a_ref = -(b/d) v - (k/d) r (its "direct"
 format at constant impedance d), R = A (1 - d)/d and A the inverse inertia of the body at the point. With
-k = K A (1 - d), b = B A (1 - d): f = -K r - B v - a d/(A (1 - d)): the spring and damper of the robot, and a thousandth of
-the body's inertia at d = 0.001. A tangential spring it cannot have: a loaded point creeps against the robot's tangential
-damper (impratio = B_T / B_N, with B = damping_time K in robot.toml).
+k = K A (1 - d), b = B A (1 - d): f = -K r - B v - a d/(A (1 - d)): the spring and damper of the robot, and a
+thousandth of the body's inertia at d = 0.001. A tangential spring it cannot have: a loaded point creeps against the
+robot's tangential damper (impratio = B_T / B_N, with B = damping_time K in robot.toml).
 """
 
 import sys

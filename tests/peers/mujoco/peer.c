@@ -37,7 +37,7 @@
 enum { LARGEST = 64, MOST_RUNS = 101 };
 
 struct options {
-  const char *scene, *integrator;
+  const char* scene;
   int runs;
   double step, duration, before, slope, direction, friction; // angles in degrees
 };
@@ -54,6 +54,11 @@ struct seen {
   double peak_normal, lowest, impulse, penetration, drift, middle_speed[3];
   int contacts, rows;
 };
+
+// In the order of mjtIntegrator, mjtCone, mjtSolver.
+static const char* const integrators[] = {"Euler", "RK4", "implicit", "implicitfast", "discrete"};
+static const char* const cones[] = {"pyramidal", "elliptic"};
+static const char* const solvers[] = {"PGS", "CG", "Newton"};
 
 static void fail(const char* what, const char* which) {
   fprintf(stderr, "peer: %s: %s\n", what, which);
@@ -81,9 +86,6 @@ static double number(const char* key, const char* value) {
 }
 
 static void set(struct options* o, mjOption* opt, const char* argument) {
-  static const char* const integrators[] = {"Euler", "RK4", "implicit", "implicitfast", "discrete"};
-  static const char* const cones[] = {"pyramidal", "elliptic"};
-  static const char* const solvers[] = {"PGS", "CG", "Newton"};
   static const char* const scenes[] = {"dynamics", "flight", "settle", "stand", "incline"};
   char key[32];
   const char* value = strchr(argument, '=');
@@ -91,7 +93,7 @@ static void set(struct options* o, mjOption* opt, const char* argument) {
   snprintf(key, sizeof key, "%.*s", (int)(value - argument), argument);
   value++;
   if (!strcmp(key, "scene")) o->scene = scenes[choice(key, value, scenes, 5)];
-  else if (!strcmp(key, "integrator")) o->integrator = integrators[opt->integrator = choice(key, value, integrators, 5)];
+  else if (!strcmp(key, "integrator")) opt->integrator = choice(key, value, integrators, 5);
   else if (!strcmp(key, "cone")) opt->cone = choice(key, value, cones, 2);
   else if (!strcmp(key, "solver")) opt->solver = choice(key, value, solvers, 3);
   else if (!strcmp(key, "impratio")) opt->impratio = number(key, value);
@@ -268,18 +270,20 @@ static double energy(const mjModel* m, mjData* d) {
 }
 
 // Momentum, and angular momentum about the centre of gravity, in the world.
-static void print_momentum(const mjModel* m, mjData* d, const char* linear, const char* angular) {
+static void print_momentum(const mjModel* m, mjData* d) {
   mjtNum p[3];
   mj_subtreeVel(m, d);
   mju_scl3(p, d->subtree_linvel, m->body_subtreemass[0]);
-  print_numbers(linear, p, 3);
-  print_numbers(angular, d->subtree_angmom, 3);
+  print_numbers("momentum", p, 3);
+  print_numbers("angular_momentum", d->subtree_angmom, 3);
 }
 
 // M = T' M_mujoco T and h = T' (h_mujoco + M_mujoco dT/dt v), rows and columns in our order.
-static void print_dynamics(const mjModel* m, mjData* d, const struct state* s) {
+static void print_dynamics(const mjModel* m, const struct state* s) {
   const int nv = m->nv;
+  mjData* d = mj_makeData(m);
   static double mass[LARGEST * LARGEST], t[LARGEST * LARGEST], mt[LARGEST * LARGEST], h[LARGEST], ours[LARGEST];
+  put(m, d, s);
   mj_forward(m, d);
   mj_fullM(m, d, mass);
   mju_copy(h, d->qfrc_bias, nv);
@@ -304,6 +308,7 @@ static void print_dynamics(const mjModel* m, mjData* d, const struct state* s) {
   print_numbers("mass_matrix", mass, nv * nv);
   print_numbers("nonlinear_terms", ours, nv);
   print_value("mass_kg", m->body_subtreemass[0]);
+  mj_deleteData(d);
 }
 
 static void print_contact(const mjModel* m, const mjData* d, const struct seen* seen, double before_height) {
@@ -339,78 +344,84 @@ static void print_incline(const mjData* d, const struct options* o, const struct
   print_value("acceleration_exact", mju_max(0, 9.81 * (sin(slope) - o->friction * cos(slope))));
 }
 
+// Gravity and friction of the incline; the plane of the model stays level.
+static void tilt(mjModel* m, const struct options* o) {
+  const double slope = o->slope * DEGREE, direction = o->direction * DEGREE, down = 9.81 * sin(slope);
+  const mjtNum g[3] = {down * cos(direction), down * sin(direction), -9.81 * cos(slope)};
+  mju_copy3(m->opt.gravity, g);
+  for (int k = 0; k < m->ngeom; k++) m->geom_friction[3 * k] = o->friction;
+}
+
+static void print_options(const mjModel* m, const struct options* o) {
+  printf(",\"integrator\":\"%s\",\"cone\":\"%s\"", integrators[m->opt.integrator], cones[m->opt.cone]);
+  printf(",\"solver\":\"%s\",\"impratio\":%g", solvers[m->opt.solver], m->opt.impratio);
+  printf(",\"noslip\":%d,\"runs\":%d", m->opt.noslip_iterations, o->runs);
+  print_value("step_s", o->step);
+  print_value("duration_s", o->duration);
+  print_value("before_s", o->before);
+}
+
+// Runs the motion, with the time of every run, and prints everything about it.
+static void simulate(const mjModel* m, const struct options* o, struct state* s) {
+  mjData *start = mj_makeData(m), *d = mj_makeData(m);
+  put(m, start, s);
+  const double height = s->q[2], energy_start = energy(m, start);
+  put(m, start, s);
+  const long count = steps(o->duration, o->step), before = move(m, start, steps(o->before, o->step));
+
+  double cpu[MOST_RUNS];
+  long done = 0;
+  for (int r = 0; r < o->runs; r++) {
+    mj_copyData(d, m, start);
+    const double begun = cpu_now();
+    done = move(m, d, count);
+    cpu[r] = (cpu_now() - begun) / (done > 0 ? done : 1);  // of a step, so that a lost run has a cost too
+  }
+  qsort(cpu, o->runs, sizeof cpu[0], ascending);
+  print_options(m, o);
+  printf(",\"steps\":%ld", before + done);
+  print_value("cpu_s_per_s", cpu[o->runs / 2] / o->step);
+  print_value("cpu_s_per_s_min", cpu[0] / o->step);
+  print_value("steps_per_s", 1 / cpu[o->runs / 2]);
+  print_value("energy_start_j", energy_start);
+  printf(",\"diverged\":%s", diverged(d) ? "true" : "false");
+  if (diverged(d)) {
+    print_value("diverged_at_s", d->time);
+    printf(",\"state\":null");
+  } else {
+    struct seen seen = {0};
+    watch(m, start, count, o->step, &seen);
+    get(m, d, s);
+    print_state(s);
+    if (m->nu > 0) print_contact(m, start, &seen, height);
+    if (!strcmp(o->scene, "incline")) print_incline(d, o, &seen);
+    print_value("energy_j", energy(m, d));
+    print_momentum(m, d);
+  }
+  mj_deleteData(start);
+  mj_deleteData(d);
+}
+
 int main(int argc, char** argv) {
   if (argc < 4) fail("usage", "peer MODEL.mjb STATE.txt scene=SCENE [KEY=VALUE...]; see peer.c");
   mju_setLogHandler(report);
   mjModel* m = mj_loadModel(argv[1], NULL);
   if (!m || m->nv > LARGEST) fail("no model, or too large", argv[1]);
-  struct options o = {NULL, NULL, 5, 1e-3, 1, 0, 20, 0, 0.8};
+  struct options o = {NULL, 5, 1e-3, 1, 0, 20, 0, 0.8};
   set(&o, &m->opt, "integrator=Euler");
   for (int i = 3; i < argc; i++) set(&o, &m->opt, argv[i]);
   if (!o.scene) fail("missing", "scene=SCENE");
   if (!(o.step > 0) || !(o.duration >= o.step) || o.before < 0) fail("step, duration, before", "out of range");
   if (o.runs < 1 || o.runs > MOST_RUNS) fail("runs", "1..101");
   m->opt.timestep = o.step;
-  if (!strcmp(o.scene, "incline")) {
-    const double slope = o.slope * DEGREE, direction = o.direction * DEGREE, down = 9.81 * sin(slope);
-    const mjtNum g[3] = {down * cos(direction), down * sin(direction), -9.81 * cos(slope)};
-    mju_copy3(m->opt.gravity, g);
-    for (int k = 0; k < m->ngeom; k++) m->geom_friction[3 * k] = o.friction;
-  }
+  if (!strcmp(o.scene, "incline")) tilt(m, &o);
 
   static struct state s;
   read_state(argv[2], &s);
-  mjData *start = mj_makeData(m), *d = mj_makeData(m);
-  put(m, start, &s);
-  const double height = s.q[2], energy_start = energy(m, start);
-  put(m, start, &s);
-  const long before = steps(o.before, o.step), count = steps(o.duration, o.step);
-  long done = move(m, start, before);
-
-  double cpu[MOST_RUNS];
-  if (!strcmp(o.scene, "dynamics")) o.runs = 0;
-  for (int r = 0; r < o.runs; r++) {
-    mj_copyData(d, m, start);
-    const double begun = cpu_now();
-    const long k = move(m, d, count);
-    cpu[r] = (cpu_now() - begun) / (k > 0 ? k : 1); // per step, so that a lost run still has a cost
-    if (r == 0) done += k;
-  }
-  qsort(cpu, o.runs, sizeof cpu[0], ascending);
-
   printf("{\"peer\":\"mujoco\",\"version\":\"%s\",\"scene\":\"%s\"", mj_versionString(), o.scene);
-  if (o.runs == 0) {
-    print_dynamics(m, start, &s);
-  } else {
-    static const char* const cones[] = {"pyramidal", "elliptic"};
-    static const char* const solvers[] = {"PGS", "CG", "Newton"};
-    struct seen seen = {0};
-    printf(",\"integrator\":\"%s\",\"cone\":\"%s\",\"solver\":\"%s\"", o.integrator, cones[m->opt.cone],
-           solvers[m->opt.solver]);
-    printf(",\"impratio\":%g,\"step_s\":%.17g,\"duration_s\":%.17g,\"before_s\":%.17g,\"steps\":%ld,\"runs\":%d",
-           m->opt.impratio, o.step, o.duration, o.before, done, o.runs);
-    print_value("cpu_s_per_s", cpu[o.runs / 2] / o.step);
-    print_value("cpu_s_per_s_min", cpu[0] / o.step);
-    print_value("steps_per_s", 1 / cpu[o.runs / 2]);
-    print_value("energy_start_j", energy_start);
-    mjData* watched = mj_copyData(NULL, m, start);
-    watch(m, watched, count, o.step, &seen);
-    if (diverged(d)) {
-      printf(",\"diverged\":true,\"diverged_at_s\":%.17g,\"state\":null}\n", d->time);
-      return 0;
-    }
-    printf(",\"diverged\":false");
-    get(m, d, &s);
-    print_state(&s);
-    if (m->nu > 0) print_contact(m, watched, &seen, height);
-    if (!strcmp(o.scene, "incline")) print_incline(d, &o, &seen);
-    print_value("energy_j", energy(m, d));
-    print_momentum(m, d, "momentum", "angular_momentum");
-    mj_deleteData(watched);
-  }
+  if (!strcmp(o.scene, "dynamics")) print_dynamics(m, &s);
+  else simulate(m, &o, &s);
   printf("}\n");
-  mj_deleteData(start);
-  mj_deleteData(d);
   mj_deleteModel(m);
   return 0;
 }

@@ -1,10 +1,10 @@
-"""Writes the initial states of the runs; every number follows from the formulas below, so that others can make it again.
+"""Writes the initial states of the runs; every number follows from a formula below, so that others can make it again.
 
 usage: states.py ROBOT_DIRECTORY MODEL_DIRECTORY OUTPUT_DIRECTORY
 
 A file: comments after #, then `joints NAME...`, `q ...` (base position in the world [m], base quaternion x y z w, joint
-angles [rad]), `v ...` (velocity [m/s] and angular velocity [rad/s] of the base in the base frame, joint speeds [rad/s]).
-Numbers have as many digits as it takes to read the same double again.
+angles [rad]), `v ...` (velocity [m/s] and angular velocity [rad/s] of the base in the base frame, joint speeds
+[rad/s]). Numbers have as many digits as it takes to read the same double again.
 
 flight.txt  joint k = 1, 2, ... in the order of robot.toml, with range_deg lo..hi:
               angle  = (pi/180) (lo + (hi - lo) (0.5 + 0.4 sin k)),  speed = 1.5 sin(2 k)
@@ -61,7 +61,8 @@ def stand(robot, model):
 def write(path, joints, state):
     q, v = state
     numbers = {"q": q, "v": v}
-    lines = [f"# Formula: {path.name} in tests/peers/mujoco/states.py, which wrote this file.", " ".join(["joints", *joints])]
+    lines = [f"# Formula: {path.name} in tests/peers/mujoco/states.py, which wrote this file."]
+    lines.append(" ".join(["joints", *joints]))
     lines += [" ".join([name, *(repr(float(x)) for x in row)]) for name, row in numbers.items()]
     path.write_text("\n".join(lines) + "\n")
 

@@ -2,8 +2,8 @@
 
 usage: sweep.py MADE FILE.json     (MADE: the folder that build.sh made)
 
-The file: {"peer", "version", "points": [...]}, a point being the line that peer.c prints with the names of its model and
-initial state (states/NAME.txt) added. Lost runs are points too, with "diverged": true and "state": null.
+The file: {"peer", "version", "points": [...]}, a point being the line that peer.c prints with the names of its model
+and initial state (states/NAME.txt) added. Lost runs are points too, with "diverged": true and "state": null.
 """
 
 import json
@@ -44,7 +44,8 @@ def incline():
             yield "block", "block", {**slide, "cone": cone, "direction": degrees, "step": 1e-3}
         for impratio in (1, 10, 100):
             for degrees in (0, 22.5, 45):
-                yield "block", "block", {**stick, "cone": cone, "impratio": impratio, "direction": degrees, "step": 1e-3}
+                more = {"cone": cone, "impratio": impratio, "direction": degrees}
+                yield "block", "block", {**stick, **more, "step": 1e-3}
     yield "block", "block", {**stick, "cone": "elliptic", "noslip": 3, "step": 1e-3}
     for integrator in INTEGRATORS:
         for step in (1e-4, 1e-3, 5e-3):
@@ -62,9 +63,9 @@ def main():
         arguments = [f"{key}={value}" for key, value in options.items()]
         command = [*pinned, made / "peer", made / f"{model}.mjb", HERE / f"states/{state}.txt", *arguments]
         line = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
-        noslip = {"noslip": options["noslip"]} if "noslip" in options else {}
-        points.append({**json.loads(line), "model": model, "initial": state, **noslip})
-    output.write_text(json.dumps({"peer": "mujoco", "version": points[0]["version"], "points": points}, indent=1) + "\n")
+        points.append({**json.loads(line), "model": model, "initial": state})
+    everything = {"peer": "mujoco", "version": points[0]["version"], "points": points}
+    output.write_text(json.dumps(everything, indent=1) + "\n")
     lost = sum(point["diverged"] for point in points)
     print(f"{len(points)} points, {lost} of them diverged: {output}")
 
