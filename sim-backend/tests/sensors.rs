@@ -355,7 +355,8 @@ fn steps_and_range_of_the_imu() {
     // Far from upright: four components, each within a quarter of a step, turn by no more than a step.
     let mut most = 0.0_f64;
     for i in 0..500 {
-        let o = UnitQuaternion::from_euler_angles(0.1 * f64::from(i), 0.37 * f64::from(i), 0.05 * f64::from(i));
+        let o =
+            UnitQuaternion::from_euler_angles(0.1 * f64::from(i), 0.37 * f64::from(i), 0.05 * f64::from(i));
         truth.imu.orientation = o.coords.into();
         most = most.max((o.inverse() * orientation(&once(&errors, &truth))).angle());
     }

@@ -2,7 +2,7 @@
 //!
 //! Integers by xoshiro256++ (Blackman and Vigna), seeded by splitmix64; Gaussian numbers by Marsaglia's polar method.
 //! Only operations that IEEE 754 rounds correctly are used: the logarithm of the system's library differs from machine
-//! to machine in its last bit, so [`ln`] sums its own series.
+//! to machine in its last bit, so `ln` sums its own series.
 //!
 //! Each signal has its own stream: switching one error on does not change the noise of another.
 
