@@ -3,7 +3,7 @@
 use crate::canvas::{Anchor, Canvas, Letters, Pen, Pixel};
 use crate::color::{BLACK, Color, GREY, LIGHT};
 use crate::text::{self, Weight};
-use crate::ticks::ticks;
+use crate::ticks::{powers, ticks};
 
 /// A point in the units of the axes.
 pub type Point = [f64; 2];
@@ -33,6 +33,7 @@ pub struct Chart {
     legend: Vec<(String, Key)>,
     equal: bool,
     y_axis: bool,
+    logarithmic: bool,
     height: f32,
     least_height: f64,
 }
@@ -56,6 +57,7 @@ impl Chart {
             legend: Vec::new(),
             equal: false,
             y_axis: true,
+            logarithmic: false,
             height: 300.0,
             least_height: 0.0,
         }
@@ -76,6 +78,12 @@ impl Chart {
     /// Both axes in the same scale, for maps; the height follows from the data.
     pub fn equal(mut self) -> Self {
         self.equal = true;
+        self
+    }
+
+    /// Both axes logarithmic; points that are not positive are left out.
+    pub fn logarithmic(mut self) -> Self {
+        self.logarithmic = true;
         self
     }
 
@@ -141,6 +149,12 @@ impl Chart {
         }
     }
 
+    /// Where a point is along the axes: itself, or the powers of ten; NaN where there is none.
+    fn scaled(&self, p: Point) -> Point {
+        let power = |x: f64| if x > 0.0 { x.log10() } else { f64::NAN };
+        if self.logarithmic { p.map(power) } else { p }
+    }
+
     /// Smallest rectangle around everything drawn, with a little room; `[lo, hi]` of x and of y.
     fn ranges(&self) -> [[f64; 2]; 2] {
         let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
@@ -151,11 +165,14 @@ impl Chart {
                 | Mark::Area { outline: points, .. } => points,
                 Mark::Note { .. } => continue,
             };
-            for p in points.iter().filter(|p| p[0].is_finite() && p[1].is_finite()) {
+            for p in points.iter().map(|p| self.scaled(*p)).filter(|p| p[0].is_finite() && p[1].is_finite()) {
                 for k in 0..2 {
                     range[k] = [range[k][0].min(p[k]), range[k][1].max(p[k])];
                 }
             }
+        }
+        if self.logarithmic {
+            return range.map(|[lo, hi]| if lo <= hi { [lo - 0.25, hi + 0.25] } else { [0.0, 1.0] });
         }
         let [x, y] = range.map(|[lo, hi]| if lo <= hi { [lo, hi] } else { [0.0, 1.0] });
         let x = if x[0] == x[1] { [x[0] - 0.5, x[1] + 0.5] } else { x };
@@ -185,7 +202,7 @@ impl Chart {
         self.draw_grid(canvas, &view);
         canvas.clip(Some(view.pixels));
         for mark in &self.marks {
-            draw_mark(canvas, &view, mark);
+            self.draw_mark(canvas, &view, mark);
         }
         canvas.clip(None);
         self.draw_frame(canvas, &view);
@@ -211,7 +228,7 @@ impl Chart {
     fn draw_grid(&self, canvas: &mut Canvas, view: &View) {
         let [[left, top], [right, bottom]] = view.pixels;
         let pen = Pen { color: LIGHT, width: 1.0, dashed: false };
-        for (x, label) in ticks(view.ranges[0][0], view.ranges[0][1], 10) {
+        for (x, label) in self.ticks(view.ranges[0], 10) {
             let x = view.place([x, 0.0])[0];
             canvas.line(&[[x, top], [x, bottom]], pen);
             canvas.text([x, bottom + 27.0], &label, TICK, Anchor::Middle);
@@ -219,12 +236,30 @@ impl Chart {
         if !self.y_axis {
             return;
         }
-        for (y, label) in
-            ticks(view.ranges[1][0], view.ranges[1][1], (((bottom - top) / 55.0) as usize).max(2))
-        {
+        for (y, label) in self.ticks(view.ranges[1], (((bottom - top) / 55.0) as usize).max(2)) {
             let y = view.place([0.0, y])[1];
             canvas.line(&[[left, y], [right, y]], pen);
             canvas.text([left - 10.0, y + 7.0], &label, TICK, Anchor::Right);
+        }
+    }
+
+    fn ticks(&self, [lo, hi]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
+        if self.logarithmic { powers(lo, hi, wanted) } else { ticks(lo, hi, wanted) }
+    }
+
+    fn draw_mark(&self, canvas: &mut Canvas, view: &View, mark: &Mark) {
+        let place = |points: &[Point]| points.iter().map(|p| view.place(self.scaled(*p))).collect::<Vec<_>>();
+        match mark {
+            Mark::Line { points, pen } => canvas.line(&thin(&place(points)), *pen),
+            Mark::Area { outline, fill } => canvas.fill(&place(outline), *fill),
+            Mark::Dots { points, radius, color } => {
+                let seen = place(points).into_iter().filter(|p| p[0].is_finite() && p[1].is_finite());
+                seen.for_each(|p| canvas.dot(p, *radius, *color));
+            }
+            Mark::Note { at, text, color } => {
+                let [x, y] = view.place(self.scaled(*at));
+                canvas.text([x, y], text, Letters { color: *color, ..TICK }, Anchor::Middle);
+            }
         }
     }
 
@@ -274,21 +309,6 @@ impl View {
     }
 }
 
-fn draw_mark(canvas: &mut Canvas, view: &View, mark: &Mark) {
-    let place = |points: &[Point]| points.iter().map(|p| view.place(*p)).collect::<Vec<_>>();
-    match mark {
-        Mark::Line { points, pen } => canvas.line(&thin(&place(points)), *pen),
-        Mark::Area { outline, fill } => canvas.fill(&place(outline), *fill),
-        Mark::Dots { points, radius, color } => {
-            place(points).into_iter().for_each(|p| canvas.dot(p, *radius, *color));
-        }
-        Mark::Note { at, text, color } => {
-            let [x, y] = view.place(*at);
-            canvas.text([x, y], text, Letters { color: *color, ..TICK }, Anchor::Middle);
-        }
-    }
-}
-
 /// Leaves out points that cannot be seen: of all that fall into one column of pixels one after the other, the first,
 /// lowest, highest and last stay.
 fn thin(points: &[Pixel]) -> Vec<Pixel> {
@@ -331,6 +351,17 @@ mod tests {
         let view = chart.view(1600, 0.0);
         let (o, x, y) = (view.place([0.0, 0.0]), view.place([1.0, 0.0]), view.place([0.0, 1.0]));
         assert!(((x[0] - o[0]) - (o[1] - y[1])).abs() < 0.01);
+    }
+
+    #[test]
+    fn decades_are_equally_far_apart_and_zero_is_left_out() {
+        let mut chart = Chart::new("", "", "").logarithmic();
+        chart.line("", vec![[1e-3, 1e-9], [1.0, 0.0], [1e2, 1e-2]], BLACK);
+        assert_eq!(chart.ranges(), [[-3.25, 2.25], [-9.25, -1.75]]);
+        let view = chart.view(1600, 0.0);
+        let x = [1e-2, 1e-1, 1.0].map(|x| view.place(chart.scaled([x, 1e-4]))[0]);
+        assert!((x[1] - x[0] - (x[2] - x[1])).abs() < 1e-3);
+        chart.draw(&mut Canvas::new(300, 300), 300, 0.0);
     }
 
     #[test]

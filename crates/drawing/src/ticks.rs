@@ -11,6 +11,34 @@ pub(crate) fn ticks(lo: f64, hi: f64, wanted: usize) -> Vec<(f64, String)> {
     (first..=last.min(first + 100)).map(|k| (k as f64 * step, number(k as f64 * step, decimals))).collect()
 }
 
+/// Powers of ten inside of the range of exponents, at most about `wanted` of them, each with its text.
+pub(crate) fn powers(lo: f64, hi: f64, wanted: usize) -> Vec<(f64, String)> {
+    let every = ((hi - lo) / wanted.max(1) as f64).ceil().max(1.0);
+    if !(every.is_finite() && lo.is_finite()) {
+        return Vec::new();
+    }
+    let (first, last) = ((lo / every).ceil() as i64, (hi / every).floor() as i64);
+    (first..=last.min(first + 100)).map(|k| (k as f64 * every, power(k * every as i64))).collect()
+}
+
+/// 10 to this power, in figures where that is short.
+fn power(exponent: i64) -> String {
+    match exponent {
+        0..=4 => 10i64.pow(exponent as u32).to_string(),
+        -3..=-1 => number(10f64.powi(exponent as i32), -exponent as usize),
+        _ => {
+            let raised = |c: char| match c {
+                '-' => '⁻',
+                '1' => '¹',
+                '2' => '²',
+                '3' => '³',
+                d => char::from_u32(0x2070 + d.to_digit(10).unwrap_or(0)).unwrap_or(d),
+            };
+            format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
+        }
+    }
+}
+
 /// The one of 1, 2, 5 x 10^k that is nearest in proportion.
 fn round_step(step: f64) -> f64 {
     let power = 10f64.powf(step.log10().floor());
@@ -43,6 +71,14 @@ mod tests {
         assert_eq!(texts(-0.012, 0.021, 4), ["\u{2212}0.01", "0.00", "0.01", "0.02"]);
         assert_eq!(texts(0.0, 20.0, 10), ["0", "2", "4", "6", "8", "10", "12", "14", "16", "18", "20"]);
         assert_eq!(texts(120.0, 1130.0, 5), ["200", "400", "600", "800", "1000"]);
+    }
+
+    #[test]
+    fn powers_of_ten_are_written_short() {
+        let texts: Vec<String> = powers(-7.2, 5.9, 20).into_iter().map(|(_, text)| text).collect();
+        let low = ["10⁻⁷", "10⁻⁶", "10⁻⁵", "10⁻⁴", "0.001", "0.01", "0.1"];
+        assert_eq!(texts, [&low[..], &["1", "10", "100", "1000", "10000", "10⁵"]].concat());
+        assert_eq!(powers(-16.0, 0.0, 5).len(), 5);
     }
 
     #[test]
