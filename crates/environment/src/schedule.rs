@@ -61,7 +61,8 @@ impl Schedule {
 
 impl Environment {
     /// Moves every object to where its schedule has it at `time` \[s\], except those that `touched` says something
-    /// touches, and those that would enclose one of the `nodes` \[m\] @world there. Returns what happened.
+    /// touches, and those that would enclose one of the `nodes` \[m\] @world there. Returns what happened. An object
+    /// that has to wait loses the whole step, so steps should be short: a bus cycle.
     pub fn advance(&mut self, time: f64, touched: &[bool], nodes: &[[f64; 3]]) -> &[Event] {
         self.events.clear();
         let step = (time - self.time).max(0.0);
