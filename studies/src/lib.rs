@@ -2,6 +2,7 @@
 //!
 //! | study | question |
 //! |---|---|
+//! | [`accuracy`] | which method is cheapest for a given accuracy? |
 //! | [`push`] | which impulse does the walking robot survive? |
 //! | [`speed`] | how fast is each part, and how accurate is it at that speed? |
 //! | [`figures_of_thesis`] | are the figures of the thesis found again? |
@@ -9,6 +10,7 @@
 //!
 //! They work on [`chain`], all steps in one process, and judge by [`figures`].
 
+pub mod accuracy;
 pub mod chain;
 pub mod cycles;
 pub mod figures;

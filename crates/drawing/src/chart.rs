@@ -15,6 +15,7 @@ enum Mark {
     Area { outline: Vec<Point>, fill: Color },
     Dots { points: Vec<Point>, radius: f32, color: Color },
     Note { at: Point, text: String, color: Color },
+    Label { at: Point, text: String, color: Color },
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -142,6 +143,12 @@ impl Chart {
         self
     }
 
+    /// Small words to the upper right of a point.
+    pub fn label(&mut self, at: Point, text: &str, color: Color) -> &mut Self {
+        self.marks.push(Mark::Label { at, text: text.into(), color });
+        self
+    }
+
     /// Each name stands once in the legend; an empty one not at all.
     fn key(&mut self, name: &str, key: Key) {
         if !name.is_empty() && self.legend.iter().all(|(known, _)| known != name) {
@@ -163,7 +170,7 @@ impl Chart {
                 Mark::Line { points, .. }
                 | Mark::Dots { points, .. }
                 | Mark::Area { outline: points, .. } => points,
-                Mark::Note { .. } => continue,
+                Mark::Note { .. } | Mark::Label { .. } => continue,
             };
             for p in points.iter().map(|p| self.scaled(*p)).filter(|p| p[0].is_finite() && p[1].is_finite()) {
                 for k in 0..2 {
@@ -259,6 +266,11 @@ impl Chart {
             Mark::Note { at, text, color } => {
                 let [x, y] = view.place(self.scaled(*at));
                 canvas.text([x, y], text, Letters { color: *color, ..TICK }, Anchor::Middle);
+            }
+            Mark::Label { at, text, color } => {
+                let [x, y] = view.place(self.scaled(*at));
+                let letters = Letters { color: *color, size: 15.0, ..TICK };
+                canvas.text([x + 8.0, y - 6.0], text, letters, Anchor::Left);
             }
         }
     }

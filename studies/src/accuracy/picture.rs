@@ -1,0 +1,86 @@
+//! Charts as pictures: cost along x, error along y, both logarithmic, a curve for each method, its step beside each point.
+
+use std::path::Path;
+
+use drawing::color::{BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION};
+use drawing::{Color, Figure, Pen};
+
+use super::order::in_ms;
+use super::{Chart, Cost, Point};
+
+const COLORS: [Color; 6] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY];
+
+/// Writes the pictures; their paths.
+pub(super) fn draw(charts: &[Chart], out: &Path) -> Result<Vec<String>, String> {
+    let mut written = Vec::new();
+    for together in charts.chunk_by(|a, b| file(a) == file(b)) {
+        let path = out.join(format!("{}.png", file(&together[0])));
+        let first = &together[0];
+        let figure = Figure::new(&first.title, &first.about);
+        together.iter().fold(figure, |figure, chart| figure.with(panel(chart))).save(&path)?;
+        written.push(path.display().to_string());
+    }
+    Ok(written)
+}
+
+fn file(chart: &Chart) -> &str {
+    chart.name.split('.').next().unwrap_or_default()
+}
+
+fn panel(chart: &Chart) -> drawing::Chart {
+    let x = match chart.cost {
+        Cost::PerSecond => "processor time by simulated time [s/s]",
+        Cost::PerCall => "processor time of one call [us]",
+        Cost::Calls => "evaluations of the right-hand side in a simulated second",
+    };
+    let mut axes = drawing::Chart::new("", x, &chart.measure).logarithmic().height(520.0);
+    for (k, curve) in curves(&chart.points).into_iter().enumerate() {
+        let color = COLORS[k % COLORS.len()];
+        let pen = Pen { color, width: 2.5, dashed: k >= COLORS.len() };
+        let points: Vec<_> = curve.points.iter().map(|p| [cost(p, chart.cost), p.error]).collect();
+        axes.styled(&curve.name, points.clone(), pen).dots("", points.clone(), 5.0, color);
+        for (at, p) in points.iter().zip(&curve.points) {
+            axes.label(*at, &label(p), GREY);
+        }
+    }
+    axes
+}
+
+/// Points of one method on one model, as one line.
+struct Curve<'a> {
+    name: String,
+    points: Vec<&'a Point>,
+}
+
+/// Curves in the order in which they first occur; what all points share is not in their names.
+fn curves(points: &[Point]) -> Vec<Curve<'_>> {
+    let varies = |of: fn(&Point) -> &str| points.iter().any(|p| of(p) != of(&points[0]));
+    let (models, scenes) = (varies(|p| &p.model), varies(|p| &p.scene));
+    let mut curves: Vec<Curve<'_>> = Vec::new();
+    for p in points {
+        let mut name = p.method.clone();
+        for (shown, part) in [(models && !name.contains(&p.model), &p.model), (scenes, &p.scene)] {
+            if shown {
+                name += &format!(", {part}");
+            }
+        }
+        match curves.iter_mut().find(|c| c.name == name) {
+            Some(curve) => curve.points.push(p),
+            None => curves.push(Curve { name, points: vec![p] }),
+        }
+    }
+    curves
+}
+
+fn cost(p: &Point, cost: Cost) -> f64 {
+    let found = match cost {
+        Cost::PerSecond => p.cpu_s_per_s,
+        Cost::PerCall => p.cpu_us,
+        Cost::Calls => p.calls_per_s,
+    };
+    found.unwrap_or(f64::NAN)
+}
+
+fn label(p: &Point) -> String {
+    p.solver.clone().or_else(|| p.step.map(in_ms)).unwrap_or_default()
+}
