@@ -59,6 +59,11 @@ fn walk_2kmh() {
 }
 
 #[test]
+fn walk_3kmh() {
+    walks(&figures("walk_3kmh", 20.0), 3.0);
+}
+
+#[test]
 fn walk_60s() {
     walks(&figures("walk_60s", 64.0), 1.0);
 }

@@ -104,7 +104,7 @@ pub struct Comparison {
     pub walks: [Walk; 2],
     /// What is compared.
     pub judged: String,
-    /// \[1\] 1 - with/without; nothing if one of both fell.
+    /// \[1\] 1 - with/without; 1 if the robot falls without, nothing if it falls with it.
     pub reduction: f64,
     /// \[1\] What the text promises at least.
     pub promised: f64,
@@ -158,7 +158,8 @@ fn compare(root: &Path, case: &Case, out: &Path) -> Result<Comparison, Error> {
     };
     let walks = [walk(0)?, walk(1)?];
     let [with, without] = [&walks[0], &walks[1]].map(case.judged);
-    let reduction = 1.0 - with / without;
+    let saved = walks[1].fell && !walks[0].fell;
+    let reduction = if saved { 1.0 } else { 1.0 - with / without };
     let picture = out.join(format!("figure_{}.png", case.figure.replace('.', "_")));
     let about =
         format!("{}, {:.1} km/h, model type {}", setup.robot.name, 3.6 * case.forward, setup.scene.depth);
@@ -310,15 +311,26 @@ pub fn table(report: &Report) -> String {
             );
         }
         text += &format!(
-            "\n        {} {:.0} % smaller, promised more than {:.0} %: {}; {}",
+            "\n        {} {}, promised more than {:.0} %: {}; {}",
             f.judged,
-            100.0 * f.reduction,
+            change(f),
             100.0 * f.promised,
             if f.kept { "kept" } else { "NOT kept" },
             f.picture.display()
         );
     }
     text
+}
+
+/// What became of the figure that is compared.
+fn change(f: &Comparison) -> String {
+    let [with, without] = [&f.walks[0], &f.walks[1]];
+    match (with.fell, without.fell) {
+        (true, _) => format!("unknown: falls {}", with.name),
+        (_, true) => format!("beyond measure: falls {}", without.name),
+        _ if f.reduction < 0.0 => format!("{:.0} % larger", -100.0 * f.reduction),
+        _ => format!("{:.0} % smaller", 100.0 * f.reduction),
+    }
 }
 
 #[cfg(test)]
