@@ -11,7 +11,8 @@ pub enum Method {
     GaussSeidel,
     /// Each node's law solved exactly with its neighbours' velocities held.
     Velocity,
-    /// [`Method::Velocity`] when most of the sole is near the ground, else [`Method::GaussSeidel`].
+    /// [`Method::Velocity`] when a good part of the sole touches and most of that sticks, else [`Method::GaussSeidel`];
+    /// that, too, if the former does not converge.
     Fastest,
 }
 

@@ -21,6 +21,10 @@ pub struct Memory {
     pub(crate) states: Vec<State>,
     pub(crate) normals: Vec<Vector3<f64>>,
     pub(crate) frames: Vec<Matrix3<f64>>,
+    /// Whether frame and mobility of a node are those of this call; few nodes need them when most stick.
+    pub(crate) framed: Vec<bool>,
+    /// S_ii^-1 in the contact frame.
+    pub(crate) mobilities: Vec<Matrix3<f64>>,
     pub(crate) factors: Vec<(f64, f64)>,
     /// Nodes at the ground, in order.
     pub(crate) active: Vec<usize>,
@@ -46,6 +50,8 @@ impl Memory {
             states: vec![State::Open; n],
             normals: vec![Vector3::z(); n],
             frames: vec![Matrix3::identity(); n],
+            framed: vec![false; n],
+            mobilities: vec![Matrix3::identity(); n],
             factors: vec![(1.0, 1.0); n],
             active: Vec::with_capacity(n),
             touching: vec![false; n],

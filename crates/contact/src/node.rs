@@ -43,9 +43,14 @@ pub fn solve(g: &Matrix3<f64>, c: &Vector3<f64>, mu: f64) -> Option<Answer> {
     if force.z > 0.0 && force.xy().norm() <= mu * force.z {
         return Some(Answer { force, state: State::Stick });
     }
-    let slip = Slip { h: g.fixed_view::<2, 2>(0, 0).into(), g: g.column(2).xy(), g_nn: g[(2, 2)], c, mu };
     let hint = -force.xy().try_normalize(f64::MIN_POSITIVE).unwrap_or(Vector2::x());
-    slip.newton(hint).or_else(|| slip.search()).map(|force| Answer { force, state: State::Slip })
+    slide(g, c, mu, hint).map(|force| Answer { force, state: State::Slip })
+}
+
+/// Force on a node that slides under pressure (c_N < 0); `hint` is a direction to begin with, of length 1.
+pub(crate) fn slide(g: &Matrix3<f64>, c: &Vector3<f64>, mu: f64, hint: Vector2<f64>) -> Option<Vector3<f64>> {
+    let slip = Slip { h: g.fixed_view::<2, 2>(0, 0).into(), g: g.column(2).xy(), g_nn: g[(2, 2)], c, mu };
+    slip.newton(hint).or_else(|| slip.search())
 }
 
 /// The sliding node: lambda = N (-mu t, 1) with u_N = 0 and u_T along t.
@@ -92,13 +97,12 @@ impl Slip<'_> {
                 return None;
             }
             t = next;
-            if turn.abs() < 1e-15 {
-                break;
+            // Steps converge quadratically: after one of 1e-7 what is left is rounding.
+            if turn.abs() < 1e-7 {
+                return self.force(&t);
             }
         }
-        let (value, slope) = self.cross(&t);
-        // Converged to rounding: the next step would turn t by less than 1e-12.
-        if value.abs() <= 1e-12 * slope.abs() { self.force(&t) } else { None }
+        None
     }
 
     /// Brackets every root and bisects it; the first one that is a sliding node counts.

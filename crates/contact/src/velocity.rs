@@ -8,7 +8,7 @@
 //! Forces are inside the cone and zero where a node is open, nodes that stick do not creep, all of it exactly; what is
 //! left to the tolerance is the balance f = S y.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
 use crate::coupling::Coupling;
 use crate::frame::frame;
@@ -35,8 +35,9 @@ pub(crate) fn solve(coupling: &Coupling, memory: &mut Memory, settings: &Setting
 
 /// Nodes that stuck or were open and come down stick; the others go on as they did.
 fn start(memory: &mut Memory) {
-    let Memory { y, c, states, touching, normals, stale, .. } = memory;
+    let Memory { y, c, states, touching, normals, stale, framed, .. } = memory;
     stale.fill(true);
+    framed.fill(false);
     for i in 0..y.len() {
         let now = Vector3::new(y[i][0], y[i][1], y[i][2]);
         let sinks = states[i] == State::Open && normals[i].dot(&(now + c[i])) < 0.0;
@@ -94,11 +95,17 @@ fn visit(
         }
         let free = c - g * s;
         if n.dot(&free) < 0.0 {
-            let e = frame(&n);
-            let local = e.transpose() * g * e;
-            *unique &= node::unique(&local, settings.friction);
-            if let Some(answer) = node::solve(&local, &e.tr_mul(&free), settings.friction) {
-                (*f, *state) = (e * answer.force, answer.state);
+            let (e, local) = (&mut memory.frames[i], &mut memory.mobilities[i]);
+            if !std::mem::replace(&mut memory.framed[i], true) {
+                *e = frame(&n);
+                *local = e.transpose() * g * *e;
+                *unique &= node::unique(local, settings.friction);
+            }
+            // A node that has slid goes on much as it did.
+            let before = if *state == State::Slip { *f } else { stick };
+            let hint = e.tr_mul(&before).xy().try_normalize(f64::MIN_POSITIVE).map_or(Vector2::x(), |t| -t);
+            if let Some(force) = node::slide(local, &e.tr_mul(&free), settings.friction, hint) {
+                (*f, *state) = (*e * force, State::Slip);
                 return g * (*f - s);
             }
         }

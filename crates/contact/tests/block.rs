@@ -10,7 +10,7 @@ const KINDS: [Volume; 2] = [Volume::Full, Volume::Mean];
 
 fn pad(bricks: [usize; 3], poisson: f64, volume: Volume) -> Layer {
     let elasticity = Elasticity { modulus: 5e5, poisson };
-    let size = [0.06, 0.03, 0.012];
+    let size = [0.06, 0.04, 0.012];
     Layer::new(&Material { size, bricks, elasticity, volume, damping_time: 0.008 }).unwrap()
 }
 
@@ -173,13 +173,13 @@ fn slippery_stiffness(layer: &Layer) -> f64 {
 
 /// The pad of the thesis has no nodes between sole and segment. Glued to a plane it can nowhere bulge: it is confined
 /// exactly, for every brick, and that much too stiff. This is the price of the mesh, small for nu = 0.3, but at 0.45 the
-/// pad is twice as stiff as rubber and at 0.49 seven times.
+/// pad is 1.8 times as stiff as rubber and at 0.49 five times.
 #[test]
 fn one_brick_between_glued_planes_is_confined() {
-    for (poisson, excess) in [(0.3, 0.109), (0.45, 0.97), (0.49, 5.6)] {
+    for (poisson, excess) in [(0.3, 0.0856), (0.45, 0.759), (0.49, 4.31)] {
         for volume in KINDS {
             let nu = poisson;
-            let confined = 5e5 * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) * 0.06 * 0.03 / 0.012;
+            let confined = 5e5 * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) * 0.06 * 0.04 / 0.012;
             let coarse = pad([5, 5, 1], poisson, volume).block_stiffness(2);
             assert!((coarse / confined - 1.0).abs() < 1e-12, "{coarse} {confined}");
             let fine = pad([8, 8, 3], poisson, Volume::Mean).block_stiffness(2);
@@ -193,12 +193,11 @@ fn one_brick_between_glued_planes_is_confined() {
 /// comes near 1/2; mean dilatation does less so. Refinement brings both down to one value, from above.
 #[test]
 fn stiffness_falls_with_refinement_and_locks_with_nu() {
-    for (poisson, full, mean) in [(0.3, 0.0434, 0.0173), (0.49, 2.5, 0.0537)] {
+    for (poisson, full, mean) in [(0.3, 0.0400, 0.0189), (0.49, 2.257, 0.0781)] {
         let of = |bricks, volume| slippery_stiffness(&pad(bricks, poisson, volume));
         let fine = of([8, 8, 3], Volume::Mean);
         let excess = |bricks, volume| of(bricks, volume) / fine - 1.0;
         let (f, m) = (excess([5, 5, 1], Volume::Full), excess([5, 5, 1], Volume::Mean));
-        println!(
             "{poisson} {f} {m} ; 5x5x2 {} {}",
             excess([5, 5, 2], Volume::Full),
             excess([5, 5, 2], Volume::Mean)
@@ -213,7 +212,7 @@ fn stiffness_falls_with_refinement_and_locks_with_nu() {
 #[test]
 fn bad_material_is_named() {
     let good = Material {
-        size: [0.06, 0.03, 0.012],
+        size: [0.06, 0.04, 0.012],
         bricks: [5, 5, 1],
         elasticity: RUBBER,
         volume: Volume::Full,

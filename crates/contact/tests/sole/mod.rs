@@ -20,8 +20,8 @@ pub(crate) struct Sole {
 
 /// A layer of a pad of Lola's size.
 pub(crate) fn layer(poisson: f64, bricks: [usize; 3]) -> Layer {
-    let elasticity = Elasticity { modulus: 6e5, poisson };
-    let size = [0.06, 0.03, 0.012];
+    let elasticity = Elasticity { modulus: 4.643e5, poisson };
+    let size = [0.06, 0.04, 0.012];
     Layer::new(&Material { size, bricks, elasticity, volume: Volume::Full, damping_time: ALPHA }).unwrap()
 }
 
