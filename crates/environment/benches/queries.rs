@@ -37,7 +37,9 @@ fn block(n: usize) -> Mesh {
         .chain((1..=n).rev().map(|j| at(0, j)))
         .collect();
     let first = vertices.len() as u32;
-    vertices.extend(rim.iter().map(|k| [vertices[*k as usize][0], vertices[*k as usize][1], -0.1]).collect::<Vec<_>>());
+    vertices.extend(
+        rim.iter().map(|k| [vertices[*k as usize][0], vertices[*k as usize][1], -0.1]).collect::<Vec<_>>(),
+    );
     let middle = vertices.len() as u32;
     vertices.push([1.0, 0.0, -0.1]);
     for k in 0..rim.len() {
@@ -85,14 +87,17 @@ fn crossover(c: &mut Criterion) {
     let meshes = [Mesh::cuboid([0.4, 0.6, 0.02]).expect("box"), shipped("stairs.obj")];
     for mesh in meshes.into_iter().chain([4, 8, 16, 32, 68].map(block)) {
         let top = mesh.bounds().hi;
-        let points: Vec<_> = foot(16, [0.3 * top.x, 0.3 * top.y, top.z]).into_iter().map(Into::into).collect();
+        let points: Vec<_> =
+            foot(16, [0.3 * top.x, 0.3 * top.y, top.z]).into_iter().map(Into::into).collect();
         let mut turn = 0;
         let mut next = || {
             turn = (turn + 1) % 16;
             points[turn]
         };
         group.bench_function(BenchmarkId::new("hierarchy", mesh.len()), |b| b.iter(|| mesh.nearest(&next())));
-        group.bench_function(BenchmarkId::new("search", mesh.len()), |b| b.iter(|| mesh.nearest_by_search(&next())));
+        group.bench_function(BenchmarkId::new("search", mesh.len()), |b| {
+            b.iter(|| mesh.nearest_by_search(&next()))
+        });
     }
 }
 

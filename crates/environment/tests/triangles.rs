@@ -129,7 +129,7 @@ proptest! {
         let height = 10f64.powf(height);
         let corners = [V::zeros(), V::new(1.0, 0.3, 0.2), V::new(foot, 0.3 * foot, 0.2 * foot + height)];
         let (c, _) = closest(&p, &corners);
-        let tolerance = (1e-15 / height).max(1e-12).min(4e-8);
+        let tolerance = (1e-15 / height).clamp(1e-12, 4e-8);
         prop_assert!(is_nearest(&p, &corners, &c, 4.0 * tolerance), "{c:?}");
     }
 }
