@@ -195,6 +195,9 @@ enum StudyTask {
         /// Only this figure.
         #[arg(long)]
         figure: Option<String>,
+        /// Type of the model: 1, reduced; 2, with motors; 3, with elastic gears.
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
+        depth: u8,
         /// Where the pictures go.
         #[arg(long, value_name = "DIR", default_value = "runs/thesis")]
         out: PathBuf,
@@ -361,8 +364,8 @@ fn study(config: &std::path::Path, what: StudyTask, json: bool) -> Result<ExitCo
             let report = speed::run(config)?;
             (serde_json::to_string(&report)?, speed::table(&report))
         }
-        StudyTask::Thesis { figure, out } => {
-            let report = figures_of_thesis::run(config, figure.as_deref(), &out)?;
+        StudyTask::Thesis { figure, depth, out } => {
+            let report = figures_of_thesis::run(config, figure.as_deref(), depth, &out)?;
             (serde_json::to_string(&report)?, figures_of_thesis::table(&report))
         }
         StudyTask::Realtime { scene, cyclictest, out } => {

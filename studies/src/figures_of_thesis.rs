@@ -12,6 +12,7 @@
 use std::path::{Path, PathBuf};
 
 use config::Setup;
+use config::scene::Integrator;
 use drawing::color::{BLACK, GREY, VERMILION};
 use drawing::{Chart, Figure};
 use messages::Command;
@@ -26,6 +27,9 @@ const SETTLED: f64 = 10.0;
 const SPAN: f64 = 10.0;
 /// \[s\] Of which the last ones are drawn.
 const DRAWN: f64 = 4.0;
+
+/// \[s\] Step of the models with motors.
+const MOTOR_STEP: f64 = 1e-4;
 
 /// \[kg\], \[m\] The torus of figure 9.1.
 const TORUS: (f64, f64) = (10.0, 0.25);
@@ -132,11 +136,11 @@ pub struct Walk {
     trace: Vec<[f64; 3]>,
 }
 
-/// Walks for all figures, or for `only` one, and draws them into `out`.
+/// Walks for all figures, or for `only` one, with models of type `depth`, and draws them into `out`.
 ///
 /// # Errors
 /// There is no such figure, a configuration is wrong, or a picture cannot be written.
-pub fn run(root: &Path, only: Option<&str>, out: &Path) -> Result<Report, Error> {
+pub fn run(root: &Path, only: Option<&str>, depth: u8, out: &Path) -> Result<Report, Error> {
     let chosen: Vec<&Case> =
         CASES.iter().filter(|case| only.is_none_or(|figure| figure == case.figure)).collect();
     if chosen.is_empty() {
@@ -145,12 +149,12 @@ pub fn run(root: &Path, only: Option<&str>, out: &Path) -> Result<Report, Error>
     }
     std::fs::create_dir_all(out)
         .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
-    let figures = chosen.into_iter().map(|case| compare(root, case, out)).collect::<Result<_, _>>()?;
+    let figures = chosen.into_iter().map(|case| compare(root, case, depth, out)).collect::<Result<_, _>>()?;
     Ok(Report { figures })
 }
 
-fn compare(root: &Path, case: &Case, out: &Path) -> Result<Comparison, Error> {
-    let setup = periodic(root, case)?;
+fn compare(root: &Path, case: &Case, depth: u8, out: &Path) -> Result<Comparison, Error> {
+    let setup = periodic(root, case, depth)?;
     let walk = |k: usize| -> Result<Walk, Error> {
         let mut setup = setup.clone();
         case.changes[k](&mut setup)?;
@@ -176,9 +180,14 @@ fn compare(root: &Path, case: &Case, out: &Path) -> Result<Comparison, Error> {
     })
 }
 
-/// The scene of a case, without an end before all has been seen.
-fn periodic(root: &Path, case: &Case) -> Result<Setup, Error> {
+/// The scene of a case, without an end before all has been seen. Motors take shorter and semi-implicit steps.
+fn periodic(root: &Path, case: &Case, depth: u8) -> Result<Setup, Error> {
     let mut setup = Setup::load(root, case.scene)?;
+    if depth > 1 {
+        setup.scene.depth = depth;
+        setup.scene.integrator = Integrator::SemiImplicit;
+        setup.scene.substeps = (setup.scene.cycle / MOTOR_STEP).round() as u32;
+    }
     setup.scene.duration = SETTLED + SPAN;
     setup.scene.commands.retain(|(time, _)| *time < SETTLED);
     for (_, command) in &mut setup.scene.commands {
@@ -345,7 +354,7 @@ mod tests {
     #[test]
     fn figure_4_17() {
         let out = std::env::temp_dir().join(format!("gangwerk-4-17-{}", std::process::id()));
-        let report = run(&config::root(None), Some("4.17"), &out).unwrap();
+        let report = run(&config::root(None), Some("4.17"), 1, &out).unwrap();
         let f = &report.figures[0];
         assert!(f.walks.iter().all(|walk| !walk.fell), "{f:#?}");
         assert!(f.kept && f.reduction > 0.45, "{f:#?}");
@@ -357,7 +366,7 @@ mod tests {
     /// The torus weighs what it shall and turns like a ring, hips stay where they were.
     #[test]
     fn the_torus_changes_the_upper_body_only() {
-        let plain = periodic(&config::root(None), case("9.1")).unwrap();
+        let plain = periodic(&config::root(None), case("9.1"), 1).unwrap();
         let mut setup = plain.clone();
         with_torus(&mut setup).unwrap();
         let [before, after] = [&plain, &setup].map(|s| model_of(s).unwrap());
@@ -390,7 +399,7 @@ mod tests {
 
     #[test]
     fn an_unknown_figure_is_named_with_the_known_ones() {
-        let error = run(&config::root(None), Some("5.3"), Path::new("nowhere")).unwrap_err().to_string();
+        let error = run(&config::root(None), Some("5.3"), 1, Path::new("nowhere")).unwrap_err().to_string();
         assert_eq!(error, "there is no figure `5.3`; choose one of 5.2, 4.17, 9.1");
     }
 }
