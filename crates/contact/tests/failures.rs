@@ -56,7 +56,6 @@ fn jacobi_ends_where_its_spectral_radius_is_one() {
         let (above, memory) = run(1.05);
         assert!(!above.converged && above.residual > 1.0, "nu {poisson}: {above:?}");
         assert!(memory.forces().iter().all(|f| f.norm() < 1e6), "the cycle is bounded");
-        println!("nu {poisson}: gamma < {predicted:.3}");
     }
 }
 
@@ -80,7 +79,6 @@ fn nearly_incompressible_rubber_needs_more_sweeps() {
         )
     };
     let (soft, hard) = (of(0.3), of(0.49));
-    println!("cond, Jacobi, Gauss-Seidel, velocities: {soft:?} -> {hard:?}");
     assert!(hard.0 > 5.0 * soft.0 && hard.1 > 3 * soft.1 && hard.2 > 2 * soft.2);
     assert_eq!((soft.3, hard.3), (1, 1), "a sole that sticks is solved in one pass");
 }
@@ -102,7 +100,6 @@ fn much_friction_needs_more_sweeps() {
         let twist =
             contact::Twist { linear: Vector3::new(0.05, 0.0, -0.1), angular: Vector3::new(0.3, 0.5, 2.0) };
         let report = sole.rates(-1e-3, &twist, &settings).report;
-        println!("mu {mu}: {report:?}");
         assert!(report.converged && report.sweeps >= last);
         last = report.sweeps;
     }
