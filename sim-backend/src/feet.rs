@@ -2,70 +2,96 @@
 //!
 //! | symbol | name | unit | frame |
 //! |---|---|---|---|
-//! | d | displacement of a node from its place on the undeformed sole | m | world |
+//! | d | displacement of a node from its place on the undeformed sole | m | points: world, pads: segment |
 //! | F, T | force and moment of the ground on a segment (2.38), (2.39) | N, N m | world, about the segment's origin |
 
+use std::error::Error;
+use std::sync::Arc;
+
 use config::Robot;
-use multibody::{Data, Frame, Model, ModelError};
-use nalgebra::Vector3;
-
+use contact::frame::frame;
+use contact::hexahedron::{Elasticity, Volume};
 use contact::point::{self, Law, State};
+use contact::{Ground, Layer, Material, Memory, Pad, Report, Settings, Twist};
+use environment::{Environment, Surface};
+use multibody::{Data, Frame, Model};
+use nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
 
-/// Force of the ground at one node.
-#[derive(Clone, Copy, Debug)]
-pub struct Touch {
-    /// Right or left foot.
-    pub foot: usize,
-    /// \[m\] @world The node, deformed.
-    pub at: Vector3<f64>,
-    /// \[N\] @world
-    pub force: Vector3<f64>,
-    /// Open, sticking or sliding.
-    pub state: State,
+/// Contact elements of both feet.
+pub struct Feet {
+    law: Law,
+    settings: Settings,
+    segments: Vec<Segment>,
+    /// Whether each object of the environment carries something.
+    touched: Vec<bool>,
+    worst: Report,
 }
 
 /// A link that carries contact elements.
 struct Segment {
     frame: Frame,
     foot: usize,
-    /// Places of its nodes, link axes.
-    nodes: Vec<Vector3<f64>>,
+    elements: Elements,
     force: Vector3<f64>,
     moment: Vector3<f64>,
 }
 
-/// Contact elements of both feet.
-pub struct Feet {
-    law: Law,
-    segments: Vec<Segment>,
-    touches: Vec<Touch>,
+/// What is glued to a link.
+enum Elements {
+    /// Independent nodes at these places, link axes.
+    Points(Vec<Vector3<f64>>),
+    /// Blocks of rubber.
+    Pads(Vec<Block>),
 }
 
+struct Block {
+    pad: Pad,
+    memory: Memory,
+    ground: Vec<Option<Ground>>,
+}
+
+const CONVERGED: Report = Report { sweeps: 0, residual: 0.0, converged: true, unique: true };
+
+/// \[m\] Height above which a node needs no exact gap: no step is so long.
+const FAR: f64 = 0.05;
+
 impl Feet {
-    /// The contact points of a robot.
-    pub fn new(robot: &Robot, model: &Model) -> Result<Self, ModelError> {
+    /// The contact elements of a robot: its points, or its pads.
+    ///
+    /// # Errors
+    /// A link does not exist, or the pads cannot be built.
+    pub fn new(robot: &Robot, model: &Model, pads: bool, objects: usize) -> Result<Self, Box<dyn Error>> {
+        let layer = if pads { Some(layer(robot)?) } else { None };
         let mut segments: Vec<Segment> = Vec::new();
         let mut names: Vec<&str> = Vec::new();
         for (foot, description) in robot.feet.iter().enumerate() {
-            for (link, at) in &description.points {
+            let places = if pads { &description.pads } else { &description.points };
+            if places.is_empty() {
+                return Err(format!(
+                    "robot `{}`: its feet have no contact pads; choose depth 1, 2 or 3",
+                    robot.name
+                )
+                .into());
+            }
+            for (link, at) in places {
                 let i = match names.iter().position(|n| n == link) {
                     Some(i) => i,
                     None => {
                         names.push(link);
-                        segments.push(Segment::new(model.frame(link, [0.0; 3])?, foot));
+                        segments.push(Segment::new(model.frame(link, [0.0; 3])?, foot, pads));
                         names.len() - 1
                     }
                 };
-                segments[i].nodes.push(Vector3::from(*at));
+                segments[i].elements.add(Vector3::from(*at), layer.as_ref());
             }
         }
-        let touches = segments.iter().flat_map(|s| s.nodes.iter().map(|_| Touch::none(s.foot))).collect();
-        Ok(Self { law: law(robot), segments, touches })
+        let settings = Settings::of_friction(robot.contact.friction);
+        Ok(Self { law: law(robot), settings, segments, touched: vec![false; objects], worst: CONVERGED })
     }
 
     /// Contact nodes of both feet.
     pub fn nodes(&self) -> usize {
-        self.touches.len()
+        self.segments.iter().map(|s| s.elements.nodes()).sum()
     }
 
     /// Frames of all segments.
@@ -73,77 +99,221 @@ impl Feet {
         self.segments.iter().map(|s| s.frame).collect()
     }
 
-    /// Stiffness of all nodes together, normal to the ground \[N/m\].
-    pub fn normal_stiffness(&self) -> f64 {
-        self.law.stiffness[2] * self.nodes() as f64
+    /// Which objects of the environment carry something, after [`Feet::update`].
+    pub fn touched(&self) -> &[bool] {
+        &self.touched
     }
 
-    /// Height \[m\] of every undeformed node, in the order of the state; after the model's kinematics.
-    pub fn heights<'a>(&'a self, model: &'a Model, data: &'a Data) -> impl Iterator<Item = f64> + 'a {
-        let of = move |s: &'a Segment| {
-            let pose = model.frame_pose(data, &s.frame);
-            s.nodes.iter().map(move |n| (pose * nalgebra::Point3::from(*n)).z)
+    /// How the solver of the pads ended, the worst since the last call.
+    pub fn take_worst(&mut self) -> Report {
+        std::mem::replace(&mut self.worst, CONVERGED)
+    }
+
+    /// How far \[m\] a robot of `weight` \[N\] presses flat soles in.
+    pub fn deflection(&self, weight: f64) -> f64 {
+        let stiffness = |e: &Elements| match e {
+            Elements::Points(places) => self.law.stiffness[2] * places.len() as f64,
+            Elements::Pads(blocks) => blocks.iter().map(|b| b.pad.layer().block_stiffness(2)).sum(),
         };
-        self.segments.iter().flat_map(of)
+        weight / self.segments.iter().map(|s| stiffness(&s.elements)).sum::<f64>()
     }
 
-    /// Forces of the ground and rates of the nodes `rate` for displacements `d`, after the model's kinematics and motion.
-    pub fn update(&mut self, model: &Model, data: &Data, d: &[f64], rate: &mut [f64]) {
-        let Self { law, segments, touches } = self;
-        let mut touches = touches.iter_mut();
+    /// Height \[m\] of the lowest place of the undeformed soles, after the model's kinematics.
+    pub fn lowest(&self, model: &Model, data: &Data) -> f64 {
+        let of = |s: &Segment| s.elements.lowest(&model.frame_pose(data, &s.frame));
+        self.segments.iter().map(of).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Presses flat soles in by `depth` \[m\]: writes the displacements `d` of a robot that stands upright.
+    pub fn press(&self, model: &Model, data: &Data, depth: f64, d: &mut [f64]) {
+        let lowest = self.lowest(model, data);
         let mut at = 0;
-        for s in segments {
-            let (pose, twist) = (model.frame_pose(data, &s.frame), model.frame_velocity(data, &s.frame));
-            (s.force, s.moment) = (Vector3::zeros(), Vector3::zeros());
-            for (place, touch) in s.nodes.iter().zip(&mut touches) {
-                let arm = pose.rotation * place;
-                let d = Vector3::new(d[at], d[at + 1], d[at + 2]);
-                let w = twist.linear + twist.angular.cross(&arm);
-                let node = pose.translation.vector + arm + d;
-                let answer = point::solve(law, d.into(), w.into(), node.z);
-                rate[at..at + 3].copy_from_slice(&answer.rate);
-                let force = Vector3::from(answer.force);
-                *touch = Touch { at: node, force, state: answer.state, ..*touch };
-                if answer.state != State::Open {
-                    s.force += force; // (2.38)
-                    s.moment += (arm + d).cross(&force); // (2.39) with the deformed node
-                }
+        for s in &self.segments {
+            let pose = model.frame_pose(data, &s.frame);
+            let Elements::Points(places) = &s.elements else { continue }; // pads find their shape by themselves
+            for place in places {
+                let low = (pose * Point3::from(*place)).z - lowest;
+                d[at + 2] = (depth - low).max(0.0);
                 at += 3;
             }
         }
     }
 
+    /// Forces of the ground, and rates of the nodes for displacements `d`, after the model's kinematics and motion.
+    pub fn update(&mut self, model: &Model, data: &Data, ground: &Environment, d: &[f64], rate: &mut [f64]) {
+        self.touched.fill(false);
+        let mut at = 0;
+        for s in &mut self.segments {
+            let pose = model.frame_pose(data, &s.frame);
+            let twist = model.frame_velocity(data, &s.frame);
+            let n = 3 * s.elements.nodes();
+            let (d, rate) = (&d[at..at + n], &mut rate[at..at + n]);
+            (s.force, s.moment) = match &mut s.elements {
+                Elements::Points(places) => {
+                    points(&self.law, places, &pose, &twist, ground, &mut self.touched, d, rate)
+                }
+                Elements::Pads(blocks) => {
+                    let inside = Twist {
+                        linear: pose.rotation.inverse() * twist.linear,
+                        angular: pose.rotation.inverse() * twist.angular,
+                    };
+                    let per = 3 * blocks[0].pad.layer().nodes();
+                    let parts = d.chunks_exact(per).zip(rate.chunks_exact_mut(per));
+                    let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
+                    for (block, (d, rate)) in blocks.iter_mut().zip(parts) {
+                        block.look(&pose, ground, d, &mut self.touched);
+                        let Block { pad, memory, ground, .. } = block;
+                        let out = pad.solve(memory, d, ground, &inside, &self.settings, rate);
+                        if !out.report.converged && out.report.residual >= self.worst.residual {
+                            self.worst = out.report;
+                        }
+                        force += out.force;
+                        moment += out.moment;
+                    }
+                    (pose.rotation * force, pose.rotation * moment)
+                }
+            };
+            at += n;
+        }
+    }
+
     /// Adds what the ground does to a generalized force (2.40), after [`Feet::update`].
     pub fn add_to(&self, model: &Model, data: &Data, generalized: &mut [f64]) {
-        for s in self.segments.iter().filter(|s| s.force != Vector3::zeros()) {
+        for s in self.loaded() {
             model.add_wrench(data, &s.frame, &s.force, &s.moment, generalized);
         }
     }
 
-    /// Force and moment about the world's origin of the ground on the robot, world axes.
-    pub fn total(&self, model: &Model, data: &Data) -> (Vector3<f64>, Vector3<f64>) {
-        self.segments.iter().filter(|s| s.force != Vector3::zeros()).fold(Default::default(), |(f, n), s| {
-            let at = model.frame_position(data, &s.frame);
-            (f + s.force, n + s.moment + at.cross(&s.force))
+    /// Force and moment about `at` of the ground on the robot or, if given, on one foot; world axes.
+    pub fn total(
+        &self,
+        model: &Model,
+        data: &Data,
+        at: &Vector3<f64>,
+        foot: Option<usize>,
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        let wanted = self.loaded().filter(|s| foot.is_none_or(|foot| s.foot == foot));
+        wanted.fold(Default::default(), |(f, m), s| {
+            let arm = model.frame_position(data, &s.frame) - at;
+            (f + s.force, m + s.moment + arm.cross(&s.force))
         })
     }
 
-    /// Every node, in the order of the state.
-    pub fn touches(&self) -> &[Touch] {
-        &self.touches
+    fn loaded(&self) -> impl Iterator<Item = &Segment> {
+        self.segments.iter().filter(|s| s.force != Vector3::zeros())
     }
 }
 
-impl Touch {
-    fn none(foot: usize) -> Self {
-        Self { foot, at: Vector3::zeros(), force: Vector3::zeros(), state: State::Open }
+/// Independent nodes of one segment: force and moment on it, world axes.
+#[allow(clippy::too_many_arguments)] // the kernel of all contact: everything it reads, by name
+fn points(
+    law: &Law,
+    places: &[Vector3<f64>],
+    pose: &IsometryMatrix3<f64>,
+    twist: &multibody::Twist,
+    ground: &Environment,
+    touched: &mut [bool],
+    d: &[f64],
+    rate: &mut [f64],
+) -> (Vector3<f64>, Vector3<f64>) {
+    let (mut sum, mut moment) = (Vector3::zeros(), Vector3::zeros());
+    for ((place, d), rate) in places.iter().zip(d.chunks_exact(3)).zip(rate.chunks_exact_mut(3)) {
+        let (arm, d) = (pose.rotation * place, Vector3::new(d[0], d[1], d[2]));
+        let w = twist.linear + twist.angular.cross(&arm);
+        let hit = ground.query((pose.translation.vector + arm + d).into());
+        let (force, speed) = if hit.surface == Surface::Ground {
+            let answer = point::solve(law, d.into(), w.into(), hit.gap);
+            (Vector3::from(answer.force), Vector3::from(answer.rate))
+        } else {
+            let e: Matrix3<f64> = frame(&Vector3::from(hit.normal));
+            let inside = |x: &Vector3<f64>| <[f64; 3]>::from(e.tr_mul(x));
+            let law = Law { friction: ground.friction(hit.surface).unwrap_or(law.friction), ..*law };
+            let answer = point::solve(&law, inside(&d), inside(&w), hit.gap);
+            if let (Surface::Object(i), true) = (hit.surface, answer.state != State::Open) {
+                touched[i] = true;
+            }
+            (e * Vector3::from(answer.force), e * Vector3::from(answer.rate))
+        };
+        rate.copy_from_slice(speed.as_slice());
+        sum += force; // (2.38)
+        moment += (arm + d).cross(&force); // (2.39) with the deformed node
+    }
+    (sum, moment)
+}
+
+impl Block {
+    /// Looks where the ground is under every node of the sole.
+    fn look(&mut self, pose: &IsometryMatrix3<f64>, ground: &Environment, d: &[f64], touched: &mut [bool]) {
+        let back = pose.rotation.inverse();
+        for (i, (to, d)) in self.ground.iter_mut().zip(d.chunks_exact(3)).enumerate() {
+            let node = pose * Point3::from(self.pad.place(i) + Vector3::new(d[0], d[1], d[2]));
+            let hit = ground.query(node.coords.into());
+            let near = hit.surface != Surface::Far && hit.gap < FAR;
+            *to = near.then(|| Ground { gap: hit.gap, normal: back * Vector3::from(hit.normal) });
+            if let (Surface::Object(object), true) = (hit.surface, hit.gap <= 0.0) {
+                touched[object] = true;
+            }
+        }
+    }
+}
+
+impl Elements {
+    fn add(&mut self, at: Vector3<f64>, layer: Option<&Arc<Layer>>) {
+        match (self, layer) {
+            (Self::Points(places), _) => places.push(at),
+            (Self::Pads(blocks), Some(layer)) => {
+                let pad = Pad::new(layer.clone(), at);
+                let n = layer.contacts();
+                blocks.push(Block { memory: pad.memory(), ground: vec![None; n], pad });
+            }
+            (Self::Pads(_), None) => {}
+        }
+    }
+
+    fn nodes(&self) -> usize {
+        match self {
+            Self::Points(places) => places.len(),
+            Self::Pads(blocks) => blocks.iter().map(|b| b.pad.layer().nodes()).sum(),
+        }
+    }
+
+    fn lowest(&self, pose: &IsometryMatrix3<f64>) -> f64 {
+        let height = |place: Vector3<f64>| (pose * Point3::from(place)).z;
+        match self {
+            Self::Points(places) => places.iter().map(|p| height(*p)).fold(f64::INFINITY, f64::min),
+            Self::Pads(blocks) => blocks
+                .iter()
+                .flat_map(|b| (0..b.pad.layer().contacts()).map(move |i| b.pad.place(i)))
+                .map(height)
+                .fold(f64::INFINITY, f64::min),
+        }
     }
 }
 
 impl Segment {
-    fn new(frame: Frame, foot: usize) -> Self {
-        Self { frame, foot, nodes: Vec::new(), force: Vector3::zeros(), moment: Vector3::zeros() }
+    fn new(frame: Frame, foot: usize, pads: bool) -> Self {
+        let elements = if pads { Elements::Pads(Vec::new()) } else { Elements::Points(Vec::new()) };
+        Self { frame, foot, elements, force: Vector3::zeros(), moment: Vector3::zeros() }
     }
+}
+
+/// The matrices that all pads share.
+fn layer(robot: &Robot) -> Result<Arc<Layer>, Box<dyn Error>> {
+    let Some(p) = robot.contact.pads else {
+        return Err(format!(
+            "robot `{}`: robot.toml has no [contact.pads]; choose depth 1, 2 or 3, or describe the pads",
+            robot.name
+        )
+        .into());
+    };
+    let material = Material {
+        size: p.size,
+        bricks: p.bricks,
+        elasticity: Elasticity { modulus: p.modulus, poisson: p.poisson },
+        volume: Volume::Full,
+        damping_time: robot.contact.damping_time,
+    };
+    Ok(Arc::new(Layer::new(&material)?))
 }
 
 fn law(robot: &Robot) -> Law {

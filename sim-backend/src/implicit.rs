@@ -108,7 +108,8 @@ impl Train {
 
     /// Whether a drive's only joint is held by friction at the end of the step.
     pub fn held_joints(&self) -> impl Iterator<Item = usize> + '_ {
-        let held = |s: &&Shaft| s.step.slip == Slip::Sticks && s.elastic.is_none() && s.drive.joints.len() == 1;
+        let held =
+            |s: &&Shaft| s.step.slip == Slip::Sticks && s.elastic.is_none() && s.drive.joints.len() == 1;
         self.shafts.iter().filter(held).map(|s| s.joints[0])
     }
 }

@@ -5,22 +5,22 @@ use config::scene::Integrator;
 use crate::drive::Drive;
 use crate::plant::{Outside, Plant};
 
-/// Scratch for one step of a state of fixed length.
+/// A method, and room for one step of a state of fixed length.
 pub struct Stepper {
+    integrator: Integrator,
     k: [Vec<f64>; 4],
     x: Vec<f64>,
 }
 
 impl Stepper {
     /// For states of `n` numbers.
-    pub fn new(n: usize) -> Self {
-        Self { k: std::array::from_fn(|_| vec![0.0; n]), x: vec![0.0; n] }
+    pub fn new(integrator: Integrator, n: usize) -> Self {
+        Self { integrator, k: std::array::from_fn(|_| vec![0.0; n]), x: vec![0.0; n] }
     }
 
     /// Advances the state of a plant from `t` \[s\] into the cycle by `h` \[s\].
     pub fn step(
         &mut self,
-        integrator: Integrator,
         plant: &mut Plant,
         t: f64,
         h: f64,
@@ -29,7 +29,7 @@ impl Stepper {
         outside: &Outside,
     ) {
         let rate = |t: f64, x: &[f64], dx: &mut [f64]| plant.rate(t, x, drives, outside, dx);
-        match integrator {
+        match self.integrator {
             Integrator::Euler => self.euler(t, h, state, rate),
             Integrator::RungeKutta4 => self.runge_kutta_4(t, h, state, rate),
             Integrator::SemiImplicit => plant.implicit_step(t, h, state, drives, outside),
@@ -37,7 +37,13 @@ impl Stepper {
     }
 
     /// x + h x'(t, x); `rate(t, x, dx)` writes the derivative.
-    pub fn euler(&mut self, t: f64, h: f64, state: &mut [f64], mut rate: impl FnMut(f64, &[f64], &mut [f64])) {
+    pub fn euler(
+        &mut self,
+        t: f64,
+        h: f64,
+        state: &mut [f64],
+        mut rate: impl FnMut(f64, &[f64], &mut [f64]),
+    ) {
         rate(t, state, &mut self.k[0]);
         add(state, h, &self.k[0]);
     }
@@ -82,7 +88,7 @@ mod tests {
 
     /// Error of x' = cos(t) x, x(0) = 1 at t = 2 with n steps; exact: exp(sin 2).
     fn error(fourth: bool, n: usize) -> f64 {
-        let (mut stepper, mut x) = (Stepper::new(1), [1.0]);
+        let (mut stepper, mut x) = (Stepper::new(Integrator::Euler, 1), [1.0]);
         let h = 2.0 / n as f64;
         let rate = |t: f64, x: &[f64], dx: &mut [f64]| dx[0] = t.cos() * x[0];
         for i in 0..n {

@@ -8,7 +8,7 @@
 //! | equations of motion, types 1 to 5 of the thesis | [`plant`] |
 //! | their states | [`layout`] |
 //! | their drives, and these in an implicit step | [`train`], [`implicit`] |
-//! | their contact | [`feet`] |
+//! | their contact, and what they stand on | [`feet`], [`terrain`] |
 //! | time steps | [`integrate`] |
 //! | what the sensors make of it | [`sensors`] |
 
@@ -22,6 +22,7 @@ pub mod plant;
 pub mod power;
 mod robot;
 pub mod sensors;
+pub mod terrain;
 pub mod train;
 
 pub use robot::SimBackend;

@@ -5,17 +5,23 @@
 //! | 1 | follow their targets (2.80), (2.81) | | points | reduced model |
 //! | 2 | have dynamics of their own, with motors and their controllers | rigid | points | |
 //! | 3 | as 2 | elastic | points | |
+//! | 4 | as 2 | rigid | pads of finite elements | |
+//! | 5 | as 2 | elastic | pads of finite elements | |
 //!
 //! The states are in [`crate::layout`], the drives in [`crate::train`], the contact in [`crate::feet`].
 
+use std::error::Error;
+
 use config::Robot;
+use environment::Environment;
 use messages::Wrench;
-use multibody::{Data, Frame, Limbs, Model, ModelError, Rotor};
+use multibody::{Data, Frame, Limbs, Model, Rotor};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use crate::drive::{Drive, Motion};
 use crate::feet::Feet;
 use crate::layout::Layout;
+use crate::sensors::carried;
 use crate::train::{Fault, Given, Train};
 
 /// The equations of motion of one robot.
@@ -23,6 +29,7 @@ pub struct Plant {
     model: Model,
     data: Data,
     layout: Layout,
+    environment: Environment,
     feet: Feet,
     /// What the feet's frames hang on.
     limbs: Limbs,
@@ -69,13 +76,29 @@ pub struct Outside {
 }
 
 impl Plant {
-    /// The model of `robot` of type `depth`, 1 to 3; allocates everything. `pose` \[rad\] is where the controllers of the
-    /// drives are tuned. Types above 1 need a robot with drives.
-    pub fn new(robot: &Robot, depth: u8, pose: &[f64]) -> Result<Self, ModelError> {
-        let (dynamic, elastic) = (depth > 1, depth == 3 || depth == 5);
+    /// The model of `robot` of type `depth` on `environment`; allocates everything. `pose` \[rad\] is where the controllers
+    /// of the drives are tuned.
+    ///
+    /// # Errors
+    /// The robot's data do not fit together, or it lacks what the type needs: drives above type 1, pads above type 3.
+    pub fn new(
+        robot: &Robot,
+        environment: Environment,
+        depth: u8,
+        pose: &[f64],
+    ) -> Result<Self, Box<dyn Error>> {
+        let (dynamic, elastic, pads) = (depth > 1, depth == 3 || depth == 5, depth > 3);
+        if dynamic && robot.drives.is_empty() {
+            return Err(format!(
+                "robot `{}`: robot.toml has no [[drive]]; choose depth 1, or describe the drives",
+                robot.name
+            )
+            .into());
+        }
         let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-        let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?.with_rotors(&rotors(robot, elastic))?;
-        let feet = Feet::new(robot, &model)?;
+        let model =
+            Model::from_urdf(&robot.urdf, &robot.torso, &order)?.with_rotors(&rotors(robot, elastic))?;
+        let feet = Feet::new(robot, &model, pads, environment.objects().len())?;
         let soles = [
             model.frame(&robot.feet[0].link, robot.feet[0].sole)?,
             model.frame(&robot.feet[1].link, robot.feet[1].sole)?,
@@ -91,7 +114,7 @@ impl Plant {
         };
         let scratch = Scratch::new(&model, &layout);
         let limbs = model.limbs(&feet.frames());
-        Ok(Self { data: Data::new(&model), model, layout, feet, limbs, soles, train, scratch })
+        Ok(Self { data: Data::new(&model), model, layout, environment, feet, limbs, soles, train, scratch })
     }
 
     /// Where each state is.
@@ -107,13 +130,9 @@ impl Plant {
         self.scratch.q[..7].copy_from_slice(&x[..7]);
         self.scratch.q[7..].copy_from_slice(joints);
         self.model.forward_kinematics(&mut self.data, &self.scratch.q);
-        let heights: Vec<f64> = self.feet.heights(&self.model, &self.data).collect();
-        let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
-        let weight = self.model.mass() * -multibody::GRAVITY.z;
-        x[2] = -lowest - weight / self.feet.normal_stiffness();
-        for (i, low) in heights.iter().enumerate() {
-            x[l.layer().start + 3 * i + 2] = (-(low + x[2])).max(0.0);
-        }
+        let depth = self.feet.deflection(self.model.mass() * -multibody::GRAVITY.z);
+        x[2] = -self.feet.lowest(&self.model, &self.data) - depth;
+        self.feet.press(&self.model, &self.data, depth, &mut x[l.layer()]);
         x[7..7 + l.joints].copy_from_slice(&joints[..l.joints]);
         if let Some(train) = &self.train {
             train.relax(joints, &mut x[l.rotor_angle()]);
@@ -138,10 +157,10 @@ impl Plant {
     pub fn rate(&mut self, tau: f64, x: &[f64], drives: &[Drive], outside: &Outside, dx: &mut [f64]) {
         let l = self.layout;
         self.load(tau, x, drives);
-        let Self { model, data, feet, limbs, scratch, train, .. } = self;
+        let Self { model, data, environment, feet, limbs, scratch, train, .. } = self;
         model.set_position(data, &scratch.q);
         model.limb_motion_here(data, limbs, &scratch.v);
-        feet.update(model, data, &x[l.layer()], &mut dx[l.layer()]);
+        feet.update(model, data, environment, &x[l.layer()], &mut dx[l.layer()]);
         if l.joints == 0 {
             self.base_rate(x, outside);
         } else {
@@ -172,10 +191,10 @@ impl Plant {
         let l = self.layout;
         // References of the end of the step, with which the drives work.
         self.load(if l.joints == 0 { tau } else { tau + h }, x, drives);
-        let Self { model, data, feet, limbs, scratch, train, .. } = self;
+        let Self { model, data, environment, feet, limbs, scratch, train, .. } = self;
         model.set_position(data, &scratch.q);
         model.limb_motion_here(data, limbs, &scratch.v);
-        feet.update(model, data, &x[l.layer()], &mut scratch.layer_rate);
+        feet.update(model, data, environment, &x[l.layer()], &mut scratch.layer_rate);
         if l.joints == 0 {
             self.base_rate(x, outside);
         } else {
@@ -227,12 +246,10 @@ impl Plant {
         let Self { model, data, feet, soles, .. } = self;
         model.forward_kinematics_here(data);
         let mut foot_wrench = [Wrench { force: [0.0; 3], moment: [0.0; 3] }; 2];
-        for touch in feet.touches() {
-            let moment = (touch.at - model.frame_position(data, &soles[touch.foot])).cross(&touch.force);
-            for k in 0..3 {
-                foot_wrench[touch.foot].force[k] += touch.force[k];
-                foot_wrench[touch.foot].moment[k] += moment[k];
-            }
+        for (foot, wrench) in foot_wrench.iter_mut().enumerate() {
+            let (force, moment) =
+                feet.total(model, data, &model.frame_position(data, &soles[foot]), Some(foot));
+            *wrench = Wrench { force: force.into(), moment: moment.into() };
         }
         let sole_places = std::array::from_fn(|i| {
             let pose = model.frame_pose(data, &soles[i]);
@@ -247,6 +264,22 @@ impl Plant {
         }
     }
 
+    /// What carries and moves the bodies below each force sensor; after [`Plant::snapshot`], whose acceleration it takes.
+    pub fn carried(&mut self, sensors: &[Frame; 2]) -> [Wrench; 2] {
+        let Self { model, data, scratch, .. } = self;
+        model.inverse_dynamics_here(data, &scratch.v, &scratch.acceleration, &mut scratch.bias);
+        sensors.map(|frame| carried::inertial(model, data, &frame))
+    }
+
+    /// Motors in a state: angles and speeds in joint units, which hold the joints' on entry, and currents.
+    pub fn motors(&self, x: &[f64], angle: &mut [f64], speed: &mut [f64], current: &mut [f64]) {
+        let l = &self.layout;
+        if let Some(train) = &self.train {
+            train.motor_side((&x[l.rotor_angle()], &x[l.rotor_speed()]), angle, speed);
+        }
+        current[..l.motors].copy_from_slice(&x[l.current()]);
+    }
+
     /// Pose of a frame after [`Plant::snapshot`].
     pub fn frame_pose(&self, frame: &Frame) -> nalgebra::IsometryMatrix3<f64> {
         self.model.frame_pose(&self.data, frame)
@@ -255,6 +288,16 @@ impl Plant {
     /// The multibody model.
     pub fn model(&self) -> &Model {
         &self.model
+    }
+
+    /// Moves the objects of the environment to `time` \[s\], as far as nothing touches them; what happened.
+    pub fn advance(&mut self, time: f64) -> &[environment::Event] {
+        self.environment.advance(time, self.feet.touched(), &[])
+    }
+
+    /// How the solver of the pads ended at worst since the last call.
+    pub fn take_contact_report(&mut self) -> contact::Report {
+        self.feet.take_worst()
     }
 
     /// Something a drive could not do, since the last call.
@@ -271,7 +314,7 @@ impl Plant {
         }
         let pushed = Vector3::from_column_slice(&x[..3]) + orientation(x) * model.base_cog();
         let push = Vector3::from(outside.push);
-        let (force, moment) = feet.total(model, data);
+        let (force, moment) = feet.total(model, data, &Vector3::zeros(), None);
         let base_force = at_base(x, &(force + push), &(moment + pushed.cross(&push)));
         let (m, bias) = model.base_dynamics_here(data, v, joint_acceleration);
         let a = m.cholesky().map_or(Vector6::zeros(), |c| c.solve(&(base_force - bias)));

@@ -1,16 +1,20 @@
 //! One bus cycle of the simulated robot. Pure: frames in, frames out.
 
+use std::error::Error;
+
 use config::{Robot, Scene};
 use messages::command::PushCommand;
 use messages::frames::{decode_targets, encode_sensors};
-use messages::{BusFrames, EventCode, Imu, JointMode, JointTargets, Power, Sensors, SimState};
-use multibody::{Frame, ModelError};
+use messages::{BusFrames, EventCode, Imu, JointMode, JointTargets, Power, Sensors, SimState, Wrench};
+use multibody::Frame;
 use nalgebra::Vector3;
 
 use crate::drive::{Drive, Motion};
 use crate::integrate::Stepper;
 use crate::plant::{Outside, Plant, Snapshot, orientation};
 use crate::power::PowerLine;
+use crate::sensors::{SensorSet, Truth, carried};
+use crate::terrain;
 
 /// Tilt of the torso \[rad\] from which a robot counts as fallen; it is also fallen below half its initial height.
 const FALLEN_TILT: f64 = std::f64::consts::FRAC_PI_4;
@@ -22,6 +26,8 @@ pub struct SimBackend {
     plant: Plant,
     stepper: Stepper,
     state: Vec<f64>,
+    /// State at the begin of the cycle.
+    last_good: Vec<f64>,
     /// How the joints are to move in this cycle.
     drives: Vec<Drive>,
     /// Where that ends.
@@ -29,6 +35,7 @@ pub struct SimBackend {
     /// How they move.
     motions: Vec<Motion>,
     sensor_frames: [Frame; 2],
+    sensor_set: SensorSet,
     power: PowerLine,
     targets: JointTargets,
     /// Tick of the newest targets followed.
@@ -46,14 +53,21 @@ pub struct SimBackend {
 
 impl SimBackend {
     /// The robot of a scene in its start pose.
-    pub fn new(robot: &Robot, scene: &Scene) -> Result<Self, ModelError> {
+    ///
+    /// # Errors
+    /// The robot's data do not fit together or do not allow the depth of the scene, or an object cannot be read.
+    pub fn new(robot: &Robot, scene: &Scene) -> Result<Self, Box<dyn Error>> {
         let pose = &robot.poses[&scene.start_pose];
-        let mut plant = Plant::new(robot, scene.depth, pose)?;
+        let mut plant = Plant::new(robot, terrain::environment(scene)?, scene.depth, pose)?;
         let state = plant.standing(pose);
         let sensor = |i: usize| plant.model().frame(&robot.feet[i].sensor_link, robot.feet[i].sensor);
+        let sensor_frames = [sensor(0)?, sensor(1)?];
+        let hanging = carried::hanging(plant.model(), &sensor_frames, pose);
         let mut sim = Self {
-            sensor_frames: [sensor(0)?, sensor(1)?],
-            stepper: Stepper::new(state.len()),
+            sensor_frames,
+            sensor_set: SensorSet::new(&scene.sensors, robot, &hanging, scene.seed, scene.cycle),
+            last_good: state.clone(),
+            stepper: Stepper::new(scene.integrator, state.len()),
             drives: pose.iter().map(|&q| Drive::resting(q)).collect(),
             goals: pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect(),
             motions: pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect(),
@@ -112,16 +126,13 @@ impl SimBackend {
         let mut outside = Outside { push: self.current_push(), powered: false };
         if !self.fallen {
             outside.powered = self.begin_cycle(frames, powered);
+            self.last_good.copy_from_slice(&self.state);
             let h = dt / f64::from(self.scene.substeps);
             for i in 0..self.scene.substeps {
                 let Self { plant, stepper, state, drives, .. } = self;
-                stepper.step(self.scene.integrator, plant, f64::from(i) * h, h, state, drives, &outside);
+                stepper.step(plant, f64::from(i) * h, h, state, drives, &outside);
             }
-            let unit = orientation(&self.state);
-            self.state[3..7].copy_from_slice(unit.coords.as_slice());
-            for (goal, drive) in self.goals.iter_mut().zip(&self.drives) {
-                *goal = drive.at(dt);
-            }
+            self.end_cycle();
         }
         self.cycles += 1;
         let snapshot = self.plant.snapshot(dt, &self.state, &self.drives, &outside);
@@ -131,8 +142,9 @@ impl SimBackend {
             self.sensors.header = frames.header;
             self.sim_state.header = frames.header;
         }
-        self.measure(&snapshot, outside.push, powered);
-        encode_sensors(&self.robot.nodes, &self.sensors, &mut self.frames);
+        if self.measure(&snapshot, outside.push, powered) {
+            encode_sensors(&self.robot.nodes, &self.sensors, &mut self.frames);
+        }
         (&self.frames, &self.sim_state)
     }
 
@@ -160,6 +172,34 @@ impl SimBackend {
         driven
     }
 
+    /// Checks and tidies the state the steps have left.
+    fn end_cycle(&mut self) {
+        if let Some(lost) = self.state.iter().position(|x| !x.is_finite()) {
+            self.state.copy_from_slice(&self.last_good);
+            self.event = Some((EventCode::Diverged, lost as u64));
+            self.fallen = true;
+        }
+        let unit = orientation(&self.state);
+        self.state[3..7].copy_from_slice(unit.coords.as_slice());
+        for (goal, drive) in self.goals.iter_mut().zip(&self.drives) {
+            *goal = drive.at(self.scene.cycle);
+        }
+        if let Some(fault) = self.plant.take_fault() {
+            self.event = Some((EventCode::DriveFault, fault.drive as u64));
+        }
+        let report = self.plant.take_contact_report();
+        if !report.converged {
+            self.event = Some((EventCode::ContactNotConverged, report.sweeps.into()));
+        }
+        for event in self.plant.advance(self.cycles as f64 * self.scene.cycle) {
+            self.event = match *event {
+                environment::Event::Refused(i) => Some((EventCode::ObjectHeld, i as u64)),
+                environment::Event::Resumed(i) => Some((EventCode::ObjectResumed, i as u64)),
+                environment::Event::Appeared(_) | environment::Event::Vanished(_) => continue,
+            };
+        }
+    }
+
     /// Sum of the pushes that act now \[N\].
     fn current_push(&mut self) -> [f64; 3] {
         let t = self.time() + 0.5 * self.scene.cycle; // mid-cycle: rounding adds no cycle and takes none
@@ -185,35 +225,45 @@ impl SimBackend {
         }
     }
 
-    /// Ideal sensors, and the truth beside them.
-    fn measure(&mut self, s: &Snapshot, push: [f64; 3], powered: bool) {
+    /// What the sensors see, and the truth beside it; false if a reading is no number and must not go on the bus.
+    fn measure(&mut self, s: &Snapshot, push: [f64; 3], powered: bool) -> bool {
         let x = &self.state;
-        let (sensors, truth) = (&mut self.sensors, &mut self.sim_state);
+        let truth = &mut self.sim_state;
+        let mut seen = Truth { motor_current: [f64::NAN; messages::MAX_JOINTS], ..Truth::default() };
         for (j, m) in self.motions.iter().enumerate() {
-            sensors.joint_angle[j] = m.angle;
-            sensors.joint_speed[j] = m.speed;
+            (seen.joint_angle[j], seen.joint_speed[j]) = (m.angle, m.speed);
             truth.joint_angle[j] = m.angle;
         }
-        sensors.power = u64::from(powered);
+        (seen.motor_angle, seen.motor_speed) = (seen.joint_angle, seen.joint_speed);
+        self.plant.motors(x, &mut seen.motor_angle, &mut seen.motor_speed, &mut seen.motor_current);
         for i in 0..2 {
             let pose = self.plant.frame_pose(&self.sensor_frames[i]);
-            let back = pose.rotation.inverse();
             let force = Vector3::from(s.foot_wrench[i].force);
             let sole = Vector3::new(s.feet[i][0], s.feet[i][1], s.feet[i][2]);
             let lever = sole - pose.translation.vector;
             let moment = Vector3::from(s.foot_wrench[i].moment) + lever.cross(&force);
-            sensors.foot_wrench[i].force = (back * force).into();
-            sensors.foot_wrench[i].moment = (back * moment).into();
+            let back = pose.rotation.inverse();
+            seen.contact[i] = Wrench { force: (back * force).into(), moment: (back * moment).into() };
+        }
+        if self.sensor_set.needs_inertia() {
+            seen.inertial = self.plant.carried(&self.sensor_frames);
         }
         let o = orientation(x);
         let speed = &x[self.plant.layout().speed()];
         let (imu, omega) = (Vector3::from(self.robot.imu), Vector3::from_column_slice(&speed[3..6]));
-        sensors.imu = Imu {
+        seen.imu = Imu {
             orientation: o.coords.into(),
             angular_velocity: omega.into(),
             // The angular acceleration's share at an IMU away from the origin is left out: zero for Lola.
             acceleration: (s.specific_force + omega.cross(&omega.cross(&imu))).into(),
         };
+        let report = self.sensor_set.measure(&seen, &mut self.sensors);
+        self.sensors.power = u64::from(powered);
+        if report.invalid > 0 {
+            self.event.get_or_insert((EventCode::SensorNotFinite, report.invalid.into()));
+        } else if report.clipped > 0 {
+            self.event.get_or_insert((EventCode::SensorClipped, report.clipped.into()));
+        }
         truth.time = self.cycles as f64 * self.scene.cycle;
         truth.position = [x[0], x[1], x[2]];
         truth.orientation = o.coords.into();
@@ -225,5 +275,6 @@ impl SimBackend {
         truth.push = push;
         truth.power = u64::from(powered);
         truth.fallen = u64::from(self.fallen);
+        report.invalid == 0
     }
 }

@@ -172,6 +172,16 @@ impl Train {
         }
     }
 
+    /// Angles and speeds of the motors, in units of the joints they move most: where an elastic gear has its rotor, that;
+    /// else the joint.
+    pub fn motor_side(&self, rotor: (&[f64], &[f64]), angle: &mut [f64], speed: &mut [f64]) {
+        for s in &self.shafts {
+            if let Some((e, _)) = s.elastic.filter(|_| !rotor.0.is_empty()) {
+                (angle[s.joints[0]], speed[s.joints[0]]) = (rotor.0[e], rotor.1[e]);
+            }
+        }
+    }
+
     /// Rates of the elastic rotors' speeds, after the forward dynamics.
     pub fn rotor_rates(&self, model: &Model, data: &Data, rate: &mut [f64]) {
         for (k, s) in self.shafts.iter().enumerate() {
@@ -238,8 +248,8 @@ impl Shaft {
     /// Voltage the current loop sets \[V\].
     pub(crate) fn voltage(&self, current: f64) -> f64 {
         let (motor, wanted) = (&self.drive.motor, self.wanted_current());
-        let voltage = motor.voltage(wanted, self.speed)
-            + motor.inductance * CURRENT_BANDWIDTH * (wanted - current);
+        let voltage =
+            motor.voltage(wanted, self.speed) + motor.inductance * CURRENT_BANDWIDTH * (wanted - current);
         voltage.clamp(-self.drive.voltage_limit, self.drive.voltage_limit)
     }
 

@@ -3,6 +3,8 @@
 //! The order of a cycle is the order in which data flow, and the same as between processes in lockstep:
 //! sensors → planner → controller → joint loop → watchdog → simulated robot → sensors.
 
+use std::error::Error;
+
 use config::{Setup, Timeline};
 use controller::Controller;
 use lowlevel::JointLoop;
@@ -11,7 +13,6 @@ use messages::{
     BusFrames, Command, ControllerState, EventCode, JointTargets, Parameters, Plan, Power, Process, Sensors,
     SimState,
 };
-use multibody::ModelError;
 use planner::Planner;
 use sim_backend::SimBackend;
 use watchdog::{Inputs, Watchdog};
@@ -54,7 +55,10 @@ pub struct Chain {
 
 impl Chain {
     /// Builds every part of a scene.
-    pub fn new(setup: &Setup) -> Result<Self, ModelError> {
+    ///
+    /// # Errors
+    /// The configuration does not fit together.
+    pub fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
         let Setup { scene, robot, gait, system, .. } = setup;
         let mut sim = SimBackend::new(robot, scene)?;
         let answer = *sim.step(None, None).0;

@@ -11,6 +11,7 @@ use std::path::Path;
 use config::scene::Integrator;
 use config::{Gait, Setup, Timeline};
 use controller::Controller;
+use environment::Environment;
 use messages::command::Domain;
 use messages::{Command, ControllerState, GaitState, JointTargets, LEFT, Plan, RIGHT, Sensors};
 use planner::Planner;
@@ -134,7 +135,7 @@ type Trajectory = Vec<([f64; 7], f64)>;
 fn simulations(motion: &str, setup: &Setup) -> Result<Vec<Simulation>, Box<dyn Error>> {
     let second = Second::record(setup)?;
     let pose = &setup.robot.poses[&setup.scene.start_pose];
-    let mut plant = Plant::new(&setup.robot, setup.scene.depth, pose)?;
+    let mut plant = Plant::new(&setup.robot, Environment::flat(), setup.scene.depth, pose)?;
     let mut simulate = |method, steps| second.simulate(&mut plant, setup, method, steps);
     let (reference, _) = simulate(Integrator::RungeKutta4, 64);
     use Integrator::{Euler, RungeKutta4};
@@ -187,7 +188,7 @@ impl Second {
     ) -> (Trajectory, f64) {
         let (n, dt) = (setup.robot.joints.len(), setup.scene.cycle);
         let (mut x, none) = (self.state.clone(), Outside { powered: true, ..Outside::default() });
-        let mut stepper = Stepper::new(x.len());
+        let mut stepper = Stepper::new(method, x.len());
         let motion =
             |t: &JointTargets, j: usize| Motion { angle: t.angle[j], speed: t.speed[j], acceleration: 0.0 };
         let mut motions: Vec<Motion> = (0..n).map(|j| motion(&self.before, j)).collect();
@@ -202,7 +203,7 @@ impl Second {
             let h = dt / f64::from(steps);
             for i in 0..steps {
                 let tau = f64::from(i) * h;
-                stepper.step(method, plant, tau, h, &mut x, &drives, &none);
+                stepper.step(plant, tau, h, &mut x, &drives, &none);
             }
             let seen = plant.snapshot(dt, &x, &drives, &none);
             let mut pose = [0.0; 7];

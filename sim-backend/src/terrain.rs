@@ -1,0 +1,30 @@
+//! What a scene puts on the ground, as the environment of the equations of motion.
+
+use std::error::Error;
+
+use config::Scene;
+use config::terrain::{Shape, TerrainObject, TerrainPose};
+use environment::{Environment, Mesh, Object, Pose, Schedule};
+
+/// Flat ground with the objects of a scene.
+///
+/// # Errors
+/// A mesh cannot be read.
+pub fn environment(scene: &Scene) -> Result<Environment, Box<dyn Error>> {
+    let objects = scene.objects.iter().map(object).collect::<Result<Vec<_>, _>>()?;
+    Ok(Environment::new(objects))
+}
+
+fn object(o: &TerrainObject) -> Result<Object, Box<dyn Error>> {
+    let mesh = match &o.shape {
+        Shape::Box(size) => Mesh::cuboid(*size)?,
+        Shape::Mesh { file, scale } => Mesh::read(file, *scale)?,
+    };
+    let later: Vec<(f64, Pose)> = o.poses.iter().map(|(time, p)| (*time, pose(p))).collect();
+    let schedule = Schedule::new(o.appears, o.vanishes, pose(&o.pose), &later);
+    Ok(Object::new(o.name.clone(), mesh, o.friction, schedule))
+}
+
+fn pose(p: &TerrainPose) -> Pose {
+    Pose::new(p.position, p.rotation)
+}
