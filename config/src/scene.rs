@@ -29,6 +29,8 @@ pub struct Scene {
     pub integrator: Integrator,
     /// \[1\] Integration steps per bus cycle.
     pub substeps: u32,
+    /// \[1\] Error of a step of the adaptive integrator, relative and absolute; the others have none.
+    pub tolerance: Option<f64>,
     /// \[s\] Bus cycle.
     pub cycle: f64,
     /// Name of the joint pose the robot starts in, standing on the ground.
@@ -56,13 +58,15 @@ pub enum Integrator {
     RungeKutta4,
     /// Drives implicit, contact and bodies explicit, first order: dry friction sticks, and motors do not limit the step.
     SemiImplicit,
+    /// Backward differentiation with steps chosen for a tolerance; for comparison, not for real time.
+    Bdf,
 }
 
 impl Integrator {
     /// All of them, in the order of [`Integrator::WORDS`].
-    pub const ALL: [Self; 3] = [Self::Euler, Self::RungeKutta4, Self::SemiImplicit];
+    pub const ALL: [Self; 4] = [Self::Euler, Self::RungeKutta4, Self::SemiImplicit, Self::Bdf];
     /// Their names in scene files.
-    pub const WORDS: [&str; 3] = ["euler", "rk4", "semi_implicit"];
+    pub const WORDS: [&str; 4] = ["euler", "rk4", "semi_implicit", "bdf"];
 }
 
 impl Scene {
@@ -89,6 +93,7 @@ impl Scene {
             depth: top.integer("depth", 1..=5) as u8,
             integrator: Integrator::ALL[top.word("integrator", &Integrator::WORDS)],
             substeps: top.integer("substeps", 1..=1000) as u32,
+            tolerance: top.has("tolerance").then(|| top.number("tolerance", "1", 1e-12..=1e-2)),
             cycle: top.number("cycle", "s", 1e-4..=0.02),
             start_pose: top.text("start_pose"),
             duration: top.number("duration", "s", POSITIVE),
@@ -98,6 +103,9 @@ impl Scene {
             commands: top.tables("command", command),
             pushes: top.tables("push", push),
         };
+        if (scene.integrator == Integrator::Bdf) != scene.tolerance.is_some() {
+            top.problem("tolerance", "the integrator \"bdf\" needs a tolerance, and no other one has one");
+        }
         scene.check_times(top, "command", scene.commands.iter().map(|(time, _)| *time));
         scene.check_times(top, "push", scene.pushes.iter().map(|(time, _)| *time));
         scene

@@ -218,7 +218,7 @@ fn scene_and_its_commands() {
     assert_eq!(
         text(&copy.scene("demo")),
         "demo.toml: 6 problems\n  \
-         line 5: integrator: `heun` is not known; it takes one of `euler`, `rk4`, `semi_implicit`\n  \
+         line 5: integrator: `heun` is not known; it takes one of `euler`, `rk4`, `semi_implicit`, `bdf`\n  \
          line 12: command: command[1]: its time 35 s lies after the end of the scene, 34 s\n  \
          line 12: command: command[2]: its time 10 s lies before 35 s of the one above it\n  \
          line 18: command[1].topic: walk/velocity: give it numbers, for example forward=<m/s> left=<m/s> turn=<rad/s>\n  \

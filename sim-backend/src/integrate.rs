@@ -1,21 +1,44 @@
-//! Time steps: explicit Euler and classical Runge-Kutta on a flat state vector, semi-implicit Euler by the plant itself.
+//! Time steps: explicit Euler and classical Runge-Kutta on a flat state vector, semi-implicit Euler by the plant itself,
+//! and the adaptive method of [`crate::stiff`].
 
 use config::scene::Integrator;
 
 use crate::drive::Drive;
 use crate::plant::{Outside, Plant};
+use crate::stiff::{GaveUp, Limits, Stiff};
+
+/// Tolerance of the adaptive method, unless it is told another one.
+const TOLERANCE: f64 = 1e-6;
 
 /// A method, and room for one step of a state of fixed length.
 pub struct Stepper {
     integrator: Integrator,
     k: [Vec<f64>; 4],
     x: Vec<f64>,
+    stiff: Stiff,
+    gave_up: Option<GaveUp>,
 }
 
 impl Stepper {
     /// For states of `n` numbers.
     pub fn new(integrator: Integrator, n: usize) -> Self {
-        Self { integrator, k: std::array::from_fn(|_| vec![0.0; n]), x: vec![0.0; n] }
+        Self {
+            integrator,
+            k: std::array::from_fn(|_| vec![0.0; n]),
+            x: vec![0.0; n],
+            stiff: Stiff::new(Limits::of_tolerance(TOLERANCE)),
+            gave_up: None,
+        }
+    }
+
+    /// The same with a tolerance of the adaptive method.
+    pub fn with_tolerance(self, tolerance: f64) -> Self {
+        Self { stiff: Stiff::new(Limits::of_tolerance(tolerance)), ..self }
+    }
+
+    /// Where the adaptive method last gave up since the last call; a semi-implicit step went on from there.
+    pub fn take_gave_up(&mut self) -> Option<GaveUp> {
+        self.gave_up.take()
     }
 
     /// Advances the state of a plant from `t` \[s\] into the cycle by `h` \[s\].
@@ -28,11 +51,18 @@ impl Stepper {
         drives: &[Drive],
         outside: &Outside,
     ) {
-        let rate = |t: f64, x: &[f64], dx: &mut [f64]| plant.rate(t, x, drives, outside, dx);
+        let mut rate = |t: f64, x: &[f64], dx: &mut [f64]| plant.rate(t, x, drives, outside, dx);
         match self.integrator {
             Integrator::Euler => self.euler(t, h, state, rate),
             Integrator::RungeKutta4 => self.runge_kutta_4(t, h, state, rate),
             Integrator::SemiImplicit => plant.implicit_step(t, h, state, drives, outside),
+            Integrator::Bdf => {
+                if let Err(gave_up) = self.stiff.advance(t, h, state, &mut rate) {
+                    let at = gave_up.time;
+                    self.gave_up = Some(gave_up);
+                    plant.implicit_step(at, t + h - at, state, drives, outside);
+                }
+            }
         }
     }
 

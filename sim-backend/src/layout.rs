@@ -82,6 +82,39 @@ impl Layout {
         after(&self.layer(), self.motors)
     }
 
+    /// What the state of this number is, in words: "speed of joint 3".
+    pub fn name(&self, state: usize) -> String {
+        const AXES: [&str; 4] = ["x", "y", "z", "w"];
+        let parts = [
+            (self.pose(), ["position", "orientation", "angle of joint"]),
+            (self.speed(), ["velocity", "angular velocity", "speed of joint"]),
+        ];
+        for (range, [first, second, joint]) in parts {
+            let k = state.wrapping_sub(range.start);
+            match k {
+                _ if !range.contains(&state) => {}
+                0..3 => return format!("{first} {} of the torso", AXES[k]),
+                _ if k < range.len() - self.joints => {
+                    return format!("{second} {} of the torso", AXES[k - 3]);
+                }
+                _ => return format!("{joint} {}", k + self.joints - range.len()),
+            }
+        }
+        let d = state.wrapping_sub(self.layer().start);
+        match state {
+            _ if self.rotor_angle().contains(&state) => {
+                format!("angle of elastic rotor {}", state - self.rotor_angle().start)
+            }
+            _ if self.rotor_speed().contains(&state) => {
+                format!("speed of elastic rotor {}", state - self.rotor_speed().start)
+            }
+            _ if self.layer().contains(&state) => {
+                format!("displacement {} of contact node {}", AXES[d % 3], d / 3)
+            }
+            _ => format!("current of motor {}", state.wrapping_sub(self.current().start)),
+        }
+    }
+
     /// Counts as in the thesis's tables.
     pub fn counts(&self) -> Counts {
         let mechanical = 6 + self.joints + self.elastic;
@@ -104,5 +137,23 @@ mod tests {
         let ranges = [l.pose(), l.speed(), l.rotor_angle(), l.rotor_speed(), l.layer(), l.current()];
         assert!(ranges.windows(2).all(|w| w[0].end == w[1].start));
         assert_eq!(l.counts().odes + 1, l.len());
+    }
+
+    #[test]
+    fn states_have_names() {
+        let l = Layout { joints: 24, elastic: 16, nodes: 16, motors: 24 };
+        for (state, name) in [
+            (2, "position z of the torso"),
+            (6, "orientation w of the torso"),
+            (7, "angle of joint 0"),
+            (l.speed().start + 5, "angular velocity z of the torso"),
+            (l.speed().end - 1, "speed of joint 23"),
+            (l.rotor_angle().start + 2, "angle of elastic rotor 2"),
+            (l.rotor_speed().start, "speed of elastic rotor 0"),
+            (l.layer().end - 1, "displacement z of contact node 15"),
+            (l.len() - 1, "current of motor 23"),
+        ] {
+            assert_eq!(l.name(state), name);
+        }
     }
 }

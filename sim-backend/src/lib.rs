@@ -9,7 +9,7 @@
 //! | their states | [`layout`] |
 //! | their drives, and these in an implicit step | [`train`], [`implicit`] |
 //! | their contact, and what they stand on | [`feet`], [`terrain`] |
-//! | time steps | [`integrate`] |
+//! | time steps; the adaptive ones | [`integrate`], [`stiff`] |
 //! | what the sensors make of it | [`sensors`] |
 
 pub mod daemon;
@@ -22,6 +22,7 @@ pub mod plant;
 pub mod power;
 mod robot;
 pub mod sensors;
+pub mod stiff;
 pub mod terrain;
 pub mod train;
 
