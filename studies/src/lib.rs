@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`accuracy`] | which method is cheapest for a given accuracy? |
 //! | [`push`] | which impulse does the walking robot survive? |
+//! | [`limits`] | where do methods fail, and is it told? |
 //! | [`speed`] | how fast is each part, and how accurate is it at that speed? |
 //! | [`figures_of_thesis`] | are the figures of the thesis found again? |
 //! | [`cycles`] | how well did the processes of a run keep real time? |
@@ -15,5 +16,6 @@ pub mod chain;
 pub mod cycles;
 pub mod figures;
 pub mod figures_of_thesis;
+pub mod limits;
 pub mod push;
 pub mod speed;

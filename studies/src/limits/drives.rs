@@ -1,0 +1,162 @@
+//! Drives: load torques without a solution, elasticity as printed, linkages at their dead points (F12-F15, F24).
+
+use ::drives::fit::CubicFriction;
+use ::drives::{Ankle, AnkleGeometry, Friction, HarmonicFriction, KneeGeometry, NoLoadTorque, OutOfDomain, ScrewFriction, Transmission};
+use config::robot::Drive as Description;
+use nalgebra::Vector3;
+use sim_backend::drive::Drive;
+use sim_backend::plant::Outside;
+use sim_backend::train::Why;
+
+use super::{Bench, Finding, Findings, Rule, largest_stable, slope};
+
+/// A gear whose share of the load is the speed \[rad/s\] times 1e-3.
+const COUPLED: HarmonicFriction = HarmonicFriction { starting: 0.0, load: 0.0, viscous: 0.0, coupled: 1e-3 };
+/// HFUC-25-100 and HFUC-32-50 of table C.1.
+const GEARS: [(&str, HarmonicFriction); 2] = [
+    ("HFUC-25-100", HarmonicFriction { starting: 6.20e-2, load: 0.0, viscous: 5.33e-5, coupled: 6.58e-4 }),
+    ("HFUC-32-50", HarmonicFriction { starting: 2.46e-1, load: 5.49e-3, viscous: 1.52e-4, coupled: 6.21e-4 }),
+];
+
+/// F12: a driven load is amplified by 1/(1 - c), and beyond c = 1 there is no answer.
+pub(super) fn load_torque(_: &Bench) -> Findings {
+    let amplified = -COUPLED.load_torque(990.0, -1.0, 0.0)?;
+    let beyond = COUPLED.load_torque(1001.0, -1.0, 0.0);
+    let mut findings = vec![
+        Finding::new("F12", "load torque (2.64), c = 0.99: amplification 1/(1 - c)", "", [100.0, amplified], Rule::Within(1e-9))
+            .says("beyond c = 1: NoLoadTorque", matches!(beyond, Err(NoLoadTorque { share }) if share > 1.0)),
+    ];
+    for (name, gear) in GEARS {
+        let found = largest_stable(0.0, 4000.0, |w| gear.load_torque(w, -1.0, 0.0).is_ok());
+        let limit = Friction::Harmonic(gear).speed_limit();
+        let predicted = (1.0 - gear.load) / gear.coupled;
+        let regime = format!("{name}: speed (1 - mu)/gamma at which (2.64) ends");
+        findings.push(
+            Finding::new("F12", &regime, "rad/s", [predicted, found], Rule::Within(1e-3))
+                .says("Friction::speed_limit, NoLoadTorque", (limit / predicted - 1.0).abs() < 1e-12),
+        );
+    }
+    Ok(findings)
+}
+
+/// F13: why (2.64) is solved by cases: T <- A - c |T| takes ln tol/ln c rounds, where the cases take one.
+pub(super) fn fixed_point(_: &Bench) -> Findings {
+    let finding = |c: f64| {
+        let exact = COUPLED.load_torque(c * 1000.0, 1.0, 0.0)?;
+        let mut t = 0.0_f64;
+        let rounds = (1..10_000).find(|_| {
+            t = 1.0 - c * t.abs();
+            (t - exact).abs() <= 1e-12 * exact
+        });
+        let numbers = [(1e-12_f64.ln() / c.ln()).ceil(), rounds.map_or(f64::INFINITY, f64::from)];
+        let regime = format!("(2.64) by fixed point, c = {c}: rounds to 1e-12, ln tol/ln c");
+        Ok(Finding::new("F13", &regime, "", numbers, Rule::Within(0.0)))
+    };
+    [0.24, 0.5, 0.9, 0.99].map(finding).into_iter().collect()
+}
+
+/// F14: no friction gives power, within the catalogue and beyond; the cubic model that came before does.
+pub(super) fn passivity(_: &Bench) -> Findings {
+    let screw = Friction::Screw(ScrewFriction { direct: 0.86, indirect: 0.858 });
+    let laws = GEARS.map(|(_, gear)| Friction::Harmonic(gear)).into_iter().chain([screw]);
+    let mut most = f64::NEG_INFINITY;
+    for law in laws {
+        for w in (-120..=120).map(|k| 25.0 * f64::from(k)) {
+            for motor in (-50..=50).map(|k| 0.4 * f64::from(k)) {
+                most = most.max(law.torque(w, motor, 0.0).map_or(f64::NEG_INFINITY, |t| t * w));
+            }
+        }
+    }
+    let cubic = CubicFriction { starting: 0.1, load: 0.02, viscous: 2e-4, cubic: -1e-10 };
+    // Where T_0 + mu T + b w + g w^3 = 0, by bisection of the polynomial.
+    let force = |w: f64| 0.1 + 0.02 * 0.7 + 2e-4 * w - 1e-10 * w.powi(3);
+    let predicted = largest_stable(100.0, 5000.0, |w| force(w) > 0.0);
+    let found = largest_stable(100.0, 5000.0, |w| cubic.efficiency(w, 0.7) <= 1.0);
+    Ok(vec![
+        Finding::new("F14", "friction (2.61), (2.68), +-3000 rad/s, +-20 N m: largest power", "W", [0.0, most], Rule::AtMost)
+            .says("no answer beyond c = 1", true),
+        Finding::new("F14", "friction (2.60) with g < 0: speed at which it gives power", "rad/s", [predicted, found], Rule::Within(1e-3))
+            .says("not used; fitted for comparison only", true),
+    ])
+}
+
+/// F15: (2.69) is continuous at its knees; as printed it would jump by K_1 T_1/K_0.
+pub(super) fn elasticity(bench: &Bench) -> Findings {
+    let spring = bench.setup.robot.drives.iter().find_map(|d| d.elasticity).ok_or("no elastic drive")?;
+    let ([k0, k1, _], [t1, t2]) = (spring.stiffness, spring.knees);
+    let jump = |t: f64| {
+        let at = spring.torsion(t);
+        (spring.torque(at * (1.0 + 1e-15)) - spring.torque(at * (1.0 - 1e-15))).abs()
+    };
+    let printed = |torsion: f64| if k0 * torsion < t1 { k0 * torsion } else { t1 + k1 * torsion };
+    let first = t1 / k0;
+    let literal = printed(first * (1.0 + 1e-12)) - printed(first * (1.0 - 1e-12));
+    Ok(vec![
+        Finding::new("F15", "elasticity, continuous form: jump at its knees", "N m", [1e-12, jump(t1).max(jump(t2))], Rule::AtMost),
+        Finding::new("F15", "elasticity (2.69) as printed: jump K_1 T_1/K_0", "N m", [k1 * t1 / k0, literal], Rule::Within(1e-6)),
+    ])
+}
+
+/// F24: near the end of an ankle's coupler its ratio grows as distance^-1/2; beyond there is an error with a margin.
+pub(super) fn ankle(bench: &Bench) -> Findings {
+    let drives = &bench.setup.robot.drives;
+    let transmission = drives.iter().map(|d| d.transmission).find(|t| matches!(t, Transmission::Ankle(_)));
+    let Some(Transmission::Ankle(real)) = transmission else { return Err("no ankle linkage".into()) };
+    // The robot's own coupler reaches everywhere in the ankle's range; a shorter one ends there.
+    let geometry = *real.geometry();
+    let at = |ankle: &Ankle, flexion: f64| Transmission::Ankle(*ankle).at([0.0, 0.0, flexion], [0.0; 3]);
+    let short = |coupler: f64| Ankle::new(&AnkleGeometry { coupler, ..geometry });
+    let least = largest_stable(0.0, geometry.coupler, |l| short(l).is_err());
+    let ankle = short(least * 1.05)?;
+    let toward = if at(&ankle, 1.0).is_err() { 1.0 } else { -1.0 };
+    let mut dead = [0.0, toward];
+    for _ in 0..60 {
+        let middle = 0.5 * (dead[0] + dead[1]);
+        dead[usize::from(at(&ankle, middle).is_err())] = middle;
+    }
+    let ratio = |d: f64| at(&ankle, dead[0] - toward * d).map(|gear| [d, gear.ratio[2].abs()]);
+    let points = [1e-7, 1e-6, 1e-5].into_iter().map(ratio).collect::<std::result::Result<Vec<_>, _>>()?;
+    let beyond = at(&ankle, dead[0] + toward * 1e-3);
+    let told = matches!(beyond, Err(OutOfDomain::Coupler { margin }) if margin < 0.0);
+    let regime = "ankle, coupler near its end: power of the distance in the ratio";
+    Ok(vec![
+        Finding::new("F24", regime, "", [-0.5, slope(&points)], Rule::Within(0.01)).says("OutOfDomain::Coupler, margin D < 0", told),
+    ])
+}
+
+/// \[rad\] Where the lever of a knee's screw vanishes: l^2 = const + 2 (A cos q + B sin q) has its extremum.
+fn dead_angle(g: &KneeGeometry) -> f64 {
+    let axis = Vector3::from(g.axis);
+    let (base, nut) = (Vector3::from(g.joint) - Vector3::from(g.pivot), Vector3::from(g.attachment));
+    let across = nut - axis * axis.dot(&nut);
+    let q = base.dot(&axis.cross(&nut)).atan2(base.dot(&across));
+    // The one that bending the knee arrives at.
+    if q > 0.0 { q } else { q + std::f64::consts::PI }
+}
+
+/// The robot of type 2 with a knee driven into its dead point: where it is told, and that all rates stay finite.
+pub(super) fn dead_point(bench: &Bench) -> Findings {
+    let is_knee = |d: &&Description| matches!(d.transmission, Transmission::Knee(_));
+    let Some(drive) = bench.setup.robot.drives.iter().find(is_knee) else { return Err("no knee linkage".into()) };
+    let Transmission::Knee(knee) = drive.transmission else { return Err("no knee linkage".into()) };
+    let mut plant = bench.plant(2)?;
+    let still: Vec<Drive> = bench.pose().iter().map(|&q| Drive::resting(q)).collect();
+    let rest = plant.standing(bench.pose());
+    let mut rate = vec![0.0; rest.len()];
+    let mut finite = true;
+    let mut fault = |q: f64| {
+        let mut x = rest.clone();
+        x[7 + drive.joints[0]] = q;
+        plant.rate(0.0, &x, &still, &Outside { push: [0.0; 3], powered: true }, &mut rate);
+        finite &= rate.iter().all(|r| r.is_finite());
+        plant.take_fault()
+    };
+    let predicted = dead_angle(knee.geometry());
+    let found = largest_stable(0.0, predicted + 1.0, |q| fault(q).is_none());
+    let why = fault(predicted + 0.01).map(|f| f.why);
+    let told = matches!(why, Some(Why::Linkage(OutOfDomain::Lever { margin })) if margin < 0.0) && finite;
+    let regime = "type 2, knee bent to the dead point of its screw";
+    Ok(vec![
+        Finding::new("D1", regime, "rad", [predicted, found], Rule::Within(1e-3)).says("DriveFault: Lever; rates finite", told),
+    ])
+}

@@ -1,0 +1,52 @@
+//! The simulated robot with its supply on and all joints told to stay where they are.
+
+use config::scene::Scene;
+use messages::frames::encode_targets;
+use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, SimState};
+use sim_backend::SimBackend;
+
+use super::{Bench, Result};
+
+/// Robot, and what the bus tells it.
+pub(super) struct Held {
+    pub(super) sim: SimBackend,
+    nodes: Vec<Vec<usize>>,
+    targets: JointTargets,
+    frames: BusFrames,
+    power: Power,
+}
+
+impl Held {
+    /// The robot of `scene` in its start pose.
+    pub(super) fn new(bench: &Bench, scene: &Scene) -> Result<Self> {
+        let robot = &bench.setup.robot;
+        let mut targets = JointTargets { mode: JointMode::Hold as u64, ..JointTargets::default() };
+        targets.angle[..bench.pose().len()].copy_from_slice(bench.pose());
+        Ok(Self {
+            sim: SimBackend::new(robot, scene)?,
+            nodes: robot.nodes.clone(),
+            targets,
+            frames: BusFrames::default(),
+            power: Power { on: 1, ..Power::default() },
+        })
+    }
+
+    /// One bus cycle.
+    pub(super) fn step(&mut self) -> (&BusFrames, &SimState) {
+        self.targets.header.tick += 1;
+        self.power.toggle += 1;
+        encode_targets(&self.nodes, &self.targets, &mut self.frames);
+        self.sim.step(Some(&self.frames), Some(&self.power))
+    }
+
+    /// The first event of the next `cycles`.
+    pub(super) fn first_event(&mut self, cycles: usize) -> Option<EventCode> {
+        for _ in 0..cycles {
+            self.step();
+            if let Some((event, _)) = self.sim.take_event() {
+                return Some(event);
+            }
+        }
+        None
+    }
+}

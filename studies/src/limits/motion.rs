@@ -1,0 +1,173 @@
+//! Motion: Euler angles near their pole (F22), straight knees (F23), energy over a minute.
+
+use controller::inverse_kinematics::{InverseKinematics, JointVector, TaskJacobian, TaskVector};
+use controller::task_space::TaskSpace;
+use messages::RIGHT;
+use multibody::{Data, Model};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+use super::{Bench, Finding, Findings, Result, Rule, slope, stepper};
+
+pub(super) fn all(bench: &Bench) -> Findings {
+    let mut findings = euler_angles();
+    findings.extend(knee(bench)?);
+    findings.extend(oscillator());
+    findings.extend(flight(bench)?);
+    Ok(findings)
+}
+
+/// Angular velocity by the rates of the z-x-z Euler angles, after the first turn.
+fn rates(theta: f64) -> Matrix3<f64> {
+    let (s, c) = theta.sin_cos();
+    Matrix3::from_columns(&[Vector3::z(), Vector3::x(), Vector3::new(0.0, -s, c)])
+}
+
+/// F22: the thesis's coordinates lose 2/theta digits near upright; a quaternion turns through it like anywhere.
+fn euler_angles() -> Vec<Finding> {
+    let condition = |theta: f64| {
+        let values = rates(theta).svd(false, false).singular_values;
+        values.max() / values.min()
+    };
+    let of = |theta: f64| {
+        let regime = format!("z-x-z Euler angles {theta} rad from upright: condition 2/theta");
+        Finding::new("F22", &regime, "", [2.0 / theta, condition(theta)], Rule::Within(0.01))
+            .says("not used: quaternions", true)
+    };
+    let mut findings: Vec<Finding> = [0.1, 0.01, 0.001].map(of).into();
+    // A turn of 1 rad/s through upright in steps of 1 ms, against the rotation itself; error h^4 w^5 t/1920.
+    let (mut method, mut o) = (stepper(4), [0.0, (-0.25_f64).sin(), 0.0, (-0.25_f64).cos()]);
+    let (h, w) = (1e-2, Vector3::y());
+    for _ in 0..100 {
+        method.runge_kutta_4(0.0, h, &mut o, |_, o, rate| {
+            let q = nalgebra::Quaternion::new(o[3], o[0], o[1], o[2]);
+            let half = q * nalgebra::Quaternion::from_imag(w) * 0.5;
+            rate.copy_from_slice(half.coords.as_slice());
+        });
+    }
+    let q = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(o[3], o[0], o[1], o[2]));
+    let error = q.angle_to(&UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 0.5));
+    let numbers = [h.powi(4) / 1920.0, error];
+    let regime = "quaternion, Runge-Kutta 4 at 10 ms, 1 rad/s through upright: error after 1 s";
+    findings.push(Finding::new("F22", regime, "rad", numbers, Rule::Within(0.01)));
+    findings
+}
+
+/// F23: 0.1 m/s along the leg take a knee speed of 0.1/(dl/dq), without bound as the knee straightens.
+fn knee(bench: &Bench) -> Findings {
+    let robot = &bench.setup.robot;
+    let mut space = TaskSpace::new(robot)?;
+    let legs = ["hip", "knee", "ankle"];
+    let free: Vec<bool> = robot.joints.iter().map(|j| legs.iter().any(|leg| j.name.contains(leg))).collect();
+    let ik = InverseKinematics::new(&robot.joints, &free, 0.0);
+    let bent = robot.joint("right_knee_flexion").ok_or("no joint right_knee_flexion")?;
+    let model = Model::from_urdf(&robot.urdf, &robot.torso, &names(bench))?;
+    let mut at = |q: f64| {
+        let mut angles = bench.pose().to_vec();
+        angles[bent] = q;
+        space.update(&angles);
+        let mut jacobian = TaskJacobian::zeros();
+        space.task_jacobian(&mut jacobian);
+        for foot in 0..2 {
+            let sole = space.sole_jacobian(foot);
+            jacobian.view_mut((6 * foot, 0), (6, angles.len())).copy_from(sole);
+        }
+        let (leg, shorter) = leg(&model, &angles, bent)?;
+        let mut xd = TaskVector::zeros();
+        xd.fixed_rows_mut::<3>(6 * RIGHT).copy_from(&(leg * -0.1));
+        let task = ik.factorise(&jacobian);
+        let speed = ik.speeds(&task, &xd, &JointVector::zeros(), &angles)[bent];
+        Ok::<_, Box<dyn std::error::Error>>((0.1 / shorter, speed, task.damped))
+    };
+    let mut findings = Vec::new();
+    for q in [0.5, 0.1, 0.05] {
+        let (predicted, speed, damped) = at(q)?;
+        let regime = format!("knee at {q} rad, 0.1 m/s along the leg: its speed");
+        let finding = Finding::new("F23", &regime, "rad/s", [predicted, speed], Rule::Within(1e-3));
+        findings.push(if damped { finding.says("damped without need", false) } else { finding });
+    }
+    let (wanted, speed, damped) = at(1e-4)?;
+    let regime = "knee at 1e-4 rad: its speed, damped, against the one asked for";
+    findings.push(
+        Finding::new("F23", regime, "rad/s", [wanted / 10.0, speed.abs()], Rule::AtMost)
+            .says("damped: true, counted as limited", damped),
+    );
+    Ok(findings)
+}
+
+fn names(bench: &Bench) -> Vec<&str> {
+    bench.setup.robot.joints.iter().map(|j| j.name.as_str()).collect()
+}
+
+/// Direction from hip to ankle in the torso, and by how much the leg shortens per knee angle \[m/rad\].
+fn leg(model: &Model, angles: &[f64], knee: usize) -> Result<(Vector3<f64>, f64)> {
+    let (hip, ankle) = (model.frame("right_thigh", [0.0; 3])?, model.frame("right_ankle", [0.0; 3])?);
+    let mut data = Data::new(model);
+    let mut line = |change: f64| {
+        let mut q = model.neutral();
+        q[7..].copy_from_slice(angles);
+        q[7 + knee] += change;
+        model.forward_kinematics(&mut data, &q);
+        model.frame_position(&data, &ankle) - model.frame_position(&data, &hip)
+    };
+    let h = 1e-5;
+    let shorter = (line(-h).norm() - line(h).norm()) / (2.0 * h);
+    Ok((line(0.0).normalize(), shorter))
+}
+
+/// Energy of an undamped swing of 1 Hz over a minute in steps of 1 ms: |R(i w h)|^2 per step.
+fn oscillator() -> Vec<Finding> {
+    let (w, h) = (std::f64::consts::TAU, 1e-3);
+    let run = |runge_kutta: bool| {
+        let (mut method, mut x) = (stepper(2), [1.0, 0.0]);
+        let rate = |_: f64, x: &[f64], dx: &mut [f64]| (dx[0], dx[1]) = (w * x[1], -w * x[0]);
+        for _ in 0..60_000 {
+            if runge_kutta { method.runge_kutta_4(0.0, h, &mut x, rate) } else { method.euler(0.0, h, &mut x, rate) }
+        }
+        x[0] * x[0] + x[1] * x[1]
+    };
+    let z: f64 = w * h;
+    let euler = (60_000.0 * (z * z).ln_1p()).exp();
+    let fourth = 60_000.0 * (z.powi(6) / 72.0 - z.powi(8) / 576.0);
+    vec![
+        Finding::new("E2", "swing of 1 Hz, explicit Euler at 1 ms: energy after a minute, times", "", [euler, run(false)], Rule::Within(1e-6)),
+        Finding::new("E2", "swing of 1 Hz, Runge-Kutta 4 at 1 ms: share of energy lost in a minute", "", [fourth, 1.0 - run(true)], Rule::Within(0.01)),
+    ]
+}
+
+/// Share of its energy that the robot, thrown without gravity and drives, gains or loses in steps of `h` \[s\].
+fn drift(model: &Model, h: f64, seconds: f64) -> f64 {
+    let (n, nq) = (model.nv(), model.nq());
+    let (mut data, mut x) = (Data::new(model), model.neutral());
+    x.extend((0..n).map(|i| 0.5 * (1.7 * i as f64).sin()));
+    let (mut weight, still) = (vec![0.0; n], vec![0.0; n]);
+    let energy = |data: &mut Data, x: &[f64]| {
+        model.forward_motion(data, &x[..nq], &x[nq..]);
+        model.energy(data).0
+    };
+    let before = energy(&mut data, &x);
+    let mut method = stepper(x.len());
+    for _ in 0..(seconds / h).round() as usize {
+        method.runge_kutta_4(0.0, h, &mut x, |_, x, dx| {
+            let (q, v) = x.split_at(nq);
+            let (dq, dv) = dx.split_at_mut(nq);
+            model.configuration_rate(q, v, dq);
+            model.nonlinear_terms(&mut data, q, &still, &mut weight);
+            model.forward_dynamics(&mut data, q, v, &weight, dv);
+        });
+        let norm = x[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
+        x[3..7].iter_mut().for_each(|x| *x /= norm);
+    }
+    (energy(&mut data, &x) / before - 1.0).abs()
+}
+
+/// The whole robot thrown: what a minute costs, and that it falls with the fourth power of the step or faster.
+fn flight(bench: &Bench) -> Findings {
+    let robot = &bench.setup.robot;
+    let model = Model::from_urdf(&robot.urdf, &robot.torso, &names(bench))?;
+    let points = [8e-3, 4e-3].map(|h| [h, drift(&model, h, 5.0)]);
+    let minute = drift(&model, 4e-3, 60.0);
+    Ok(vec![
+        Finding::new("E2", "robot thrown, joints free, Runge-Kutta 4: order of the drift of energy", "", [3.6, slope(&points)], Rule::AtLeast),
+        Finding::new("E2", "robot thrown, Runge-Kutta 4 at 4 ms: share of energy after a minute", "", [1e-3, minute], Rule::AtMost),
+    ])
+}

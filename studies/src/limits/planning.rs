@@ -1,0 +1,63 @@
+//! Centre of gravity: initial values instead of boundary values, order of the collocation (F16, F20).
+//!
+//! u'' = w^2 u + f with f such that u = sin 3t, the linear inverted pendulum of height 0.9 m.
+
+use planner::collocation::{Collocation, MAX_KNOTS};
+
+use super::{Bench, Finding, Findings, Rule, slope, stepper};
+
+const HEIGHT: f64 = 0.9;
+const OMEGA: f64 = 3.0;
+
+/// w^2 \[1/s^2\]
+fn growth() -> f64 {
+    -multibody::GRAVITY.z / HEIGHT
+}
+
+fn load(t: f64) -> f64 {
+    -(OMEGA * OMEGA + growth()) * (OMEGA * t).sin()
+}
+
+/// Largest error of the collocation over `halves` half periods with `n` knots, and the slope it begins with.
+fn collocate(n: usize, halves: f64) -> (f64, f64) {
+    let end = halves * std::f64::consts::PI / OMEGA;
+    let mut problem = Box::new(Collocation::new());
+    problem.n = n;
+    let at = |k: f64| end * k / (n - 1) as f64;
+    for k in 0..n {
+        problem.t[k] = at(k as f64);
+        problem.om2[k] = growth();
+        problem.f[k][0] = load(at(k as f64));
+        problem.half[k][0] = load(at(k as f64 + 0.5));
+    }
+    problem.solve();
+    let error = |k: usize| (problem.u[k][0] - (OMEGA * problem.t[k]).sin()).abs();
+    ((0..n).map(error).fold(0.0, f64::max), problem.slope(0)[0])
+}
+
+/// Error at `t` of integrating forward from the slope that the boundary value problem begins with.
+fn forward(slope: f64, t: f64) -> f64 {
+    let (mut method, mut x) = (stepper(2), [0.0, slope]);
+    let n = (t * 1000.0).round();
+    for k in 0..n as usize {
+        method.runge_kutta_4(k as f64 * t / n, t / n, &mut x, |t, x, dx| {
+            (dx[0], dx[1]) = (x[1], growth() * x[0] + load(t));
+        });
+    }
+    (x[0] - (OMEGA * t).sin()).abs()
+}
+
+/// F16, F20.
+pub(super) fn collocation(_: &Bench) -> Findings {
+    let (long, begin) = collocate(MAX_KNOTS, 8.0);
+    let (short, _) = collocate(MAX_KNOTS / 2 + 1, 4.0);
+    let (early, late) = (forward(begin, 4.0), forward(begin, 8.0));
+    let doubling = 4.0 * 2f64.ln() / (late / early).ln();
+    let points = [13, 25, 49, 97].map(|n| [1.0 / (n - 1) as f64, collocate(n, 4.0).0]);
+    Ok(vec![
+        Finding::new("F16", "pendulum integrated forward from its exact plan: error doubles every", "s", [2f64.ln() / growth().sqrt(), doubling], Rule::Within(0.01))
+            .says("not done: plans are boundary value problems", true),
+        Finding::new("F16", "boundary value problem, horizon twice as long: error, times", "", [1.0, long / short], Rule::Within(0.05)),
+        Finding::new("F20", "collocation with parabolas, smooth: order", "", [4.0, slope(&points)], Rule::Within(0.05)),
+    ])
+}

@@ -1,0 +1,107 @@
+//! Speeds from counts (F26), and numbers that are none, from wherever they come.
+
+use config::scene::{Integrator, Scene};
+use config::sensors::PerJoint;
+use lowlevel::JointLoop;
+use messages::command::PushCommand;
+use messages::{EventCode, JointMode, JointTargets, MAX_JOINTS, Wrench};
+use sim_backend::sensors::{SensorSet, Truth};
+
+use super::held::Held;
+use super::{Bench, Finding, Findings, Result, Rule};
+
+pub(super) fn all(bench: &Bench) -> Findings {
+    let mut findings = quantised_speed(bench)?;
+    findings.push(target(bench));
+    for depth in 1..=3 {
+        for (name, force) in [("NaN", f64::NAN), ("1e300", 1e300)] {
+            findings.push(push(bench, depth, name, force)?);
+        }
+    }
+    Ok(findings)
+}
+
+/// F26: differences of an angle of 16 bit every millisecond: error delta/T at most, delta/(T sqrt 6) on average.
+fn quantised_speed(bench: &Bench) -> Findings {
+    let robot = &bench.setup.robot;
+    let (cycle, bits) = (1e-3, 65_536.0);
+    let mut errors = config::Sensors::default();
+    errors.encoder.counts = PerJoint { all: Some(bits), own: Vec::new() };
+    errors.encoder.speed_by_difference = true;
+    let hanging = [Wrench { force: [0.0; 3], moment: [0.0; 3] }; 2];
+    let mut sensors = SensorSet::new(&errors, robot, &hanging, 1, cycle);
+    let (mut truth, mut seen) = (Truth::default(), messages::Sensors::default());
+    let (mut square, mut largest, n, mut angle) = (0.0, 0.0_f64, 200_000, 0.0);
+    for i in 0..n {
+        // Slowly through all speeds from -1 to 1 rad/s.
+        let speed = (1e-4 * f64::from(i)).sin();
+        angle += speed * cycle;
+        truth.joint_angle = [angle; MAX_JOINTS];
+        sensors.measure(&truth, &mut seen);
+        let error = if i == 0 { 0.0 } else { seen.joint_speed[0] - speed };
+        square += error * error;
+        largest = largest.max(error.abs());
+    }
+    let delta = std::f64::consts::TAU / bits;
+    let [mean, most] = [[delta / (cycle * 6f64.sqrt()), (square / f64::from(n)).sqrt()], [delta / cycle, largest]];
+    Ok(vec![
+        Finding::new("F26", "speed from differences, 16 bit, 1 kHz: root mean square error", "rad/s", mean, Rule::Within(0.05)),
+        Finding::new("F26", "speed from differences, 16 bit, 1 kHz: largest error", "rad/s", most, Rule::Within(0.05)),
+    ])
+}
+
+/// Joint targets that are no numbers, into the joint loop: largest number that goes out on the bus.
+fn target(bench: &Bench) -> Finding {
+    let robot = &bench.setup.robot;
+    let mut joints = JointLoop::new(robot, &bench.setup.system, bench.setup.scene.cycle);
+    let mut told = false;
+    let mut out = JointTargets::default();
+    let mut largest = 0.0_f64;
+    let mut answer = messages::BusFrames::default();
+    let mut sensors = messages::Sensors { power: 1, ..Default::default() };
+    for tick in 1..20 {
+        sensors.header.tick = tick;
+        sensors.joint_angle[..bench.pose().len()].copy_from_slice(bench.pose());
+        messages::frames::encode_sensors(&robot.nodes, &sensors, &mut answer);
+        joints.receive(tick, tick * 1_000_000, Some(&answer));
+        let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
+        targets.header.tick = tick;
+        targets.angle = sensors.joint_angle;
+        if tick > 10 {
+            targets.angle[3] = f64::NAN;
+            targets.speed[4] = 1e300;
+        }
+        let (frames, _) = joints.send(Some(&targets), None);
+        messages::frames::decode_targets(&robot.nodes, frames, &mut out);
+        let wrong = |j: usize| (out.angle[j] - bench.pose()[j]).abs();
+        largest = (0..bench.pose().len()).map(wrong).fold(largest, f64::max);
+        told |= matches!(joints.take_event(), Some((EventCode::TargetNotFinite, _)));
+    }
+    let regime = "joint targets NaN and 1e300: way that goes out on the bus";
+    Finding::new("N1", regime, "rad", [1e-8, largest], Rule::AtMost).says("TargetNotFinite, joint", told)
+}
+
+/// A push that no simulation survives: numbers that are not finite in any record after it.
+fn push(bench: &Bench, depth: u8, name: &str, force: f64) -> Result<Finding> {
+    let integrator = if depth == 1 { Integrator::Euler } else { Integrator::SemiImplicit };
+    let scene = Scene { depth, integrator, substeps: 4, ..bench.setup.scene.clone() };
+    let mut held = Held::new(bench, &scene)?;
+    let mut seen = messages::Sensors::default();
+    let (mut bad, mut event) = (0, None);
+    for cycle in 0..100 {
+        if cycle == 50 {
+            held.sim.push(&PushCommand { force: [force, 0.0, 0.0], duration: 0.01 });
+        }
+        let (frames, truth) = held.step();
+        messages::frames::decode_sensors(&bench.setup.robot.nodes, frames, &mut seen);
+        let pose = truth.position.iter().chain(&truth.orientation).chain(&truth.velocity).chain(&truth.com);
+        let feet = truth.foot_wrench.iter().flat_map(|w| w.force.iter().chain(&w.moment));
+        let rest = truth.angular_velocity.iter().chain(&truth.joint_angle).chain(truth.feet.iter().flatten());
+        bad += pose.chain(feet).chain(rest).filter(|x| !x.is_finite()).count();
+        event = event.or(held.sim.take_event());
+    }
+    let regime = format!("type {depth}, push of {name} N: numbers in the records that are none");
+    let said = event.map_or("nothing".into(), |(e, _)| format!("{e:?}"));
+    let told = matches!(event, Some((EventCode::Diverged, _)));
+    Ok(Finding::new("N2", &regime, "", [0.0, bad as f64], Rule::AtMost).says(&said, told))
+}

@@ -1,0 +1,63 @@
+//! Dry friction as a sign chatters, as a ramp it creeps; as a set it rests (F6).
+
+use config::scene::{Integrator, Scene};
+use ::drives::{Friction, HarmonicFriction};
+use sim_backend::SimBackend;
+
+use super::{Bench, Finding, Findings, Rule};
+
+/// A gear of dry friction only \[N m\], a rotor \[kg m^2\], a step \[s\].
+const GEAR: HarmonicFriction = HarmonicFriction { starting: 0.1, load: 0.0, viscous: 0.0, coupled: 0.0 };
+const INERTIA: f64 = 3e-4;
+const STEP: f64 = 1e-3;
+/// \[N m\] What turns the rotor: less than the friction, and no fraction of it, so that no cycle closes.
+const MOTOR: f64 = 0.1 * std::f64::consts::FRAC_1_SQRT_2;
+
+/// F6: explicit Euler jumps over rest by h (T_0 + T)/J, an implicit step ends there.
+pub(super) fn chatter(_: &Bench) -> Findings {
+    let friction = Friction::Harmonic(GEAR);
+    let (mut sign, mut implicit) = (0.5, 0.5);
+    let (mut largest, mut left) = (0.0_f64, 0.0_f64);
+    for i in 0..10_000 {
+        sign += STEP / INERTIA * (MOTOR + friction.torque(sign, MOTOR, 0.0)?);
+        let law = friction.sliding(implicit, MOTOR)?;
+        implicit = law.speed_after(implicit + STEP / INERTIA * MOTOR, STEP / INERTIA);
+        if i > 100 {
+            (largest, left) = (largest.max(sign.abs()), left.max(implicit.abs()));
+        }
+    }
+    let predicted = STEP * (GEAR.starting + MOTOR) / INERTIA;
+    let [at_rest, chatter] = [[0.0, left], [predicted, largest]];
+    Ok(vec![
+        Finding::new("F6", "explicit Euler with sign(w) T_0: chatter h (T_0 + T)/J", "rad/s", chatter, Rule::Within(0.01)),
+        Finding::new("F6", "implicit step on the same rotor: speed", "rad/s", at_rest, Rule::AtMost),
+    ])
+}
+
+/// F6: a ramp instead of the sign lets a loaded rotor creep with w_eps T/T_0.
+pub(super) fn smoothed_sign(_: &Bench) -> Findings {
+    let (ramp, mut speed) = (1.0, 0.0);
+    for _ in 0..100_000 {
+        speed += 1e-4 / INERTIA * (MOTOR + Friction::Harmonic(GEAR).torque(speed, MOTOR, ramp)?);
+    }
+    let numbers = [ramp * MOTOR / GEAR.starting, speed];
+    let regime = "ramp of 1 rad/s instead of the sign: rotor below its friction creeps";
+    Ok(vec![Finding::new("F6", regime, "rad/s", numbers, Rule::Within(1e-3))])
+}
+
+/// F6: the robot of type 2 without supply, every joint held by dry friction and carrying its load: largest change of an angle
+/// in 10 s.
+pub(super) fn at_rest(bench: &Bench) -> Findings {
+    let scene =
+        Scene { depth: 2, integrator: Integrator::SemiImplicit, substeps: 4, ..bench.setup.scene.clone() };
+    let mut sim = SimBackend::new(&bench.setup.robot, &scene)?;
+    let joints = bench.pose().len();
+    let mut steps = |n: usize| {
+        (0..n).for_each(|_| _ = sim.step(None, None));
+        sim.state().joint_angle
+    };
+    let (before, after) = (steps(500), steps(10_000));
+    let moved = (0..joints).map(|j| (after[j] - before[j]).abs()).fold(0.0, f64::max);
+    let regime = "semi-implicit, robot of type 2 without supply: joints creep in 10 s";
+    Ok(vec![Finding::new("F6", regime, "rad", [0.0, moved], Rule::AtMost)])
+}
