@@ -5,11 +5,11 @@
 //! | [`accuracy`] | which method is cheapest for a given accuracy? |
 //! | [`push`] | which impulse does the walking robot survive? |
 //! | [`limits`] | where do methods fail, and is it told? |
-//! | [`speed`] | how fast is each part, and how accurate is it at that speed? |
+//! | [`speed`], [`simulation_speed`] | how fast is each part, and how accurate is it at that speed? |
 //! | [`figures_of_thesis`] | are the figures of the thesis found again? |
 //! | [`cycles`] | how well did the processes of a run keep real time? |
 //!
-//! They work on [`chain`], all steps in one process, and judge by [`figures`].
+//! They work on [`chain`], all steps in one process, and judge by [`figures`]; [`second`] replays a part of it.
 
 pub mod accuracy;
 pub mod chain;
@@ -18,4 +18,6 @@ pub mod figures;
 pub mod figures_of_thesis;
 pub mod limits;
 pub mod push;
+pub mod second;
+pub mod simulation_speed;
 pub mod speed;

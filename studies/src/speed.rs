@@ -8,32 +8,24 @@ use std::error::Error;
 use std::hint::black_box;
 use std::path::Path;
 
-use config::scene::Integrator;
 use config::{Gait, Setup, Timeline};
 use controller::Controller;
-use environment::Environment;
 use messages::command::Domain;
 use messages::{Command, ControllerState, GaitState, JointTargets, LEFT, Plan, RIGHT, Sensors};
 use planner::Planner;
 use realtime::clock::processor_time;
 use serde::Serialize;
-use sim_backend::drive::{Drive, Motion};
-use sim_backend::integrate::Stepper;
-use sim_backend::plant::{Outside, Plant, orientation};
 
 use crate::chain::Chain;
+use crate::simulation_speed::{self, Simulation};
 
 /// Runs of which the fastest counts, where the work is the same each time.
 const REPEATS: usize = 5;
-/// \[s\] Begin of the second that is simulated: the robot stands, or walks periodically.
-const BEGIN: f64 = 8.0;
-/// Cycles simulated from there.
-const CYCLES: usize = 1000;
 
 /// Everything that was measured.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Type 1 model alone.
+    /// Models of the robot alone.
     pub simulation: Vec<Simulation>,
     /// Whole chain in one process.
     pub chain: Vec<WholeChain>,
@@ -41,23 +33,6 @@ pub struct Report {
     pub cycle: Cycle,
     /// Plans.
     pub plans: Vec<Plans>,
-}
-
-/// One second of the type 1 model with recorded joint targets.
-#[derive(Clone, Debug, Serialize)]
-pub struct Simulation {
-    /// What the robot does.
-    pub motion: String,
-    /// Integrator, and its steps per millisecond.
-    pub method: String,
-    /// Simulated time over processor time, sensors once per cycle.
-    pub real_time_factor: f64,
-    /// \[m\] Largest error of the torso's position.
-    pub position_error_m: f64,
-    /// \[rad\] Largest error of the torso's orientation.
-    pub orientation_error_rad: f64,
-    /// \[N\] Root mean square error of the normal force of the right foot.
-    pub force_error_rms_n: f64,
 }
 
 /// A scene with everything in the loop.
@@ -104,8 +79,7 @@ pub struct Plans {
 pub fn run(config: &Path) -> Result<Report, Box<dyn Error>> {
     let stand = Setup::load(config, "stand")?;
     let walk = Setup::load(config, "walk_1kmh")?;
-    let mut simulation = simulations("standing", &stand)?;
-    simulation.extend(simulations("walking at 1 km/h", &walk)?);
+    let simulation = simulation_speed::run(&stand, &walk)?;
     let recording = Recording::new(&walk)?;
     let spacing = walk.gait.model.spacing;
     let mut plans = Vec::new();
@@ -118,100 +92,6 @@ pub fn run(config: &Path) -> Result<Report, Box<dyn Error>> {
         cycle: cycle_times(&walk, &recording)?,
         plans,
     })
-}
-
-// ------------------------------------------------------------------------------------------------ simulation alone
-
-/// A second of motion: where it begins, and the joint targets of its cycles.
-struct Second {
-    state: Vec<f64>,
-    before: JointTargets,
-    targets: Vec<JointTargets>,
-}
-
-/// Torso pose and normal force of the right foot at the end of every cycle.
-type Trajectory = Vec<([f64; 7], f64)>;
-
-fn simulations(motion: &str, setup: &Setup) -> Result<Vec<Simulation>, Box<dyn Error>> {
-    let second = Second::record(setup)?;
-    let pose = &setup.robot.poses[&setup.scene.start_pose];
-    let mut plant = Plant::new(&setup.robot, Environment::flat(), setup.scene.depth, pose)?;
-    let mut simulate = |method, steps| second.simulate(&mut plant, setup, method, steps);
-    let (reference, _) = simulate(Integrator::RungeKutta4, 64);
-    use Integrator::{Euler, RungeKutta4};
-    let methods =
-        [(Euler, 1), (Euler, 4), (Euler, 16), (RungeKutta4, 1), (RungeKutta4, 4), (RungeKutta4, 32)];
-    let rows = methods.map(|(method, steps)| {
-        let mut best = f64::INFINITY;
-        let mut trajectory = Trajectory::new();
-        for _ in 0..REPEATS {
-            let (found, seconds) = simulate(method, steps);
-            (trajectory, best) = (found, best.min(seconds));
-        }
-        let pairs = || trajectory.iter().zip(&reference);
-        let position = pairs().map(|((a, _), (b, _))| distance(&a[..3], &b[..3]));
-        let square: f64 = pairs().map(|((_, a), (_, b))| (a - b).powi(2)).sum();
-        let turned = pairs().map(|((a, _), (b, _))| orientation(a).angle_to(&orientation(b)));
-        Simulation {
-            motion: motion.into(),
-            method: format!("{method:?} x {steps}"),
-            real_time_factor: CYCLES as f64 * setup.scene.cycle / best,
-            position_error_m: position.fold(0.0, f64::max),
-            orientation_error_rad: turned.fold(0.0, f64::max),
-            force_error_rms_n: (square / CYCLES as f64).sqrt(),
-        }
-    });
-    Ok(rows.into())
-}
-
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
-}
-
-impl Second {
-    /// From the chain, [`BEGIN`] seconds into the scene.
-    fn record(setup: &Setup) -> Result<Self, Box<dyn Error>> {
-        let mut chain = Chain::new(setup)?;
-        let begin = (BEGIN / setup.scene.cycle) as usize;
-        let before = (0..begin).fold(JointTargets::default(), |_, _| chain.step().joint_targets);
-        let state = chain.robot().integrated().to_vec();
-        Ok(Self { state, before, targets: (0..CYCLES).map(|_| chain.step().joint_targets).collect() })
-    }
-
-    /// Simulates it; the trajectory, and the processor time \[s\].
-    fn simulate(
-        &self,
-        plant: &mut Plant,
-        setup: &Setup,
-        method: Integrator,
-        steps: u32,
-    ) -> (Trajectory, f64) {
-        let (n, dt) = (setup.robot.joints.len(), setup.scene.cycle);
-        let (mut x, none) = (self.state.clone(), Outside { powered: true, ..Outside::default() });
-        let mut stepper = Stepper::new(method, x.len());
-        let motion =
-            |t: &JointTargets, j: usize| Motion { angle: t.angle[j], speed: t.speed[j], acceleration: 0.0 };
-        let mut motions: Vec<Motion> = (0..n).map(|j| motion(&self.before, j)).collect();
-        let mut drives = vec![Drive::default(); n];
-        let mut trajectory = Trajectory::with_capacity(CYCLES);
-        let begun = processor_time();
-        for target in &self.targets {
-            for (j, drive) in drives.iter_mut().enumerate() {
-                *drive = Drive::follow(motions[j], target.angle[j], target.speed[j], dt);
-                motions[j] = motion(target, j);
-            }
-            let h = dt / f64::from(steps);
-            for i in 0..steps {
-                let tau = f64::from(i) * h;
-                stepper.step(plant, tau, h, &mut x, &drives, &none);
-            }
-            let seen = plant.snapshot(dt, &x, &drives, &none);
-            let mut pose = [0.0; 7];
-            pose.copy_from_slice(&x[..7]);
-            trajectory.push((pose, seen.foot_wrench[RIGHT].force[2]));
-        }
-        (trajectory, (processor_time() - begun) as f64 * 1e-9)
-    }
 }
 
 // ---------------------------------------------------------------------------------------------------- whole chain
@@ -234,14 +114,14 @@ fn whole_chain(setup: &Setup) -> Result<WholeChain, Box<dyn Error>> {
 // --------------------------------------------------------------------------------------------- planner, stabilizer
 
 /// What planner and stabilizer saw and did in each cycle of a walk.
-struct Recording {
-    sensors: Vec<Sensors>,
+pub(crate) struct Recording {
+    pub(crate) sensors: Vec<Sensors>,
     states: Vec<ControllerState>,
-    targets: Vec<JointTargets>,
+    pub(crate) targets: Vec<JointTargets>,
 }
 
 impl Recording {
-    fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
         let mut chain = Chain::new(setup)?;
         let mut r = Self { sensors: Vec::new(), states: Vec::new(), targets: Vec::new() };
         for _ in 0..(setup.scene.duration / setup.scene.cycle) as usize {
@@ -313,7 +193,7 @@ fn spread(mut ns: Vec<u64>) -> [f64; 3] {
 
 // ---------------------------------------------------------------------------------------------------------- plans
 
-fn plan_times(setup: &Setup, recording: &Recording, spacing: f64) -> Plans {
+pub(crate) fn plan_times(setup: &Setup, recording: &Recording, spacing: f64) -> Plans {
     let mut gait = setup.gait.clone();
     gait.model.spacing = spacing;
     let mut plan = Box::new(Plan::default());
@@ -371,21 +251,7 @@ fn zmp_error(plan: &Plan, gait: &Gait) -> f64 {
 
 /// The report as lines for people.
 pub fn table(r: &Report) -> String {
-    let mut text = String::from(
-        "Type 1 model alone, 1 s with recorded joint targets, sensors every 1 ms; errors against RungeKutta4 x 64\n\
-         motion              steps per ms       real time   position [m]   orientation [rad]   normal force, rms [N]",
-    );
-    for s in &r.simulation {
-        text += &format!(
-            "\n{:20}{:17}{:9.0} x{:15.1e}{:20.1e}{:24.1e}",
-            s.motion,
-            s.method,
-            s.real_time_factor,
-            s.position_error_m,
-            s.orientation_error_rad,
-            s.force_error_rms_n
-        );
-    }
+    let mut text = simulation_speed::table(&r.simulation);
     text += "\n\nWhole chain in one process";
     for c in &r.chain {
         text += &format!("\n{:20}{:26.0} x", c.scene, c.real_time_factor);

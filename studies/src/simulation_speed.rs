@@ -1,0 +1,181 @@
+//! How fast is each model of the robot alone, and how accurate at that speed: a second of motion with recorded joint
+//! targets, every cycle of it with one snapshot for the sensors.
+
+use std::error::Error;
+
+use config::Setup;
+use config::scene::Integrator;
+use environment::Environment;
+use messages::RIGHT;
+use realtime::clock::processor_time;
+use serde::Serialize;
+use sim_backend::drive::Drive;
+use sim_backend::integrate::Stepper;
+use sim_backend::plant::{Plant, orientation};
+
+use crate::second::{POWERED, Second};
+
+/// Runs of which the fastest counts; one for what takes longer than real time.
+const REPEATS: usize = 5;
+/// \[s\] Begin of the second that is simulated: the robot stands, or walks periodically.
+const BEGIN: f64 = 8.0;
+/// Cycles simulated from there.
+const CYCLES: usize = 1000;
+/// \[N\] A foot that carries less is in the air.
+const AIR: f64 = 1.0;
+
+/// One second of a model with recorded joint targets.
+#[derive(Clone, Debug, Serialize)]
+pub struct Simulation {
+    /// Type of the model.
+    pub depth: u8,
+    /// What the robot does.
+    pub motion: String,
+    /// Integrator, and its steps per cycle.
+    pub method: String,
+    /// Simulated time over processor time, sensors once per cycle.
+    pub real_time_factor: f64,
+    /// The same for the cycles with one foot in the air.
+    pub single_support_factor: Option<f64>,
+    /// \[m\] Largest error of the torso's position.
+    pub position_error_m: f64,
+    /// \[rad\] Largest error of the torso's orientation.
+    pub orientation_error_rad: f64,
+    /// \[N\] Root mean square error of the normal force of the right foot.
+    pub force_error_rms_n: f64,
+}
+
+use Integrator::{Euler, RungeKutta4, SemiImplicit};
+
+/// What each type is measured with, and steps per cycle of its reference, by Runge-Kutta.
+const METHODS: [(u8, &[(Integrator, u32)], u32); 5] = [
+    (1, &[(Euler, 1), (Euler, 4), (Euler, 16), (RungeKutta4, 1), (RungeKutta4, 4), (RungeKutta4, 32)], 64),
+    (2, &[(SemiImplicit, 1), (SemiImplicit, 4), (SemiImplicit, 10), (Euler, 10), (RungeKutta4, 10)], 40),
+    (3, &[(SemiImplicit, 1), (SemiImplicit, 4), (SemiImplicit, 10), (Euler, 40), (RungeKutta4, 10)], 40),
+    (4, &[(SemiImplicit, 1), (SemiImplicit, 4), (SemiImplicit, 10)], 20),
+    (5, &[(SemiImplicit, 1), (SemiImplicit, 4), (SemiImplicit, 10)], 20),
+];
+
+/// Measures every type with the scenes `stand` and `walk_1kmh`.
+///
+/// # Errors
+/// A configuration or robot is wrong.
+pub fn run(stand: &Setup, walk: &Setup) -> Result<Vec<Simulation>, Box<dyn Error>> {
+    let mut rows = Vec::new();
+    for (depth, methods, reference) in METHODS {
+        for (motion, setup) in [("standing", stand), ("walking at 1 km/h", walk)] {
+            let mut setup = setup.clone();
+            setup.scene.depth = depth;
+            if depth > 1 {
+                (setup.scene.integrator, setup.scene.substeps) = (SemiImplicit, 4);
+            }
+            let second = Second::record(&setup, BEGIN, CYCLES)?;
+            let pose = &setup.robot.poses[&setup.scene.start_pose];
+            let mut plant = Plant::new(&setup.robot, Environment::flat(), depth, pose)?;
+            let reference = simulate(&second, &mut plant, RungeKutta4, reference);
+            rows.extend(methods.iter().map(|m| row(depth, motion, (&second, &mut plant), *m, &reference)));
+        }
+    }
+    Ok(rows)
+}
+
+/// What a simulation found at the end of a cycle.
+struct Instant {
+    pose: [f64; 7],
+    /// \[N\] Normal forces, right and left.
+    force: [f64; 2],
+    /// \[s\] Processor time of the cycle.
+    took: f64,
+}
+
+fn simulate(second: &Second, plant: &mut Plant, method: Integrator, steps: u32) -> Vec<Instant> {
+    let mut x = second.state.clone();
+    let mut stepper = Stepper::new(method, x.len());
+    let mut drives: Vec<Drive> = second.drives(0).collect();
+    let mut instants = Vec::with_capacity(second.cycles());
+    let mut last = processor_time();
+    for cycle in 0..second.cycles() {
+        drives.clear();
+        drives.extend(second.drives(cycle));
+        second.advance(plant, &mut stepper, steps, &drives, &mut x);
+        let seen = plant.snapshot(second.cycle, &x, &drives, &POWERED);
+        let mut pose = [0.0; 7];
+        pose.copy_from_slice(&x[..7]);
+        let now = processor_time();
+        let took = (now - last) as f64 * 1e-9;
+        instants.push(Instant { pose, force: seen.foot_wrench.map(|w| w.force[2]), took });
+        last = now;
+    }
+    instants
+}
+
+fn row(
+    depth: u8,
+    motion: &str,
+    (second, plant): (&Second, &mut Plant),
+    (method, steps): (Integrator, u32),
+    reference: &[Instant],
+) -> Simulation {
+    let mut best = simulate(second, plant, method, steps);
+    let repeats = if duration(&best) > 1.0 { 1 } else { REPEATS };
+    for _ in 1..repeats {
+        let again = simulate(second, plant, method, steps);
+        if duration(&again) < duration(&best) {
+            best = again;
+        }
+    }
+    let pairs = || best.iter().zip(reference);
+    let position = pairs().map(|(a, b)| distance(&a.pose[..3], &b.pose[..3]));
+    let turned = pairs().map(|(a, b)| orientation(&a.pose).angle_to(&orientation(&b.pose)));
+    let square: f64 = pairs().map(|(a, b)| (a.force[RIGHT] - b.force[RIGHT]).powi(2)).sum();
+    let on_one = best.iter().filter(|i| i.force.iter().any(|f| *f < AIR));
+    let single: Vec<f64> = on_one.map(|i| i.took).collect();
+    Simulation {
+        depth,
+        motion: motion.into(),
+        method: format!("{method:?} x {steps}"),
+        real_time_factor: CYCLES as f64 * second.cycle / duration(&best),
+        single_support_factor: (single.len() > CYCLES / 10)
+            .then(|| single.len() as f64 * second.cycle / single.iter().sum::<f64>()),
+        position_error_m: largest(position),
+        orientation_error_rad: largest(turned),
+        force_error_rms_n: (square / CYCLES as f64).sqrt(),
+    }
+}
+
+/// \[s\] Processor time.
+fn duration(instants: &[Instant]) -> f64 {
+    instants.iter().map(|i| i.took).sum()
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+/// The largest, and infinity where the numbers were lost.
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |a, b| if b.is_finite() { a.max(b) } else { f64::INFINITY })
+}
+
+/// The rows as lines for people.
+pub fn table(rows: &[Simulation]) -> String {
+    let mut text = String::from(
+        "Models alone, 1 s with recorded joint targets, sensors every cycle; errors against fine Runge-Kutta steps\n\
+         type  motion              steps per cycle      real time  one foot   position [m]   orientation [rad]   normal force, rms [N]",
+    );
+    for s in rows {
+        let single = s.single_support_factor.map_or("-".into(), |f| format!("{f:.1} x"));
+        text += &format!(
+            "\n{:4}  {:20}{:18}{:10.1} x{:>10}{:15.1e}{:20.1e}{:24.1e}",
+            s.depth,
+            s.motion,
+            s.method,
+            s.real_time_factor,
+            single,
+            s.position_error_m,
+            s.orientation_error_rad,
+            s.force_error_rms_n
+        );
+    }
+    text
+}
