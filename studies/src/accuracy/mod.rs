@@ -4,9 +4,16 @@
 //! part below adds charts; what all have in common is here. A new part is a module and a line in [`PARTS`].
 
 pub mod cost;
+mod flight;
+mod joint;
 pub mod order;
 pub mod peers;
 mod picture;
+mod slip;
+mod solver;
+mod stiction;
+pub mod system;
+mod touchdown;
 
 use std::error::Error;
 use std::path::Path;
@@ -28,7 +35,14 @@ pub struct Given<'a> {
 pub type Part = fn(&Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>>;
 
 /// All parts, with their names for `--only`.
-pub const PARTS: [(&str, Part); 0] = [];
+pub const PARTS: &[(&str, Part)] = &[
+    ("flight", flight::PART),
+    ("touchdown", touchdown::PART),
+    ("slip", slip::PART),
+    ("stiction", stiction::PART),
+    ("joint", joint::PART),
+    ("solver", solver::PART),
+];
 
 /// One simulation with one method, or one kind of call.
 #[derive(Clone, Debug, Default, Serialize)]

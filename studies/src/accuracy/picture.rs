@@ -37,7 +37,7 @@ fn panel(chart: &Chart) -> drawing::Chart {
     for (k, curve) in curves(&chart.points).into_iter().enumerate() {
         let color = COLORS[k % COLORS.len()];
         let pen = Pen { color, width: 2.5, dashed: k >= COLORS.len() };
-        let points: Vec<_> = curve.points.iter().map(|p| [cost(p, chart.cost), p.error]).collect();
+        let points: Vec<_> = curve.points.iter().map(|p| [cost(p, chart.cost), visible(p.error)]).collect();
         axes.styled(&curve.name, points.clone(), pen).dots("", points.clone(), 5.0, color);
         for (at, p) in points.iter().zip(&curve.points) {
             axes.label(*at, &label(p), GREY);
@@ -79,6 +79,13 @@ fn cost(p: &Point, cost: Cost) -> f64 {
         Cost::Calls => p.calls_per_s,
     };
     found.unwrap_or(f64::NAN)
+}
+
+/// No error at all is drawn where rounding errors are.
+const ZERO: f64 = 1e-17;
+
+fn visible(error: f64) -> f64 {
+    if error == 0.0 { ZERO } else { error }
 }
 
 fn label(p: &Point) -> String {
