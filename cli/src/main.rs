@@ -188,6 +188,18 @@ enum StudyTask {
         #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..=1000))]
         instants: u64,
     },
+    /// Which method is cheapest for a given accuracy: charts of processor time against error.
+    Accuracy {
+        /// Only these charts: flight, touchdown, slip, stiction, joint, solver, ...
+        #[arg(long, value_name = "PART")]
+        only: Option<String>,
+        /// What MuJoCo found in the same scenes; `sh tests/peers/mujoco.sh --points FILE` writes it.
+        #[arg(long, value_name = "FILE")]
+        peers: Option<PathBuf>,
+        /// Where pictures and accuracy.json go.
+        #[arg(long, value_name = "DIR", default_value = "runs/study/accuracy")]
+        out: PathBuf,
+    },
     /// How fast simulation, planner and stabilizer are, and how accurate at that speed.
     Speed,
     /// Figures of the thesis that compare two walks: 5.2, 4.17, 9.1.
@@ -356,6 +368,10 @@ fn sim(setup: &Setup, json: bool, log: Option<PathBuf>) -> Result<ExitCode, Box<
 fn study(config: &std::path::Path, what: StudyTask, json: bool) -> Result<ExitCode, Box<dyn Error>> {
     use studies::{cycles, figures_of_thesis, push, speed};
     let (object, table) = match what {
+        StudyTask::Accuracy { only, peers, out } => {
+            let report = accuracy_study(config, only.as_deref(), peers.as_deref(), &out)?;
+            (serde_json::to_string(&report)?, studies::accuracy::table(&report))
+        }
         StudyTask::Push { scene, instants } => {
             let report = push::run(config, scene.as_deref(), instants as usize)?;
             (serde_json::to_string(&report)?, push::table(&report))
@@ -375,6 +391,25 @@ fn study(config: &std::path::Path, what: StudyTask, json: bool) -> Result<ExitCo
     };
     println!("{}", if json { object } else { table });
     Ok(ExitCode::SUCCESS)
+}
+
+/// The charts of accuracy, with progress on standard error.
+fn accuracy_study(
+    config: &std::path::Path,
+    only: Option<&str>,
+    peers: Option<&std::path::Path>,
+    out: &std::path::Path,
+) -> Result<studies::accuracy::Report, Box<dyn Error>> {
+    let peers = peers.map(studies::accuracy::Peers::load).transpose()?.unwrap_or_default();
+    let bar = indicatif::ProgressBar::new(0);
+    bar.set_style(indicatif::ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}")?);
+    let report = studies::accuracy::run(config, &peers, out, only, |done, of, part| {
+        bar.set_length(of as u64);
+        bar.set_position(done as u64);
+        bar.set_message(part.to_string());
+    })?;
+    bar.finish_and_clear();
+    Ok(report)
 }
 
 /// cyclictest, the scene with all processes, cyclictest again: on the core and with the priority of the joint loop.
