@@ -78,15 +78,20 @@ impl Chain {
     /// Solves (4.42) between given ends.
     pub fn solve(&mut self) {
         for _ in 0..SWEEPS {
-            let mut change = 0.0f64;
-            for k in 1..self.len.saturating_sub(1) {
-                let (before, after) = (self.nodes[k - 1], self.nodes[k + 1]);
-                change = change.max(self.nodes[k].relax((before.time, before.p), (after.time, after.p)));
-            }
-            if change <= TOLERANCE {
+            if self.sweep() <= TOLERANCE {
                 break;
             }
         }
+    }
+
+    /// One sweep of [`Chain::solve`]; how far \[m\] a point moved at most.
+    pub fn sweep(&mut self) -> f64 {
+        let mut change = 0.0f64;
+        for k in 1..self.len.saturating_sub(1) {
+            let (before, after) = (self.nodes[k - 1], self.nodes[k + 1]);
+            change = change.max(self.nodes[k].relax((before.time, before.p), (after.time, after.p)));
+        }
+        change
     }
 
     /// Solves (4.42) for a chain whose last point is the first one moved by the rigid motion that takes the pose
