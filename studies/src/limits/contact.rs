@@ -20,7 +20,13 @@ use super::{Bench, Finding, Findings, Result, Rule, largest_stable};
 fn layer(poisson: f64) -> Result<Layer> {
     let elasticity = Elasticity { modulus: 6e5, poisson };
     let size = [0.06, 0.04, 0.012];
-    Ok(Layer::new(&Material { size, bricks: [5, 5, 1], elasticity, volume: Volume::Full, damping_time: 0.008 })?)
+    Ok(Layer::new(&Material {
+        size,
+        bricks: [5, 5, 1],
+        elasticity,
+        volume: Volume::Full,
+        damping_time: 0.008,
+    })?)
 }
 
 /// Eigenvalues of D^-1 W, and condition of W.
@@ -115,18 +121,37 @@ pub(super) fn friction(_: &Bench) -> Findings {
     let counts = [f64::from(few.sweeps), f64::from(many.0.sweeps)];
     let honest = beyond.converged == (beyond.residual <= 1e-6);
     Ok(vec![
-        Finding::new("F10", "Gauss-Seidel, mu = 2: sweeps, against those of mu = 0.3", "", counts, Rule::AtLeast)
-            .says("converged, sweeps", many.0.converged),
-        Finding::new("F10", "mu = 2 from two starts: largest difference of a force", "N", [1e-3, apart], Rule::AtMost)
-            .says("unique: true", many.0.unique),
-        Finding::new("F10", "Gauss-Seidel, mu = 2, gamma = 1.95: residual", "", [1e-6, beyond.residual], Rule::AtLeast)
-            .says("converged: false, residual", honest),
+        Finding::new(
+            "F10",
+            "Gauss-Seidel, mu = 2: sweeps, against those of mu = 0.3",
+            "",
+            counts,
+            Rule::AtLeast,
+        )
+        .says("converged, sweeps", many.0.converged),
+        Finding::new(
+            "F10",
+            "mu = 2 from two starts: largest difference of a force",
+            "N",
+            [1e-3, apart],
+            Rule::AtMost,
+        )
+        .says("unique: true", many.0.unique),
+        Finding::new(
+            "F10",
+            "Gauss-Seidel, mu = 2, gamma = 1.95: residual",
+            "",
+            [1e-6, beyond.residual],
+            Rule::AtLeast,
+        )
+        .says("converged: false, residual", honest),
     ])
 }
 
 /// F11: friction of a sliding node in every direction; a pyramid would be up to 41 % too large, or 29 % too small.
 pub(super) fn cone(_: &Bench) -> Findings {
-    let law = Law { stiffness: [4e4, 4e4, 6e4], damping: [300.0, 300.0, 500.0], friction: 0.3, recovery: 0.0 };
+    let law =
+        Law { stiffness: [4e4, 4e4, 6e4], damping: [300.0, 300.0, 500.0], friction: 0.3, recovery: 0.0 };
     let error = |degrees: i32| {
         let (s, c) = f64::from(degrees).to_radians().sin_cos();
         let a = point::solve(&law, [0.0; 3], [0.5 * c, 0.5 * s, -0.1], -1e-9);
@@ -141,7 +166,8 @@ pub(super) fn cone(_: &Bench) -> Findings {
 
 /// F11: a block that sticks on an incline of 20 degrees stays: way in 5 s after it came to rest.
 pub(super) fn creep(_: &Bench) -> Findings {
-    let law = Law { stiffness: [4e4, 4e4, 6e4], damping: [300.0, 300.0, 500.0], friction: 0.8, recovery: 200.0 };
+    let law =
+        Law { stiffness: [4e4, 4e4, 6e4], damping: [300.0, 300.0, 500.0], friction: 0.8, recovery: 200.0 };
     let (mass, h, tilt) = (10.0, 1e-3, 20_f64.to_radians());
     let pull = [-multibody::GRAVITY.z * tilt.sin(), 0.0, multibody::GRAVITY.z * tilt.cos()];
     let (mut r, mut v, mut d, mut before) = ([0.0; 3], [0.0; 3], [0.0; 3], 0.0);
@@ -176,7 +202,19 @@ pub(super) fn penetration(_: &Bench) -> Findings {
     let time = -h * steps as f64 / (run(h, steps) / 1e-3).ln();
     let longest = largest_stable(1e-4, 0.1, |h| run(h, 20_000) < 1e-3);
     Ok(vec![
-        Finding::new("P1", "penetration of 1 mm: time constant of its recovery", "s", [1.0 / 200.0, time], Rule::Within(1e-3)),
-        Finding::new("P1", "explicit Euler, recovery of penetration: largest step 2/200 s", "s", [2.0 / 200.0, longest], Rule::Within(1e-3)),
+        Finding::new(
+            "P1",
+            "penetration of 1 mm: time constant of its recovery",
+            "s",
+            [1.0 / 200.0, time],
+            Rule::Within(1e-3),
+        ),
+        Finding::new(
+            "P1",
+            "explicit Euler, recovery of penetration: largest step 2/200 s",
+            "s",
+            [2.0 / 200.0, longest],
+            Rule::Within(1e-3),
+        ),
     ])
 }

@@ -1,7 +1,10 @@
 //! Drives: load torques without a solution, elasticity as printed, linkages at their dead points (F12-F15, F24).
 
 use ::drives::fit::CubicFriction;
-use ::drives::{Ankle, AnkleGeometry, Friction, HarmonicFriction, KneeGeometry, NoLoadTorque, OutOfDomain, ScrewFriction, Transmission};
+use ::drives::{
+    Ankle, AnkleGeometry, Friction, HarmonicFriction, KneeGeometry, NoLoadTorque, OutOfDomain, ScrewFriction,
+    Transmission,
+};
 use config::robot::Drive as Description;
 use nalgebra::Vector3;
 use sim_backend::drive::Drive;
@@ -23,8 +26,14 @@ pub(super) fn load_torque(_: &Bench) -> Findings {
     let amplified = -COUPLED.load_torque(990.0, -1.0, 0.0)?;
     let beyond = COUPLED.load_torque(1001.0, -1.0, 0.0);
     let mut findings = vec![
-        Finding::new("F12", "load torque (2.64), c = 0.99: amplification 1/(1 - c)", "", [100.0, amplified], Rule::Within(1e-9))
-            .says("beyond c = 1: NoLoadTorque", matches!(beyond, Err(NoLoadTorque { share }) if share > 1.0)),
+        Finding::new(
+            "F12",
+            "load torque (2.64), c = 0.99: amplification 1/(1 - c)",
+            "",
+            [100.0, amplified],
+            Rule::Within(1e-9),
+        )
+        .says("beyond c = 1: NoLoadTorque", matches!(beyond, Err(NoLoadTorque { share }) if share > 1.0)),
     ];
     for (name, gear) in GEARS {
         let found = largest_stable(0.0, 4000.0, |w| gear.load_torque(w, -1.0, 0.0).is_ok());
@@ -73,10 +82,22 @@ pub(super) fn passivity(_: &Bench) -> Findings {
     let predicted = largest_stable(100.0, 5000.0, |w| force(w) > 0.0);
     let found = largest_stable(100.0, 5000.0, |w| cubic.efficiency(w, 0.7) <= 1.0);
     Ok(vec![
-        Finding::new("F14", "friction (2.61), (2.68), +-3000 rad/s, +-20 N m: largest power", "W", [0.0, most], Rule::AtMost)
-            .says("no answer beyond c = 1", true),
-        Finding::new("F14", "friction (2.60) with g < 0: speed at which it gives power", "rad/s", [predicted, found], Rule::Within(1e-3))
-            .says("not used; fitted for comparison only", true),
+        Finding::new(
+            "F14",
+            "friction (2.61), (2.68), +-3000 rad/s, +-20 N m: largest power",
+            "W",
+            [0.0, most],
+            Rule::AtMost,
+        )
+        .says("no answer beyond c = 1", true),
+        Finding::new(
+            "F14",
+            "friction (2.60) with g < 0: speed at which it gives power",
+            "rad/s",
+            [predicted, found],
+            Rule::Within(1e-3),
+        )
+        .says("not used; fitted for comparison only", true),
     ])
 }
 
@@ -92,8 +113,20 @@ pub(super) fn elasticity(bench: &Bench) -> Findings {
     let first = t1 / k0;
     let literal = printed(first * (1.0 + 1e-12)) - printed(first * (1.0 - 1e-12));
     Ok(vec![
-        Finding::new("F15", "elasticity, continuous form: jump at its knees", "N m", [1e-12, jump(t1).max(jump(t2))], Rule::AtMost),
-        Finding::new("F15", "elasticity (2.69) as printed: jump K_1 T_1/K_0", "N m", [k1 * t1 / k0, literal], Rule::Within(1e-6)),
+        Finding::new(
+            "F15",
+            "elasticity, continuous form: jump at its knees",
+            "N m",
+            [1e-12, jump(t1).max(jump(t2))],
+            Rule::AtMost,
+        ),
+        Finding::new(
+            "F15",
+            "elasticity (2.69) as printed: jump K_1 T_1/K_0",
+            "N m",
+            [k1 * t1 / k0, literal],
+            Rule::Within(1e-6),
+        ),
     ])
 }
 
@@ -120,7 +153,8 @@ pub(super) fn ankle(bench: &Bench) -> Findings {
     let told = matches!(beyond, Err(OutOfDomain::Coupler { margin }) if margin < 0.0);
     let regime = "ankle, coupler near its end: power of the distance in the ratio";
     Ok(vec![
-        Finding::new("F24", regime, "", [-0.5, slope(&points)], Rule::Within(0.01)).says("OutOfDomain::Coupler, margin D < 0", told),
+        Finding::new("F24", regime, "", [-0.5, slope(&points)], Rule::Within(0.01))
+            .says("OutOfDomain::Coupler, margin D < 0", told),
     ])
 }
 
@@ -137,7 +171,9 @@ fn dead_angle(g: &KneeGeometry) -> f64 {
 /// The robot of type 2 with a knee driven into its dead point: where it is told, and that all rates stay finite.
 pub(super) fn dead_point(bench: &Bench) -> Findings {
     let is_knee = |d: &&Description| matches!(d.transmission, Transmission::Knee(_));
-    let Some(drive) = bench.setup.robot.drives.iter().find(is_knee) else { return Err("no knee linkage".into()) };
+    let Some(drive) = bench.setup.robot.drives.iter().find(is_knee) else {
+        return Err("no knee linkage".into());
+    };
     let Transmission::Knee(knee) = drive.transmission else { return Err("no knee linkage".into()) };
     let mut plant = bench.plant(2)?;
     let still: Vec<Drive> = bench.pose().iter().map(|&q| Drive::resting(q)).collect();
@@ -157,6 +193,7 @@ pub(super) fn dead_point(bench: &Bench) -> Findings {
     let told = matches!(why, Some(Why::Linkage(OutOfDomain::Lever { margin })) if margin < 0.0) && finite;
     let regime = "type 2, knee bent to the dead point of its screw";
     Ok(vec![
-        Finding::new("D1", regime, "rad", [predicted, found], Rule::Within(1e-3)).says("DriveFault: Lever; rates finite", told),
+        Finding::new("D1", regime, "rad", [predicted, found], Rule::Within(1e-3))
+            .says("DriveFault: Lever; rates finite", told),
     ])
 }

@@ -42,7 +42,7 @@ pub(super) fn nearest(_: &Bench) -> Findings {
             0 => dice.point(),
             1 => a + (b - a) * (0.5 + 0.5 * dice.next()) + dice.point() * 1e-2, // obtuse, or nearly flat
             2 => a + (b - a) * (2.0 * dice.next()),                             // on a line
-            _ => a,                                                            // an edge only
+            _ => a,                                                             // an edge only
         };
         let corners = [a, b, c];
         most = most.max(((p - closest(&p, &corners).0).norm() - by_search(&p, &corners)).abs());
@@ -71,8 +71,20 @@ pub(super) fn edge(_: &Bench) -> Findings {
     }
     let lost = ground.query([f64::NAN, 0.0, 0.02]);
     Ok(vec![
-        Finding::new("E1", "node around the edge of a board, 2 mm away: error of the gap", "m", [1e-12, gap], Rule::AtMost)
-            .says("no number: Surface::Far", lost.surface == Surface::Far && on_board),
-        Finding::new("E1", "node around the edge, 1000 steps: largest turn of the normal", "rad", [turn, largest], Rule::Within(1e-6)),
+        Finding::new(
+            "E1",
+            "node around the edge of a board, 2 mm away: error of the gap",
+            "m",
+            [1e-12, gap],
+            Rule::AtMost,
+        )
+        .says("no number: Surface::Far", lost.surface == Surface::Far && on_board),
+        Finding::new(
+            "E1",
+            "node around the edge, 1000 steps: largest turn of the normal",
+            "rad",
+            [turn, largest],
+            Rule::Within(1e-6),
+        ),
     ])
 }

@@ -5,16 +5,24 @@
 //! | s | eigenvalue of the derivative of the rates by the state | 1/s |
 //! | R | factor by which a step multiplies an eigenvector, as a polynomial of hs | 1 |
 
+use nalgebra::linalg::{Schur, balancing};
 use nalgebra::{Complex, DMatrix};
+
+use super::Result;
 
 /// \[1\] By how much a state is changed to see what its rate does: contact nodes stay on the ground, rotors within the ramp
 /// of their dry friction.
 const CHANGE: f64 = 1e-7;
 /// \[1/s\] Eigenvalues below are zeros with rounding errors: a robot may stand anywhere, a stuck node stay anywhere.
 const ZERO: f64 = 1.0;
+/// \[1/s\] By how much all eigenvalues are moved while they are computed.
+const SHIFT: f64 = 1000.0;
 
 /// Eigenvalues \[1/s\] of the linearised rates at a state, zeros left out.
-pub(super) fn eigenvalues(x: &[f64], mut rate: impl FnMut(&[f64], &mut [f64])) -> Vec<Complex<f64>> {
+///
+/// # Errors
+/// The iteration for them does not end.
+pub(super) fn eigenvalues(x: &[f64], mut rate: impl FnMut(&[f64], &mut [f64])) -> Result<Vec<Complex<f64>>> {
     let n = x.len();
     let (mut at, mut ahead, mut behind) = (x.to_vec(), vec![0.0; n], vec![0.0; n]);
     let mut jacobian = DMatrix::zeros(n, n);
@@ -28,7 +36,13 @@ pub(super) fn eigenvalues(x: &[f64], mut rate: impl FnMut(&[f64], &mut [f64])) -
             jacobian[(i, j)] = (ahead[i] - behind[i]) / (2.0 * CHANGE);
         }
     }
-    jacobian.complex_eigenvalues().iter().copied().filter(|s| s.norm() > ZERO).collect()
+    // Scaled, and moved away from zero, where many eigenvalues coincide and the iteration would not end.
+    balancing::balance_parlett_reinsch(&mut jacobian);
+    for i in 0..n {
+        jacobian[(i, i)] -= SHIFT;
+    }
+    let found = Schur::try_new(jacobian, 1e-13, 200 * n).ok_or("no eigenvalues of the linearised rates found")?;
+    Ok(found.complex_eigenvalues().iter().map(|s| s + SHIFT).filter(|s| s.norm() > ZERO).collect())
 }
 
 /// \[s\] Largest step with which explicit Euler is stable: -2 Re s/|s|^2.

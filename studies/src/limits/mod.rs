@@ -88,12 +88,13 @@ struct Bench {
 }
 
 /// The checks, in the order of the report.
-const CHECKS: [fn(&Bench) -> Findings; 26] = [
+const CHECKS: [fn(&Bench) -> Findings; 27] = [
     steps::free_layer,
     steps::mass_on_layer,
     steps::whole_robot,
     steps::servo,
     steps::circuit,
+    stiction::adaptive,
     stiction::chatter,
     stiction::smoothed_sign,
     stiction::at_rest,
@@ -124,8 +125,15 @@ const CHECKS: [fn(&Bench) -> Findings; 26] = [
 pub fn run(config: &Path) -> Result<Report> {
     let bench = Bench { setup: Setup::load(config, "stand")? };
     let mut findings = Vec::new();
+    let begun = std::time::Instant::now();
     for check in CHECKS {
-        findings.extend(check(&bench)?);
+        let found = check(&bench)?;
+        eprintln!(
+            "{:.2} {}",
+            begun.elapsed().as_secs_f64(),
+            table(&Report { findings: found.clone() }).lines().skip(1).collect::<Vec<_>>().join("\n")
+        );
+        findings.extend(found);
     }
     Ok(Report { findings })
 }
@@ -144,7 +152,16 @@ impl Bench {
 impl Finding {
     fn new(id: &'static str, regime: &str, unit: &'static str, numbers: [f64; 2], rule: Rule) -> Self {
         let [predicted, measured] = numbers;
-        Self { id, regime: regime.into(), unit, predicted, measured, rule, reported: String::new(), told: true }
+        Self {
+            id,
+            regime: regime.into(),
+            unit,
+            predicted,
+            measured,
+            rule,
+            reported: String::new(),
+            told: true,
+        }
     }
 
     /// What the program says about it, and whether it did.

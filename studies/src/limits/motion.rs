@@ -121,7 +121,11 @@ fn oscillator() -> Vec<Finding> {
         let (mut method, mut x) = (stepper(2), [1.0, 0.0]);
         let rate = |_: f64, x: &[f64], dx: &mut [f64]| (dx[0], dx[1]) = (w * x[1], -w * x[0]);
         for _ in 0..60_000 {
-            if runge_kutta { method.runge_kutta_4(0.0, h, &mut x, rate) } else { method.euler(0.0, h, &mut x, rate) }
+            if runge_kutta {
+                method.runge_kutta_4(0.0, h, &mut x, rate)
+            } else {
+                method.euler(0.0, h, &mut x, rate)
+            }
         }
         x[0] * x[0] + x[1] * x[1]
     };
@@ -129,8 +133,20 @@ fn oscillator() -> Vec<Finding> {
     let euler = (60_000.0 * (z * z).ln_1p()).exp();
     let fourth = 60_000.0 * (z.powi(6) / 72.0 - z.powi(8) / 576.0);
     vec![
-        Finding::new("E2", "swing of 1 Hz, explicit Euler at 1 ms: energy after a minute, times", "", [euler, run(false)], Rule::Within(1e-6)),
-        Finding::new("E2", "swing of 1 Hz, Runge-Kutta 4 at 1 ms: share of energy lost in a minute", "", [fourth, 1.0 - run(true)], Rule::Within(0.01)),
+        Finding::new(
+            "E2",
+            "swing of 1 Hz, explicit Euler at 1 ms: energy after a minute, times",
+            "",
+            [euler, run(false)],
+            Rule::Within(1e-6),
+        ),
+        Finding::new(
+            "E2",
+            "swing of 1 Hz, Runge-Kutta 4 at 1 ms: share of energy lost in a minute",
+            "",
+            [fourth, 1.0 - run(true)],
+            Rule::Within(0.01),
+        ),
     ]
 }
 
@@ -167,7 +183,19 @@ fn flight(bench: &Bench) -> Findings {
     let points = [8e-3, 4e-3].map(|h| [h, drift(&model, h, 5.0)]);
     let minute = drift(&model, 4e-3, 60.0);
     Ok(vec![
-        Finding::new("E2", "robot thrown, joints free, Runge-Kutta 4: order of the drift of energy", "", [3.6, slope(&points)], Rule::AtLeast),
-        Finding::new("E2", "robot thrown, Runge-Kutta 4 at 4 ms: share of energy after a minute", "", [1e-3, minute], Rule::AtMost),
+        Finding::new(
+            "E2",
+            "robot thrown, joints free, Runge-Kutta 4: order of the drift of energy",
+            "",
+            [3.6, slope(&points)],
+            Rule::AtLeast,
+        ),
+        Finding::new(
+            "E2",
+            "robot thrown, Runge-Kutta 4 at 4 ms: share of energy after a minute",
+            "",
+            [1e-3, minute],
+            Rule::AtMost,
+        ),
     ])
 }

@@ -55,9 +55,27 @@ pub(super) fn collocation(_: &Bench) -> Findings {
     let doubling = 4.0 * 2f64.ln() / (late / early).ln();
     let points = [13, 25, 49, 97].map(|n| [1.0 / (n - 1) as f64, collocate(n, 4.0).0]);
     Ok(vec![
-        Finding::new("F16", "pendulum integrated forward from its exact plan: error doubles every", "s", [2f64.ln() / growth().sqrt(), doubling], Rule::Within(0.01))
-            .says("not done: plans are boundary value problems", true),
-        Finding::new("F16", "boundary value problem, horizon twice as long: error, times", "", [1.0, long / short], Rule::Within(0.05)),
-        Finding::new("F20", "collocation with parabolas, smooth: order", "", [4.0, slope(&points)], Rule::Within(0.05)),
+        Finding::new(
+            "F16",
+            "pendulum integrated forward from its exact plan: error doubles every",
+            "s",
+            [2f64.ln() / growth().sqrt(), doubling],
+            Rule::Within(0.01),
+        )
+        .says("not done: plans are boundary value problems", true),
+        Finding::new(
+            "F16",
+            "boundary value problem, horizon twice as long: error, times",
+            "",
+            [1.0, long / short],
+            Rule::Within(0.05),
+        ),
+        Finding::new(
+            "F20",
+            "collocation with parabolas, smooth: order",
+            "",
+            [4.0, slope(&points)],
+            Rule::Within(0.05),
+        ),
     ])
 }

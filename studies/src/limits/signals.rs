@@ -43,10 +43,23 @@ fn quantised_speed(bench: &Bench) -> Findings {
         largest = largest.max(error.abs());
     }
     let delta = std::f64::consts::TAU / bits;
-    let [mean, most] = [[delta / (cycle * 6f64.sqrt()), (square / f64::from(n)).sqrt()], [delta / cycle, largest]];
+    let [mean, most] =
+        [[delta / (cycle * 6f64.sqrt()), (square / f64::from(n)).sqrt()], [delta / cycle, largest]];
     Ok(vec![
-        Finding::new("F26", "speed from differences, 16 bit, 1 kHz: root mean square error", "rad/s", mean, Rule::Within(0.05)),
-        Finding::new("F26", "speed from differences, 16 bit, 1 kHz: largest error", "rad/s", most, Rule::Within(0.05)),
+        Finding::new(
+            "F26",
+            "speed from differences, 16 bit, 1 kHz: root mean square error",
+            "rad/s",
+            mean,
+            Rule::Within(0.05),
+        ),
+        Finding::new(
+            "F26",
+            "speed from differences, 16 bit, 1 kHz: largest error",
+            "rad/s",
+            most,
+            Rule::Within(0.05),
+        ),
     ])
 }
 

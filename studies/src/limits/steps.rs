@@ -2,8 +2,8 @@
 //!
 //! Predicted from eigenvalues of the linearised equations, measured by bisection: does a change of 1e-7 grow?
 
-use config::scene::{Integrator, Scene};
 use ::contact::point::{self, Law};
+use config::scene::{Integrator, Scene};
 use messages::EventCode;
 use nalgebra::Complex;
 use sim_backend::drive::Drive;
@@ -11,7 +11,7 @@ use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Outside, Plant};
 
 use super::held::Held;
-use super::linear::{euler_limit, eigenvalues, runge_kutta_limit};
+use super::linear::{eigenvalues, euler_limit, runge_kutta_limit};
 use super::{Bench, Finding, Findings, Result, Rule, largest_stable, stepper};
 
 /// Where the stability region of the classical Runge-Kutta method ends on the real axis.
@@ -45,8 +45,20 @@ pub(super) fn free_layer(bench: &Bench) -> Findings {
     let limit = |runge_kutta: bool| largest_stable(0.0, 10.0 * time, |h| !grows(runge_kutta, h));
     let numbers = [[2.0 * time, limit(false)], [REAL_AXIS * time, limit(true)]];
     Ok(vec![
-        Finding::new("F1", "explicit Euler, free layer: largest step 2 B/K", "s", numbers[0], Rule::Within(1e-3)),
-        Finding::new("F4", "Runge-Kutta 4, free layer: largest step 2.785 B/K", "s", numbers[1], Rule::Within(1e-3)),
+        Finding::new(
+            "F1",
+            "explicit Euler, free layer: largest step 2 B/K",
+            "s",
+            numbers[0],
+            Rule::Within(1e-3),
+        ),
+        Finding::new(
+            "F4",
+            "Runge-Kutta 4, free layer: largest step 2.785 B/K",
+            "s",
+            numbers[1],
+            Rule::Within(1e-3),
+        ),
     ])
 }
 
@@ -106,7 +118,7 @@ impl Standing {
         }
     }
 
-    fn eigenvalues(&mut self) -> Vec<Complex<f64>> {
+    fn eigenvalues(&mut self) -> Result<Vec<Complex<f64>>> {
         let Self { plant, state, drives } = self;
         eigenvalues(state, |x, dx| plant.rate(0.0, x, drives, &POWERED, dx))
     }
@@ -140,7 +152,7 @@ fn told(event: Option<EventCode>) -> bool {
 /// F2, F4: all of type 1, standing.
 pub(super) fn whole_robot(bench: &Bench) -> Findings {
     let mut standing = Standing::new(bench, 1, 1e-3, 3.0)?;
-    let values = standing.eigenvalues();
+    let values = standing.eigenvalues()?;
     let finding = |(id, name, integrator, predicted): (_, &str, _, f64)| {
         let measured = standing.largest(integrator, 0.2 * predicted, 3.0 * predicted);
         let event = end(bench, 1, integrator, 1.2 * predicted)?;
@@ -160,7 +172,7 @@ pub(super) fn whole_robot(bench: &Bench) -> Findings {
 /// F3, F4: type 2, standing on its servos.
 pub(super) fn servo(bench: &Bench) -> Findings {
     let mut standing = Standing::new(bench, 2, 2e-5, 0.4)?;
-    let values = standing.eigenvalues();
+    let values = standing.eigenvalues()?;
     let finding = |(id, name, integrator, predicted): (_, &str, _, f64)| {
         let measured = standing.largest(integrator, 0.2 * predicted, 3.0 * predicted);
         let event = end(bench, 2, integrator, 1.2 * predicted)?;
@@ -194,7 +206,19 @@ pub(super) fn circuit(bench: &Bench) -> Findings {
     let numbers = [predicted, largest_stable(0.0, 1e-2, stable)];
     let exact = motor.current_after(1.0, 0.0, 0.0, 1000.0 * predicted);
     Ok(vec![
-        Finding::new("F3", "explicit Euler, current loop of a motor: 2 L/(R + L w_c)", "s", numbers, Rule::Within(1e-3)),
-        Finding::new("F3", "exact step of the circuit, 1000 times as long: current left of 1 A", "A", [1e-12, exact.abs()], Rule::AtMost),
+        Finding::new(
+            "F3",
+            "explicit Euler, current loop of a motor: 2 L/(R + L w_c)",
+            "s",
+            numbers,
+            Rule::Within(1e-3),
+        ),
+        Finding::new(
+            "F3",
+            "exact step of the circuit, 1000 times as long: current left of 1 A",
+            "A",
+            [1e-12, exact.abs()],
+            Rule::AtMost,
+        ),
     ])
 }

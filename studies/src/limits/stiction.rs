@@ -1,10 +1,11 @@
-//! Dry friction as a sign chatters, as a ramp it creeps; as a set it rests (F6).
+//! Dry friction as a sign chatters, as a ramp it creeps; as a set it rests (F5, F6).
 
-use config::scene::{Integrator, Scene};
 use ::drives::{Friction, HarmonicFriction};
+use config::scene::{Integrator, Scene};
 use sim_backend::SimBackend;
+use sim_backend::stiff::{Limits, Stiff, Why};
 
-use super::{Bench, Finding, Findings, Rule};
+use super::{Bench, Finding, Findings, Rule, slope};
 
 /// A gear of dry friction only \[N m\], a rotor \[kg m^2\], a step \[s\].
 const GEAR: HarmonicFriction = HarmonicFriction { starting: 0.1, load: 0.0, viscous: 0.0, coupled: 0.0 };
@@ -29,7 +30,13 @@ pub(super) fn chatter(_: &Bench) -> Findings {
     let predicted = STEP * (GEAR.starting + MOTOR) / INERTIA;
     let [at_rest, chatter] = [[0.0, left], [predicted, largest]];
     Ok(vec![
-        Finding::new("F6", "explicit Euler with sign(w) T_0: chatter h (T_0 + T)/J", "rad/s", chatter, Rule::Within(0.01)),
+        Finding::new(
+            "F6",
+            "explicit Euler with sign(w) T_0: chatter h (T_0 + T)/J",
+            "rad/s",
+            chatter,
+            Rule::Within(0.01),
+        ),
         Finding::new("F6", "implicit step on the same rotor: speed", "rad/s", at_rest, Rule::AtMost),
     ])
 }
@@ -60,4 +67,28 @@ pub(super) fn at_rest(bench: &Bench) -> Findings {
     let moved = (0..joints).map(|j| (after[j] - before[j]).abs()).fold(0.0, f64::max);
     let regime = "semi-implicit, robot of type 2 without supply: joints creep in 10 s";
     Ok(vec![Finding::new("F6", regime, "rad", [0.0, moved], Rule::AtMost)])
+}
+
+/// F5: an adaptive method at a sign takes steps in proportion to its tolerance; its guard ends that and names the speed.
+pub(super) fn adaptive(_: &Bench) -> Findings {
+    // A joint of 1 kg m^2 with the friction of an HFUC-25-100 under half of it, at rest.
+    let (friction, load, seconds) = (10.4, 5.2, 0.05);
+    let mut rate = |_: f64, x: &[f64], dx: &mut [f64]| {
+        (dx[0], dx[1]) = (x[1], load - friction * (f64::from(x[1] > 0.0) - f64::from(x[1] < 0.0)));
+    };
+    let mut advance = |tolerance: f64, most_calls: u32| {
+        let limits = Limits { most_calls, ..Limits::of_tolerance(tolerance) };
+        Stiff::new(limits).advance(0.0, seconds, &mut [0.0, 0.0], &mut rate)
+    };
+    let mut points = Vec::new();
+    for tolerance in [1e-4, 1e-5, 1e-6] {
+        points.push([tolerance, f64::from(advance(tolerance, 10_000_000)?.calls)]);
+    }
+    let ended = advance(1e-6, 20_000);
+    let told = matches!(ended, Err(gave_up) if gave_up.why == Why::Calls && gave_up.state == 1);
+    let regime = "BDF on sign(w) T_0 at rest: power of the tolerance in its evaluations";
+    let numbers = [-1.0, slope(&points)];
+    Ok(vec![
+        Finding::new("F5", regime, "", numbers, Rule::Within(0.15)).says("GaveUp: calls, state that chatters", told),
+    ])
 }

@@ -73,8 +73,26 @@ fn measured(runge_kutta: bool, located: bool) -> f64 {
 /// F7: every method of fixed steps is of first order across a touchdown; a step that ends there restores the fourth.
 pub(super) fn order(_: &Bench) -> Findings {
     Ok(vec![
-        Finding::new("F7", "Runge-Kutta 4 across a touchdown: order", "", [1.0, measured(true, false)], Rule::Within(0.1)),
-        Finding::new("F7", "Runge-Kutta 4 with a step that ends at touchdown: order", "", [4.0, measured(true, true)], Rule::Within(0.05)),
-        Finding::new("F7", "explicit Euler across a touchdown: order", "", [1.0, measured(false, false)], Rule::Within(0.1)),
+        Finding::new(
+            "F7",
+            "Runge-Kutta 4 across a touchdown: order",
+            "",
+            [1.0, measured(true, false)],
+            Rule::Within(0.1),
+        ),
+        Finding::new(
+            "F7",
+            "Runge-Kutta 4 with a step that ends at touchdown: order",
+            "",
+            [4.0, measured(true, true)],
+            Rule::Within(0.05),
+        ),
+        Finding::new(
+            "F7",
+            "explicit Euler across a touchdown: order",
+            "",
+            [1.0, measured(false, false)],
+            Rule::Within(0.1),
+        ),
     ])
 }
