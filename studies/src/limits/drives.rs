@@ -80,7 +80,7 @@ pub(super) fn passivity(_: &Bench) -> Findings {
     // Where T_0 + mu T + b w + g w^3 = 0, by bisection of the polynomial.
     let force = |w: f64| 0.1 + 0.02 * 0.7 + 2e-4 * w - 1e-10 * w.powi(3);
     let predicted = largest_stable(100.0, 5000.0, |w| force(w) > 0.0);
-    let found = largest_stable(100.0, 5000.0, |w| cubic.efficiency(w, 0.7) <= 1.0);
+    let found = largest_stable(100.0, 5000.0, |w| cubic.torque(w, 0.7) * w < 0.0);
     Ok(vec![
         Finding::new(
             "F14",
@@ -140,9 +140,11 @@ pub(super) fn ankle(bench: &Bench) -> Findings {
     let at = |ankle: &Ankle, flexion: f64| Transmission::Ankle(*ankle).at([0.0, 0.0, flexion], [0.0; 3]);
     let short = |coupler: f64| Ankle::new(&AnkleGeometry { coupler, ..geometry });
     let least = largest_stable(0.0, geometry.coupler, |l| short(l).is_err());
-    let ankle = short(least * 1.05)?;
-    let toward = if at(&ankle, 1.0).is_err() { 1.0 } else { -1.0 };
-    let mut dead = [0.0, toward];
+    let ankle = short(least + 0.3 * Vector3::from(geometry.attachment).norm())?;
+    let angles = (1..150).flat_map(|k| [0.01, -0.01].map(|step| step * f64::from(k)));
+    let end = angles.into_iter().find(|q| at(&ankle, *q).is_err()).ok_or("the coupler reaches everywhere")?;
+    let toward = end.signum();
+    let mut dead = [0.0, end];
     for _ in 0..60 {
         let middle = 0.5 * (dead[0] + dead[1]);
         dead[usize::from(at(&ankle, middle).is_err())] = middle;

@@ -125,15 +125,8 @@ const CHECKS: [fn(&Bench) -> Findings; 27] = [
 pub fn run(config: &Path) -> Result<Report> {
     let bench = Bench { setup: Setup::load(config, "stand")? };
     let mut findings = Vec::new();
-    let begun = std::time::Instant::now();
     for check in CHECKS {
-        let found = check(&bench)?;
-        eprintln!(
-            "{:.2} {}",
-            begun.elapsed().as_secs_f64(),
-            table(&Report { findings: found.clone() }).lines().skip(1).collect::<Vec<_>>().join("\n")
-        );
-        findings.extend(found);
+        findings.extend(check(&bench)?);
     }
     Ok(Report { findings })
 }
@@ -226,7 +219,7 @@ pub fn table(report: &Report) -> String {
     );
     for f in &report.findings {
         let (deviation, allowed) = match f.rule {
-            Rule::Within(most) => (format!("{:+.2} %", 100.0 * f.deviation()), format!("{} %", 100.0 * most)),
+            Rule::Within(most) => (format!("{:+.2} %", 100.0 * f.deviation()), percent(most)),
             Rule::AtMost => (String::new(), "at most".into()),
             Rule::AtLeast => (String::new(), "at least".into()),
         };
@@ -242,6 +235,11 @@ pub fn table(report: &Report) -> String {
         );
     }
     text
+}
+
+/// A share as people write it.
+fn percent(share: f64) -> String {
+    if share > 0.0 && share < 1e-4 { format!("{:.0e} %", 100.0 * share) } else { format!("{} %", (1e4 * share).round() / 1e2) }
 }
 
 /// Six digits, without noise.
