@@ -202,6 +202,8 @@ enum StudyTask {
     },
     /// How fast simulation, planner and stabilizer are, and how accurate at that speed.
     Speed,
+    /// Where methods fail: predicted and measured limits, and how each failure is reported.
+    Limits,
     /// Figures of the thesis that compare two walks: 5.2, 4.17, 9.1.
     Thesis {
         /// Only this figure.
@@ -366,7 +368,7 @@ fn sim(setup: &Setup, json: bool, log: Option<PathBuf>) -> Result<ExitCode, Box<
 }
 
 fn study(config: &std::path::Path, what: StudyTask, json: bool) -> Result<ExitCode, Box<dyn Error>> {
-    use studies::{cycles, figures_of_thesis, push, speed};
+    use studies::{cycles, figures_of_thesis, limits, push, speed};
     let (object, table) = match what {
         StudyTask::Accuracy { only, peers, out } => {
             let report = accuracy_study(config, only.as_deref(), peers.as_deref(), &out)?;
@@ -375,6 +377,10 @@ fn study(config: &std::path::Path, what: StudyTask, json: bool) -> Result<ExitCo
         StudyTask::Push { scene, instants } => {
             let report = push::run(config, scene.as_deref(), instants as usize)?;
             (serde_json::to_string(&report)?, push::table(&report))
+        }
+        StudyTask::Limits => {
+            let report = limits::run(config)?;
+            (serde_json::to_string(&report)?, limits::table(&report))
         }
         StudyTask::Speed => {
             let report = speed::run(config)?;
