@@ -25,6 +25,7 @@ mod setup;
 pub mod system;
 pub mod terrain;
 pub mod timeline;
+pub mod tolerance;
 
 pub use error::{ConfigError, Problem};
 pub use file::root;

@@ -11,6 +11,7 @@ use crate::file::{self, Hash};
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 use crate::sensors::Sensors;
 use crate::terrain::{self, TerrainObject};
+use crate::tolerance::{Method, Tolerance};
 
 /// `scenes/NAME.toml`.
 #[derive(Clone, Debug)]
@@ -23,6 +24,9 @@ pub struct Scene {
     pub robot: String,
     /// Name of the gait file.
     pub gait: String,
+    /// What `depth = "auto"` is to reach. While this is there, depth, integrator and steps are stand-ins that nothing may be
+    /// simulated with: [`Scene::choose`] them.
+    pub auto: Option<Tolerance>,
     /// Modelling depth; type 1 is the reduced model (thesis table 2.4).
     pub depth: u8,
     /// Integrator of the simulated robot.
@@ -85,15 +89,25 @@ impl Scene {
     }
 
     fn build(top: &Section<'_, '_>, name: String) -> Self {
+        let (method, auto) = method(top);
+        let Method { depth, integrator, substeps } = method;
+        let adaptive = auto.is_none() && top.has("tolerance") && !top.is_table("tolerance");
+        if auto.is_none() && top.is_table("tolerance") {
+            top.problem(
+                "tolerance",
+                "a table of tolerances needs depth = \"auto\", which chooses type and steps",
+            );
+        }
         let scene = Self {
             name,
             about: top.text("about"),
             robot: top.text("robot"),
             gait: top.text("gait"),
-            depth: top.integer("depth", 1..=5) as u8,
-            integrator: Integrator::ALL[top.word("integrator", &Integrator::WORDS)],
-            substeps: top.integer("substeps", 1..=1000) as u32,
-            tolerance: top.has("tolerance").then(|| top.number("tolerance", "1", 1e-12..=1e-2)),
+            auto,
+            depth,
+            integrator,
+            substeps,
+            tolerance: adaptive.then(|| top.number("tolerance", "1", 1e-12..=1e-2)),
             cycle: top.number("cycle", "s", 1e-4..=0.02),
             start_pose: top.text("start_pose"),
             duration: top.number("duration", "s", POSITIVE),
@@ -109,6 +123,17 @@ impl Scene {
         scene.check_times(top, "command", scene.commands.iter().map(|(time, _)| *time));
         scene.check_times(top, "push", scene.pushes.iter().map(|(time, _)| *time));
         scene
+    }
+
+    /// How the scene is simulated.
+    pub fn method(&self) -> Method {
+        Method { depth: self.depth, integrator: self.integrator, substeps: self.substeps }
+    }
+
+    /// Simulates the scene with `method` from now on.
+    pub fn choose(&mut self, method: Method) {
+        Method { depth: self.depth, integrator: self.integrator, substeps: self.substeps } = method;
+        self.auto = None;
     }
 
     fn check_times(&self, top: &Section<'_, '_>, key: &str, times: impl Iterator<Item = f64>) {
@@ -130,6 +155,29 @@ impl Scene {
             last = time;
         }
     }
+}
+
+/// `depth`, `integrator`, `substeps`; or a stand-in and what `depth = "auto"` is to reach.
+fn method(top: &Section<'_, '_>) -> (Method, Option<Tolerance>) {
+    if !top.is_text("depth") {
+        let depth = top.integer("depth", 1..=5) as u8;
+        let integrator = Integrator::ALL[top.word("integrator", &Integrator::WORDS)];
+        return (Method { depth, integrator, substeps: top.integer("substeps", 1..=1000) as u32 }, None);
+    }
+    let depth = top.text("depth");
+    if depth != "auto" {
+        top.problem(
+            "depth",
+            format!("`{depth}` is not allowed; it takes a whole number from 1 to 5, or \"auto\""),
+        );
+    }
+    for key in ["integrator", "substeps"] {
+        if top.has(key) {
+            top.problem(key, "depth \"auto\" chooses it; leave it out");
+        }
+    }
+    let stand_in = Method { depth: 1, integrator: Integrator::Euler, substeps: 1 };
+    (stand_in, Some(Tolerance::read(top)))
 }
 
 /// `[sensors]`, if it is there.

@@ -253,6 +253,11 @@ impl<'a, 't> Section<'a, 't> {
         }
     }
 
+    /// Is the key there, and a string?
+    pub(crate) fn is_text(&self, key: &str) -> bool {
+        self.has(key) && matches!(self.table[key].get_ref(), DeValue::String(_))
+    }
+
     /// Is the key there, and a table?
     pub(crate) fn is_table(&self, key: &str) -> bool {
         self.has(key) && matches!(self.table[key].get_ref(), DeValue::Table(_))

@@ -7,6 +7,7 @@ use messages::Command;
 use crate::error::{ConfigError, Problem};
 use crate::file::Hash;
 use crate::section::{listed, nearest};
+use crate::tolerance::Method;
 use crate::{Gait, Robot, Scene, System};
 
 /// A scene, the robot and gait it names, and the run-time system; each fits the others.
@@ -37,6 +38,23 @@ impl Setup {
         let setup = Self { scene, robot, gait, system, hash: hash.0 };
         let problems = setup.problems();
         if problems.is_empty() { Ok(setup) } else { Err(ConfigError { file: path, problems }) }
+    }
+
+    /// The same with a method for the scene; one whose depth is "auto" needs it.
+    ///
+    /// # Errors
+    /// There is none, and the scene does not say one.
+    pub fn with_method(mut self, method: Option<Method>) -> Result<Self, String> {
+        if let Some(method) = method {
+            self.scene.choose(method);
+        }
+        match self.scene.auto {
+            None => Ok(self),
+            Some(_) => Err(format!(
+                "scene {}: its depth is \"auto\", and nobody has chosen yet; `gangwerk sim` and `gangwerk run` do",
+                self.scene.name
+            )),
+        }
     }
 
     /// What the scene says that robot or gait cannot do.

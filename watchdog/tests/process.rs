@@ -59,7 +59,14 @@ impl Rig {
     fn new(name: &str, mode: Mode) -> Self {
         let dir = std::env::temp_dir().join(format!("gangwerk-watchdog-{}-{name}", std::process::id()));
         let space = Space::create(&dir).unwrap();
-        let run = Run { dir: dir.clone(), mode, scene: "watchdog".into(), config: config(&dir), log: None };
+        let run = Run {
+            dir: dir.clone(),
+            mode,
+            scene: "watchdog".into(),
+            method: None,
+            config: config(&dir),
+            log: None,
+        };
         run.save().unwrap();
         let own = Space::open(&dir, Process::Lowlevel).unwrap();
         let lowlevel = LowLevel {

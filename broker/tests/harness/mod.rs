@@ -57,6 +57,7 @@ impl System {
             dir: dir.clone(),
             mode: Mode::RealTime,
             scene: "none".into(),
+            method: None,
             config: "none".into(),
             log: None,
         };

@@ -54,7 +54,8 @@ impl Daemon {
     pub fn new(process: Process, dir: &Path) -> Result<Self, Box<dyn Error>> {
         let stop = Stop::on_signals()?;
         let run = Run::load(dir)?;
-        let setup = Setup::load(&run.config, &run.scene)?;
+        let method = run.method.as_deref().map(str::parse).transpose()?;
+        let setup = Setup::load(&run.config, &run.scene)?.with_method(method)?;
         let row = setup.system.process(process).cloned();
         let schedule = match (run.mode, &row) {
             (Mode::RealTime, Some(row)) => Schedule { priority: row.priority, core: row.core },

@@ -5,6 +5,7 @@
 //! ```text
 //! mode = lockstep            # or real-time
 //! scene = walk_1kmh
+//! method = type 2, semi_implicit x 4 # what was chosen for a scene that leaves it open; else empty
 //! config = /home/me/gangwerk/config
 //! log = /home/me/walk.mcap   # empty: no log
 //! ```
@@ -32,6 +33,8 @@ pub struct Run {
     pub mode: Mode,
     /// Name of the scene.
     pub scene: String,
+    /// How the scene is simulated, if it leaves that open (`depth = "auto"`).
+    pub method: Option<String>,
     /// The configuration directory: `system.toml`, `robots/`, `scenes/`, `gaits/`.
     pub config: PathBuf,
     /// Where the log goes; none: nowhere.
@@ -47,8 +50,9 @@ impl Run {
         };
         let log = self.log.as_deref().unwrap_or(Path::new(""));
         let text = format!(
-            "mode = {mode}\nscene = {}\nconfig = {}\nlog = {}\n",
+            "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nlog = {}\n",
             self.scene,
+            self.method.as_deref().unwrap_or_default(),
             self.config.display(),
             log.display()
         );
@@ -79,11 +83,12 @@ impl Run {
                 return Err(IpcError::Other(text));
             }
         };
-        let log = value("log")?;
+        let (method, log) = (value("method")?, value("log")?);
         Ok(Self {
             dir: dir.into(),
             mode,
             scene: value("scene")?.into(),
+            method: (!method.is_empty()).then(|| method.into()),
             config: value("config")?.into(),
             log: (!log.is_empty()).then(|| log.into()),
         })

@@ -179,15 +179,18 @@ fn a_run_is_saved_and_loaded() {
         dir: system.dir().into(),
         mode: Mode::Lockstep,
         scene: "walk_1kmh".into(),
+        method: None,
         config: "/somewhere/config".into(),
         log: None,
     };
     run.save().unwrap();
     assert_eq!(Run::load(system.dir()).unwrap(), run);
-    let logged = Run { mode: Mode::RealTime, log: Some("/tmp/a b.mcap".into()), ..run };
+    let method = Some("type 2, semi_implicit x 4".into());
+    let logged = Run { mode: Mode::RealTime, method, log: Some("/tmp/a b.mcap".into()), ..run };
     logged.save().unwrap();
     assert_eq!(Run::load(system.dir()).unwrap(), logged);
-    std::fs::write(system.dir().join("run"), "mode = fast\nscene = x\nconfig = y\nlog =\n").unwrap();
+    std::fs::write(system.dir().join("run"), "mode = fast\nscene = x\nmethod =\nconfig = y\nlog =\n")
+        .unwrap();
     let error = Run::load(system.dir()).unwrap_err().to_string();
     assert!(error.contains("mode = fast"), "{error}");
 }
