@@ -203,7 +203,9 @@ pub(super) fn penetration(_: &Bench) -> Findings {
     let (h, steps) = (1e-6, 5000);
     let time = -h * steps as f64 / (run(h, steps).0 / 1e-3).ln();
     let longest = largest_stable(1e-4, 0.1, |h| run(h, 1000).1);
-    let of = |regime, measured, most| Finding::new("P1", regime, "s", [1.0 / law.recovery, measured], Rule::Within(most));
+    let of = |regime, measured, most| {
+        Finding::new("P1", regime, "s", [1.0 / law.recovery, measured], Rule::Within(most))
+    };
     Ok(vec![
         of("penetration of 1 mm: time constant of its recovery", time, 1e-3),
         of("penetration of 1 mm: largest Euler step that does not lift the node off", longest, 2e-3),

@@ -41,7 +41,8 @@ pub(super) fn eigenvalues(x: &[f64], mut rate: impl FnMut(&[f64], &mut [f64])) -
     for i in 0..n {
         jacobian[(i, i)] -= SHIFT;
     }
-    let found = Schur::try_new(jacobian, 1e-13, 200 * n).ok_or("no eigenvalues of the linearised rates found")?;
+    let found =
+        Schur::try_new(jacobian, 1e-13, 200 * n).ok_or("no eigenvalues of the linearised rates found")?;
     Ok(found.complex_eigenvalues().iter().map(|s| s + SHIFT).filter(|s| s.norm() > ZERO).collect())
 }
 

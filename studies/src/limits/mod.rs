@@ -239,7 +239,11 @@ pub fn table(report: &Report) -> String {
 
 /// A share as people write it.
 fn percent(share: f64) -> String {
-    if share > 0.0 && share < 1e-4 { format!("{:.0e} %", 100.0 * share) } else { format!("{} %", (1e4 * share).round() / 1e2) }
+    if share > 0.0 && share < 1e-4 {
+        format!("{:.0e} %", 100.0 * share)
+    } else {
+        format!("{} %", (1e4 * share).round() / 1e2)
+    }
 }
 
 /// Six digits, without noise.

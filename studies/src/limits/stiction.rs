@@ -105,6 +105,7 @@ pub(super) fn adaptive(_: &Bench) -> Findings {
     let regime = "BDF on sign(w) T_0 at rest: power of the tolerance in its evaluations";
     let numbers = [-1.0, slope(&points)];
     Ok(vec![
-        Finding::new("F5", regime, "", numbers, Rule::Within(0.15)).says("GaveUp: calls, state that chatters", told),
+        Finding::new("F5", regime, "", numbers, Rule::Within(0.15))
+            .says("GaveUp: calls, state that chatters", told),
     ])
 }

@@ -52,9 +52,8 @@ fn error(runge_kutta: bool, n: usize, before: f64, located: bool) -> f64 {
         }
     };
     if located {
-        advance(1, before, &mut x);
-        // The event, a little late: rounding must not lift the node off again.
-        x[0] = TOUCH - LATE;
+        // A step of free fall is exact; it ends a little late, so that rounding does not lift the node off again.
+        x = [TOUCH - LATE, FALL, 0.0];
         advance(n, AFTER, &mut x);
     } else {
         advance(n, AFTER + before, &mut x);
