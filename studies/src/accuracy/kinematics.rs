@@ -13,7 +13,7 @@ use controller::task_space::TaskSpace;
 use drives::Transmission;
 use drives::lookup::Table;
 use messages::{LEFT, MAX_JOINTS, RIGHT};
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use super::order::in_ms;
 use super::{Chart, Cost, Given, Point, cost};
@@ -74,7 +74,7 @@ fn inverse(setup: &Setup) -> Result<Chart, Box<dyn Error>> {
                 step: Some(cycle),
                 solver: Some(in_ms(cycle)),
                 cpu_us: Some(1e6 * seconds / (STEP / cycle).round()),
-                error,
+                error: error.max(f64::EPSILON), // of metres: nothing less can be drawn
                 ..Point::default()
             });
         }
@@ -144,7 +144,9 @@ impl Following {
         for foot in [RIGHT, LEFT] {
             let (position, rotation) = place(&self.space, foot);
             let (p0, r0) = self.begin[foot];
-            let turn = Rotation3::from_matrix_unchecked(r0 * rotation.transpose()).scaled_axis();
+            let r = r0 * rotation.transpose();
+            // The axis times the sine of the angle, which small angles keep to all digits.
+            let turn = 0.5 * Vector3::new(r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
             error.fixed_rows_mut::<3>(6 * foot).copy_from(&(p0 + way(foot, t).0 - position));
             error.fixed_rows_mut::<3>(6 * foot + 3).copy_from(&turn);
         }

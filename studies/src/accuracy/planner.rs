@@ -97,8 +97,8 @@ fn zmp(setup: &Setup) -> Chart {
 fn chain(sole: &Sole, nodes: usize) -> Chain {
     let mut chain = Chain::new();
     let foot = |k: usize| {
-        let step = (k + 1) / 2;
-        Pose::new(0.35 * step as f64, if step % 2 == 0 { -0.1 } else { 0.1 }, 0.0)
+        let step = k.div_ceil(2);
+        Pose::new(0.35 * step as f64, if step.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0)
     };
     let last = nodes - 1;
     let time = |k: usize| (k / 2) as f64 * 0.8 + (k % 2) as f64 * 0.6;

@@ -26,7 +26,7 @@ const BEGIN: f64 = 8.0;
 /// Cycles that are walked ...
 const CYCLES: usize = 1000;
 /// ... of which so many are sampled; fewer where the contact takes long.
-const SAMPLES: usize = 100;
+const SAMPLES: usize = 50;
 const FEW: usize = 25;
 /// Steps in a cycle with which the state is brought from sample to sample.
 const BETWEEN: u32 = 20;
@@ -106,14 +106,11 @@ fn walk(given: &Given<'_>, scene: &str, depth: u8) -> Result<[Chart; 2], Box<dyn
 
 /// What the references are, and how far they are from each other.
 fn about(samples: &[Option<Samples>; 2], plant: &Plant) -> String {
-    let mut text =
-        "Recorded joint targets, state of the reference at the begin of every sampled period; mean of the \
-                    greatest error. "
-            .to_owned();
+    let mut text = "Each sampled period begins at the reference; mean of greatest errors.".to_owned();
     if let [Some(smooth), Some(exact)] = samples {
         let apart = smooth.ends.iter().zip(&exact.ends).map(|(a, b)| errors(plant, a, b)[0]);
         text += &format!(
-            "Dry friction is smoothed for all but semi_implicit: both walks are up to {:.1e} apart.",
+            " Friction is smoothed but for semi_implicit: {:.0e} apart at most.",
             apart.fold(0.0, f64::max)
         );
     }
