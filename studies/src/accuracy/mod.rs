@@ -6,14 +6,20 @@
 pub mod cost;
 mod flight;
 mod joint;
+pub mod kinematics;
+pub mod landing;
+pub mod methods;
+pub mod models;
 pub mod order;
 pub mod peers;
 mod picture;
+pub mod planner;
 mod slip;
 mod solver;
 mod stiction;
 pub mod system;
 mod touchdown;
+pub mod walking;
 
 use std::error::Error;
 use std::path::Path;
@@ -42,6 +48,11 @@ pub const PARTS: &[(&str, Part)] = &[
     ("stiction", stiction::PART),
     ("joint", joint::PART),
     ("solver", solver::PART),
+    ("walking", walking::charts),
+    ("landing", landing::charts),
+    ("models", models::charts),
+    ("planner", planner::charts),
+    ("kinematics", kinematics::charts),
 ];
 
 /// One simulation with one method, or one kind of call.
