@@ -183,6 +183,21 @@ where
     }
 }
 
+/// The second distance of a difference over the first.
+const FURTHER: f64 = 8.0;
+
+/// Derivative by differences over a distance and over one that is eight times as long. Where they do not agree there is a
+/// jump or a corner within. A jump must not pass for a slope: Newton's method would take the smallest correction for
+/// convergence, and a wrong motion for a right one.
+fn slope(near: f64, far: f64) -> f64 {
+    let (a, b) = (near.abs(), far.abs());
+    match () {
+        () if a > 0.5 * FURTHER * b => 0.0,
+        () if b > 2.0 * a => near,
+        () => far,
+    }
+}
+
 /// f as the library calls it, with the guard.
 struct Watch<'a> {
     inner: &'a mut dyn FnMut(f64, &[f64], &mut [f64]),
@@ -254,7 +269,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// J by differences to one side, steps of half the digits.
+    /// J by differences to one side, over two distances; see [`slope`].
     fn differentiate(&mut self, t: f64, x: &[f64]) {
         let n = x.len();
         self.jacobian.resize(n * n, 0.0);
@@ -263,10 +278,15 @@ impl<'a> Watch<'a> {
         self.evaluate(t, x, &mut here);
         near.copy_from_slice(x);
         for j in 0..n {
-            near[j] = x[j] + f64::EPSILON.sqrt() * x[j].abs().max(1.0);
-            self.evaluate(t, &near, &mut moved);
-            for i in 0..n {
-                self.jacobian[n * j + i] = (moved[i] - here[i]) / (near[j] - x[j]);
+            for far in [false, true] {
+                let distance = f64::EPSILON.sqrt() * x[j].abs().max(1.0);
+                near[j] = x[j] + if far { FURTHER * distance } else { distance };
+                self.evaluate(t, &near, &mut moved);
+                for i in 0..n {
+                    let found = (moved[i] - here[i]) / (near[j] - x[j]);
+                    let kept = &mut self.jacobian[n * j + i];
+                    *kept = if far { slope(*kept, found) } else { found };
+                }
             }
             near[j] = x[j];
         }

@@ -26,16 +26,7 @@ fn power(exponent: i64) -> String {
     match exponent {
         0..=4 => 10i64.pow(exponent as u32).to_string(),
         -3..=-1 => number(10f64.powi(exponent as i32), -exponent as usize),
-        _ => {
-            let raised = |c: char| match c {
-                '-' => '⁻',
-                '1' => '¹',
-                '2' => '²',
-                '3' => '³',
-                d => char::from_u32(0x2070 + d.to_digit(10).unwrap_or(0)).unwrap_or(d),
-            };
-            format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
-        }
+        _ => format!("1e{}", number(exponent as f64, 0)),
     }
 }
 
@@ -76,8 +67,8 @@ mod tests {
     #[test]
     fn powers_of_ten_are_written_short() {
         let texts: Vec<String> = powers(-7.2, 5.9, 20).into_iter().map(|(_, text)| text).collect();
-        let low = ["10⁻⁷", "10⁻⁶", "10⁻⁵", "10⁻⁴", "0.001", "0.01", "0.1"];
-        assert_eq!(texts, [&low[..], &["1", "10", "100", "1000", "10000", "10⁵"]].concat());
+        let low = ["1e\u{2212}7", "1e\u{2212}6", "1e\u{2212}5", "1e\u{2212}4", "0.001", "0.01", "0.1"];
+        assert_eq!(texts, [&low[..], &["1", "10", "100", "1000", "10000", "1e5"]].concat());
         assert_eq!(powers(-16.0, 0.0, 5).len(), 5);
     }
 

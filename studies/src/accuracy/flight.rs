@@ -84,7 +84,7 @@ fn motion(given: &Given<'_>, [name, title, initial]: [&str; 3], mut body: Body) 
     let [position, ..] = &mut charts;
     position.expect_order("Euler", 1.0, 1e-5..=2e-4);
     position.expect_order("semi-implicit", 1.0, 1e-5..=2e-4);
-    position.expect_order("RK4", 4.0, 4e-4..=6e-3);
+    position.expect_order("RK4", 4.0, 1.9e-3..=2.1e-2);
     charts.into()
 }
 

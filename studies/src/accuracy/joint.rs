@@ -53,8 +53,8 @@ fn chart(setup: &Setup, depth: u8) -> Result<Chart, Box<dyn Error>> {
         let error = apart(&motion, reference);
         chart.add(Point { scene: "step".into(), model: format!("type {depth}"), error, ..point });
     }
-    chart.expect_order("Euler", 1.0, 1e-6..=6e-5);
-    chart.expect_order(OWN, 1.0, 1e-6..=6e-5);
+    chart.expect_order("Euler", 1.0, 1e-6..=3e-5);
+    chart.expect_order(OWN, 1.0, 1e-6..=3e-5);
     Ok(chart)
 }
 

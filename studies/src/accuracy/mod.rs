@@ -111,6 +111,8 @@ pub struct Chart {
     pub measure: String,
     /// What is along x.
     pub cost: Cost,
+    /// Points of a method are not steps on a way: no lines between them.
+    pub scattered: bool,
     /// What was found.
     pub points: Vec<Point>,
     /// Orders of convergence, measured beside predicted.
@@ -127,6 +129,11 @@ impl Chart {
     pub fn over(mut self, cost: Cost) -> Self {
         self.cost = cost;
         self
+    }
+
+    /// The same without lines.
+    pub fn scattered(self) -> Self {
+        Self { scattered: true, ..self }
     }
 
     /// The same with a sentence about it.

@@ -10,6 +10,9 @@ use super::{Chart, Cost, Point};
 
 const COLORS: [Color; 6] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY];
 
+/// Of curves with more points than this every second one has a label.
+const CROWDED: usize = 6;
+
 /// Writes the pictures; their paths.
 pub(super) fn draw(charts: &[Chart], out: &Path) -> Result<Vec<String>, String> {
     let mut written = Vec::new();
@@ -38,8 +41,13 @@ fn panel(chart: &Chart) -> drawing::Chart {
         let color = COLORS[k % COLORS.len()];
         let pen = Pen { color, width: 2.5, dashed: k >= COLORS.len() };
         let points: Vec<_> = curve.points.iter().map(|p| [cost(p, chart.cost), visible(p.error)]).collect();
-        axes.styled(&curve.name, points.clone(), pen).dots("", points.clone(), 5.0, color);
-        for (at, p) in points.iter().zip(&curve.points) {
+        if chart.scattered {
+            axes.dots(&curve.name, points.clone(), 5.0, color);
+        } else {
+            axes.styled(&curve.name, points.clone(), pen).dots("", points.clone(), 5.0, color);
+        }
+        let every = if points.len() > CROWDED { 2 } else { 1 };
+        for (at, p) in points.iter().zip(&curve.points).step_by(every) {
             axes.label(*at, &label(p), GREY);
         }
     }
@@ -52,14 +60,17 @@ struct Curve<'a> {
     points: Vec<&'a Point>,
 }
 
-/// Curves in the order in which they first occur; what all points share is not in their names.
+/// Curves in the order in which they first occur; model and scene are in a name if its method has several.
 fn curves(points: &[Point]) -> Vec<Curve<'_>> {
-    let varies = |of: fn(&Point) -> &str| points.iter().any(|p| of(p) != of(&points[0]));
+    let varies = |of: fn(&Point) -> &str| {
+        let differ = |a: &Point, b: &Point| a.method == b.method && of(a) != of(b);
+        points.iter().any(|a| points.iter().any(|b| differ(a, b)))
+    };
     let (models, scenes) = (varies(|p| &p.model), varies(|p| &p.scene));
     let mut curves: Vec<Curve<'_>> = Vec::new();
     for p in points {
         let mut name = p.method.clone();
-        for (shown, part) in [(models && !name.contains(&p.model), &p.model), (scenes, &p.scene)] {
+        for (shown, part) in [(models, &p.model), (scenes, &p.scene)] {
             if shown {
                 name += &format!(", {part}");
             }

@@ -22,8 +22,9 @@ const DIRECTIONS: [f64; 7] = [0.0, 7.5, 15.0, 22.5, 30.0, 37.5, 45.0];
 fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
     let title = "A block on an incline, downhill 0 to 45 degrees off the axes";
     let about = "Above: 30 degrees, mu 0.3, slides. Below: 20 degrees, mu 0.8, must not move. A dot at the bottom is zero.";
-    let mut slide = Chart::new("slip.slides", title, "relative error of the acceleration").about(about);
-    let mut stick = Chart::new("slip.sticks", title, "creep [m/s]").about(about);
+    let mut slide =
+        Chart::new("slip.slides", title, "relative error of the acceleration").about(about).scattered();
+    let mut stick = Chart::new("slip.sticks", title, "creep [m/s]").about(about).scattered();
     for direction in DIRECTIONS {
         for step in [1e-3, 1e-4] {
             slide.add(ours(30.0, 0.3, direction, step));
@@ -32,6 +33,9 @@ fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
     }
     for found in given.peers.of(&[("scene", "incline"), ("integrator", "Euler")]) {
         let number = |key: &str| found[key].as_f64().unwrap_or(f64::NAN);
+        if number("step_s") != 1e-3 {
+            continue;
+        }
         let slides = number("slope_deg") == 30.0;
         let relative = (number("acceleration") / number("acceleration_exact") - 1.0).abs();
         let error = if slides { relative } else { number("speed").abs() };
@@ -46,7 +50,7 @@ fn ours(slope: f64, friction: f64, direction: f64, step: f64) -> Point {
     let (motion, point) = Method::Euler(step).measure(&mut block, &start, TIMES);
     let error = if slope == 30.0 { block.acceleration_error(&motion) } else { block.creep(&motion) };
     let (scene, model) = ("incline".to_string(), "contact point".to_string());
-    let method = format!("layer, exact cone, {}", super::order::in_ms(step));
+    let method = format!("contact point, {}", super::order::in_ms(step));
     Point { scene, model, method, error, solver: Some(format!("{direction}°")), ..point }
 }
 
@@ -54,15 +58,14 @@ fn theirs(peers: &Peers, found: &Value, error: f64) -> Point {
     let cone = found["cone"].as_str().unwrap_or_default();
     let impratio = found["impratio"].as_f64().unwrap_or(1.0);
     let noslip = found["noslip"].as_f64().unwrap_or(0.0);
-    let mut method = format!("{} {cone}", peers.peer);
-    if impratio != 1.0 {
-        method += &format!(", impratio {impratio}");
-    }
-    if noslip != 0.0 {
-        method += ", noslip";
-    }
+    let name = if noslip == 0.0 { cone.to_string() } else { format!("{cone}, noslip {noslip}") };
+    let method = format!("{} {name}", peers.peer);
     let direction = found["direction_deg"].as_f64().unwrap_or(0.0);
-    Point { method, error, solver: Some(format!("{direction}°")), ..peers.point(found, |_| error) }
+    let solver = match impratio {
+        1.0 => format!("{direction}°"),
+        _ => format!("{direction}°, impratio {impratio}"),
+    };
+    Point { method, error, solver: Some(solver), ..peers.point(found, |_| error) }
 }
 
 /// x = (position, velocity, displacement of the node).

@@ -1,0 +1,40 @@
+//! The adaptive stiff method on a whole robot: Lola standing on type 3, one hip told to move.
+
+use config::scene::Integrator;
+use config::{Setup, root};
+use environment::Environment;
+use sim_backend::drive::Drive;
+use sim_backend::integrate::Stepper;
+use sim_backend::plant::{Outside, Plant};
+
+const CYCLE: f64 = 1e-3;
+
+/// State after some cycles with so many steps in each.
+fn moved(setup: &Setup, mut stepper: impl FnMut(usize) -> Stepper, steps: u32) -> Vec<f64> {
+    let pose = &setup.robot.poses[&setup.scene.start_pose];
+    let mut plant = Plant::new(&setup.robot, Environment::flat(), 3, pose).unwrap();
+    let mut x = plant.standing(pose);
+    let mut drives: Vec<Drive> = pose.iter().map(|q| Drive::resting(*q)).collect();
+    drives[2] = Drive::resting(pose[2] + 1e-3);
+    let outside = Outside { powered: true, ..Outside::default() };
+    let mut stepper = stepper(x.len());
+    let h = CYCLE / f64::from(steps);
+    for _ in 0..4 {
+        for i in 0..steps {
+            stepper.step(&mut plant, f64::from(i) * h, h, &mut x, &drives, &outside);
+        }
+    }
+    assert_eq!(stepper.take_gave_up(), None);
+    x
+}
+
+#[test]
+fn agrees_with_small_steps_of_another_method() {
+    let setup = Setup::load(&root(None), "stand").unwrap();
+    let small = moved(&setup, |n| Stepper::new(Integrator::RungeKutta4, n), 50);
+    let of = |tolerance| moved(&setup, |n| Stepper::new(Integrator::Bdf, n).with_tolerance(tolerance), 1);
+    let distance = |x: &[f64]| (7..31).map(|k| (x[k] - small[k]).abs()).fold(0.0, f64::max);
+    let (loose, tight) = (distance(&of(1e-5)), distance(&of(1e-7)));
+    assert!(tight < 1e-7 && tight < loose, "{tight:e} {loose:e}");
+    assert!((small[9] - of(1e-7)[9]).abs() < 1e-7 && small[9].is_finite());
+}
