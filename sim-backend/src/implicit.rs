@@ -64,15 +64,18 @@ impl Train {
         }
         for round in 1..=ROUNDS {
             out.copy_from_slice(force);
-            for (k, s) in self.shafts.iter().enumerate() {
+            for (s, damper) in self.shafts.iter().zip(&mut self.dampers) {
                 let (line, ratio) = s.line(h, given);
-                let now: f64 = (0..3).map(|i| ratio[i] * given.joint.1[s.joints[i]]).sum();
-                let bias = if s.elastic.is_some() { 0.0 } else { s.gear.bias };
-                let push = line.t - line.b * (now + h * bias);
-                for i in 0..3 {
+                // The speed at the end of the step, but for what the acceleration adds.
+                let mut now = if s.elastic.is_some() { 0.0 } else { h * s.gear.bias };
+                for i in 0..s.coupled {
+                    now += ratio[i] * given.joint.1[s.joints[i]];
+                }
+                let push = line.t - line.b * now;
+                for i in 0..s.coupled {
                     out[6 + s.joints[i]] += ratio[i] * push;
                 }
-                self.dampers[k].set(ratio, h * line.b);
+                damper.set(ratio, h * line.b);
             }
             model.solve_damped(data, &self.dampers, out);
             let mut settled = true;
@@ -186,7 +189,7 @@ impl Shaft {
     fn finish(&mut self, h: f64, given: &Given<'_>, a: &[f64]) {
         self.step.end = match &self.elastic {
             None => {
-                let change: f64 = (0..3).map(|i| self.gear.ratio[i] * a[self.joints[i]]).sum();
+                let change: f64 = (0..self.coupled).map(|i| self.gear.ratio[i] * a[self.joints[i]]).sum();
                 self.speed + h * (change + self.gear.bias)
             }
             Some((e, spring)) => {

@@ -51,6 +51,8 @@ struct Scratch {
     layer_rate: Vec<f64>,
     next: Vec<f64>,
     rate: Vec<f64>,
+    /// q, v and d of the last evaluation, whose kinematics, gears and contact forces still hold.
+    seen: Vec<f64>,
 }
 
 /// Result of one evaluation at the end of a cycle: what sensors and logs want to know.
@@ -113,8 +115,12 @@ impl Plant {
             motors: of_train(Train::motors),
         };
         let scratch = Scratch::new(&model, &layout);
+        let mut data = Data::new(&model);
+        if let Some(train) = &train {
+            train.set_constant_gears(&mut data);
+        }
         let limbs = model.limbs(&feet.frames());
-        Ok(Self { data: Data::new(&model), model, layout, environment, feet, limbs, soles, train, scratch })
+        Ok(Self { data, model, layout, environment, feet, limbs, soles, train, scratch })
     }
 
     /// Where each state is.
@@ -157,10 +163,9 @@ impl Plant {
     pub fn rate(&mut self, tau: f64, x: &[f64], drives: &[Drive], outside: &Outside, dx: &mut [f64]) {
         let l = self.layout;
         self.load(tau, x, drives);
-        let Self { model, data, environment, feet, limbs, scratch, train, .. } = self;
-        model.set_position(data, &scratch.q);
-        model.limb_motion_here(data, limbs, &scratch.v);
-        feet.update(model, data, environment, &x[l.layer()], &mut dx[l.layer()]);
+        self.touch_ground(&x[l.layer()]);
+        let Self { model, data, feet, scratch, train, .. } = self;
+        dx[l.layer()].copy_from_slice(&scratch.layer_rate);
         if l.joints == 0 {
             self.base_rate(x, outside);
         } else {
@@ -191,10 +196,8 @@ impl Plant {
         let l = self.layout;
         // References of the end of the step, with which the drives work.
         self.load(if l.joints == 0 { tau } else { tau + h }, x, drives);
-        let Self { model, data, environment, feet, limbs, scratch, train, .. } = self;
-        model.set_position(data, &scratch.q);
-        model.limb_motion_here(data, limbs, &scratch.v);
-        feet.update(model, data, environment, &x[l.layer()], &mut scratch.layer_rate);
+        self.touch_ground(&x[l.layer()]);
+        let Self { model, data, feet, scratch, train, .. } = self;
         if l.joints == 0 {
             self.base_rate(x, outside);
         } else {
@@ -292,6 +295,9 @@ impl Plant {
 
     /// Moves the objects of the environment to `time` \[s\], as far as nothing touches them; what happened.
     pub fn advance(&mut self, time: f64) -> &[environment::Event] {
+        if !self.environment.objects().is_empty() {
+            self.scratch.seen.fill(f64::NAN);
+        }
         self.environment.advance(time, self.feet.touched(), &[])
     }
 
@@ -303,6 +309,23 @@ impl Plant {
     /// Something a drive could not do, since the last call.
     pub fn take_fault(&mut self) -> Option<Fault> {
         self.train.as_mut().and_then(Train::take_fault)
+    }
+
+    /// Kinematics of the feet and forces of the ground for the loaded q and v, unless they hold already: a cycle begins
+    /// with the state that the sensors have seen.
+    fn touch_ground(&mut self, d: &[f64]) {
+        let Self { model, data, environment, feet, limbs, scratch, .. } = self;
+        let Scratch { q, v, layer_rate, seen, .. } = scratch;
+        let now = || q.iter().chain(v.iter()).chain(d);
+        if seen.iter().eq(now()) {
+            return;
+        }
+        for (seen, now) in seen.iter_mut().zip(now()) {
+            *seen = *now;
+        }
+        model.set_position(data, q);
+        model.limb_motion_here(data, limbs, v);
+        feet.update(model, data, environment, d, layer_rate);
     }
 
     /// Acceleration of the torso while the joints follow their references (2.80).
@@ -352,6 +375,7 @@ impl Scratch {
             layer_rate: vec![0.0; 3 * layout.nodes],
             next: model.neutral(),
             rate: vec![0.0; layout.len()],
+            seen: vec![f64::NAN; model.nq() + model.nv() + 3 * layout.nodes],
         }
     }
 }
@@ -372,6 +396,9 @@ fn rotors(robot: &Robot, elastic: bool) -> Vec<Rotor> {
 fn outside_force(model: &Model, data: &Data, feet: &Feet, outside: &Outside, x: &[f64], force: &mut [f64]) {
     force.fill(0.0);
     feet.add_to(model, data, force);
+    if outside.push == [0.0; 3] {
+        return;
+    }
     let push = Vector3::from(outside.push);
     let arm = orientation(x) * model.base_cog();
     let base = at_base(x, &push, &(Vector3::from_column_slice(&x[..3]) + arm).cross(&push));

@@ -18,7 +18,7 @@
 
 use config::Robot;
 use config::robot::Drive as Description;
-use drives::{Elasticity, Gear, NoLoadTorque, OutOfDomain};
+use drives::{Elasticity, Gear, NoLoadTorque, OutOfDomain, Transmission};
 use multibody::{Damper, Data, Model, ModelError};
 
 use crate::drive::Motion;
@@ -65,8 +65,9 @@ pub(crate) struct Shaft {
     pub(crate) drive: Description,
     /// Place among the motors.
     pub(crate) motor: usize,
-    /// Joints it moves; unused ones repeat the first with ratio zero.
+    /// Joints it moves; those behind the first `coupled` are not used.
     pub(crate) joints: [usize; 3],
+    pub(crate) coupled: usize,
     /// Place among the elastic rotors, and the spring.
     pub(crate) elastic: Option<(usize, Elasticity)>,
     /// Inertia the motor feels of a hanging robot, on its shaft \[kg m^2\].
@@ -125,12 +126,23 @@ impl Train {
     /// Sets the gears for the joints' angles and speeds.
     pub fn load(&mut self, given: &Given<'_>, data: &mut Data) {
         for (k, s) in self.shafts.iter_mut().enumerate() {
-            if let Err(why) = s.load(given) {
-                self.fault.get_or_insert(Fault { drive: k, why: Why::Linkage(why) });
-            }
-            if s.elastic.is_none() {
+            if s.is_linkage() {
+                let of_joints = |x: &[f64]| s.joints.map(|j| x[j]);
+                let at = s.drive.transmission.at(of_joints(given.joint.0), of_joints(given.joint.1));
+                match at {
+                    Ok(gear) => s.gear = gear,
+                    Err(why) => _ = self.fault.get_or_insert(Fault { drive: k, why: Why::Linkage(why) }),
+                }
                 data.set_gear(k, s.gear.ratio, s.gear.bias);
             }
+            s.load(given);
+        }
+    }
+
+    /// Tells the model the ratios that never change.
+    pub fn set_constant_gears(&self, data: &mut Data) {
+        for (k, s) in self.shafts.iter().enumerate().filter(|(_, s)| s.elastic.is_none()) {
+            data.set_gear(k, s.gear.ratio, s.gear.bias);
         }
     }
 
@@ -154,7 +166,7 @@ impl Train {
 
     /// Sets the gears for prescribed joints: rotors turn with them, and nothing else of the drives is computed.
     pub fn load_prescribed(&mut self, q: &[f64], qd: &[f64], data: &mut Data) {
-        for (k, s) in self.shafts.iter_mut().enumerate() {
+        for (k, s) in self.shafts.iter_mut().enumerate().filter(|(_, s)| s.is_linkage()) {
             let at = |x: &[f64]| s.joints.map(|j| x[j]);
             match s.drive.transmission.at(at(q), at(qd)) {
                 Ok(gear) => data.set_gear(k, gear.ratio, gear.bias),
@@ -203,10 +215,11 @@ impl Shaft {
         Self {
             motor,
             joints: [joint(0), joint(1), joint(2)],
+            coupled: drive.joints.len().min(3),
             elastic: drive.elasticity.filter(|_| elastic).map(|spring| (place(), spring)),
             inertia: drive.rotor_inertia,
             speed_gain: 0.0,
-            gear: Gear::default(),
+            gear: drive.transmission.at([0.0; 3], [0.0; 3]).unwrap_or_default(),
             speed: 0.0,
             lag: 0.0,
             step: Step::default(),
@@ -214,29 +227,26 @@ impl Shaft {
         }
     }
 
-    fn load(&mut self, given: &Given<'_>) -> Result<(), OutOfDomain> {
-        let at = |x: &[f64]| self.joints.map(|j| x[j]);
-        let (q, qd) = (at(given.joint.0), at(given.joint.1));
-        let fault = match self.drive.transmission.at(q, qd) {
-            Ok(gear) => {
-                self.gear = gear;
-                Ok(())
-            }
-            Err(dead) => Err(dead),
+    /// Whether the ratio changes with the joints.
+    fn is_linkage(&self) -> bool {
+        !matches!(self.drive.transmission, Transmission::Harmonic { .. })
+    }
+
+    /// Speed, and how far it is from the wanted one, with the gear as it is.
+    fn load(&mut self, given: &Given<'_>) {
+        let (angle, speed) = match self.elastic {
+            None => given.joint,
+            Some(_) => given.rotor,
         };
-        let (mut angle, mut speed) = (q, qd);
-        if let Some((e, _)) = self.elastic {
-            (angle[0], speed[0]) = (given.rotor.0[e], given.rotor.1[e]);
+        let (mut turns, mut wanted) = (0.0, 0.0);
+        for i in 0..self.coupled {
+            let (c, j) = (self.gear.ratio[i], self.joints[i]);
+            let at = self.elastic.as_ref().map_or(j, |(e, _)| *e);
+            let r = &given.reference[j];
+            turns += c * speed[at];
+            wanted += c * (r.speed + POSITION_GAIN * (r.angle - angle[at]));
         }
-        let mut wanted = 0.0;
-        self.speed = 0.0;
-        for i in 0..3 {
-            let r = &given.reference[self.joints[i]];
-            self.speed += self.gear.ratio[i] * speed[i];
-            wanted += self.gear.ratio[i] * (r.speed + POSITION_GAIN * (r.angle - angle[i]));
-        }
-        self.lag = wanted - self.speed;
-        fault
+        (self.speed, self.lag) = (turns, wanted - turns);
     }
 
     /// Current the speed loop asks for \[A\].
@@ -262,7 +272,7 @@ impl Shaft {
     fn apply(&self, given: &Given<'_>, shaft: f64, data: &mut Data, torque: &mut [f64]) {
         match &self.elastic {
             None => {
-                for i in 0..3 {
+                for i in 0..self.coupled {
                     torque[self.joints[i]] += self.gear.ratio[i] * shaft;
                 }
             }
@@ -280,17 +290,11 @@ fn tune(shafts: &mut [Shaft], model: &Model, hanging: &[f64]) {
     let mut data = Data::new(model);
     let mut q = model.neutral();
     q[7..].copy_from_slice(hanging);
-    let rest = vec![Motion::default(); model.n()];
-    let zero = vec![0.0; model.n().max(shafts.len())];
-    let given = Given {
-        joint: (hanging, &zero),
-        rotor: (&zero, &zero),
-        current: &zero,
-        reference: &rest,
-        powered: true,
-    };
     for (k, s) in shafts.iter_mut().enumerate() {
-        let _ = s.load(&given); // A pose beyond a dead point is refused where the robot is loaded.
+        // A pose beyond a dead point is refused where the robot is loaded.
+        if let Ok(gear) = s.drive.transmission.at(s.joints.map(|j| hanging[j]), [0.0; 3]) {
+            s.gear = gear;
+        }
         if s.elastic.is_none() {
             data.set_gear(k, s.gear.ratio, 0.0);
         }
@@ -298,7 +302,7 @@ fn tune(shafts: &mut [Shaft], model: &Model, hanging: &[f64]) {
     model.mass_matrix(&mut data, &q);
     for s in shafts {
         let mut x = vec![0.0; model.nv()];
-        for i in 0..3 {
+        for i in 0..s.coupled {
             x[6 + s.joints[i]] += s.gear.ratio[i];
         }
         let c = x.clone();

@@ -66,7 +66,7 @@ pub fn solve(law: &Law, d: [f64; 3], w: [f64; 3], gap: f64) -> Answer {
         return open;
     }
     let t = [k[0] * d[0] - b[0] * w[0], k[1] * d[1] - b[1] * w[1]];
-    let size = t[0].hypot(t[1]);
+    let size = (t[0] * t[0] + t[1] * t[1]).sqrt();
     if size <= mu * normal {
         let force = [t[0], t[1], normal];
         return Answer { force, rate: rate(force), state: State::Stick };
