@@ -293,6 +293,11 @@ impl Plant {
         &self.model
     }
 
+    /// The drives, for who tunes them; type 1 without motors has none.
+    pub fn train_mut(&mut self) -> Option<&mut Train> {
+        self.train.as_mut()
+    }
+
     /// Moves the objects of the environment to `time` \[s\], as far as nothing touches them; what happened.
     pub fn advance(&mut self, time: f64) -> &[environment::Event] {
         if !self.environment.objects().is_empty() {

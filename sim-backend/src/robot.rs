@@ -185,11 +185,12 @@ impl SimBackend {
             *goal = drive.at(self.scene.cycle);
         }
         if let Some(fault) = self.plant.take_fault() {
-            self.event = Some((EventCode::DriveFault, fault.drive as u64));
+            // A state that is no number is the graver news.
+            self.event.get_or_insert((EventCode::DriveFault, fault.drive as u64));
         }
         let report = self.plant.take_contact_report();
         if !report.converged {
-            self.event = Some((EventCode::ContactNotConverged, report.sweeps.into()));
+            self.event.get_or_insert((EventCode::ContactNotConverged, report.sweeps.into()));
         }
         for event in self.plant.advance(self.cycles as f64 * self.scene.cycle) {
             self.event = match *event {

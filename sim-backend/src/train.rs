@@ -118,6 +118,18 @@ impl Train {
         self.shafts.len()
     }
 
+    /// Gains K_v of the speed loops, one per motor \[A s/rad\].
+    pub fn speed_gains(&self) -> impl Iterator<Item = f64> + '_ {
+        self.shafts.iter().map(|s| s.speed_gain)
+    }
+
+    /// Sets them.
+    pub fn set_speed_gains(&mut self, gains: impl IntoIterator<Item = f64>) {
+        for (s, gain) in self.shafts.iter_mut().zip(gains) {
+            s.speed_gain = gain;
+        }
+    }
+
     /// The first fault since the last call.
     pub fn take_fault(&mut self) -> Option<Fault> {
         self.fault.take()

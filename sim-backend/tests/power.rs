@@ -36,7 +36,7 @@ fn types_2_and_3_balance_in_the_air() {
             let mut rig = Rig::new(depth).in_the_air().moving(0.3, 0.1).shaken(seed);
             let (stored, power, ground) = balance(&mut rig);
             assert!(ground.abs() < 1e-12);
-            assert!(power.abs() > 5.0, "nothing happens: {power} W");
+            assert!(power.abs() > 1.0, "nothing happens: {power} W");
             assert!(
                 (stored - power).abs() < 1e-5 * power.abs().max(100.0),
                 "{depth}: {stored} for {power} W"
@@ -171,5 +171,28 @@ fn motors_in_the_air_keep_the_momentum() {
             let moved = (x[7] - rig.pose[0]).abs();
             assert!(moved > 0.05, "the joints stood still: {moved} rad");
         }
+    }
+}
+
+/// The supply fails in the air while all joints swing: brakes stop the motors, and nothing gains energy.
+#[test]
+fn brakes_stop_joints_in_the_air() {
+    for depth in 2..=5 {
+        let mut rig = Rig::new(depth).in_the_air().moving(0.2, 0.1);
+        rig.run(Integrator::SemiImplicit, 0.0, 0.03, 60);
+        rig.outside.powered = false;
+        let speed =
+            |rig: &Rig| rig.motors(0.0, &rig.x).iter().fold(0.0, |most, (_, w)| f64::max(most, w.abs()));
+        let x = rig.x.clone();
+        let mut energy = rig.energy(0.0, &x) + rig.magnetic(&x);
+        assert!(speed(&rig) > 100.0, "type {depth}: {} rad/s", speed(&rig));
+        for _ in 0..30 {
+            rig.run(Integrator::SemiImplicit, 0.0, 0.01, 20);
+            let x = rig.x.clone();
+            let now = rig.energy(0.0, &x) + rig.magnetic(&x);
+            assert!(now < energy + 0.01, "type {depth}: {energy} J, then {now} J");
+            energy = now;
+        }
+        assert!(speed(&rig) < 0.01, "type {depth}: {} rad/s", speed(&rig));
     }
 }

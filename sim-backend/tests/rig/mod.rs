@@ -7,7 +7,7 @@ use config::robot::Drive as Motor;
 use config::scene::Integrator;
 use drives::Gear;
 use environment::Environment;
-use multibody::{Data, Momentum};
+use multibody::{Data, Frame, Momentum};
 use nalgebra::Vector3;
 use sim_backend::drive::{Drive, Motion};
 use sim_backend::integrate::Stepper;
@@ -220,31 +220,43 @@ impl Rig {
         sum
     }
 
-    /// \[W\] Power of the ground on the robot, from the layer's states alone: f = B d' + K d (2.37) at every point.
-    pub(crate) fn ground(&mut self, t: f64, x: &[f64], dx: &[f64]) -> f64 {
-        self.load(t, x);
-        let (l, c) = (*self.plant.layout(), self.robot.contact);
-        let k = [c.tangential_stiffness, c.tangential_stiffness, c.normal_stiffness];
-        // Nodes are in the order in which their links first appear.
+    /// Contact points in the order of their states: where the first of them is in the state vector, and its frame.
+    fn points(&self) -> Vec<(usize, Frame)> {
+        // They come link by link, links in the order in which they first appear.
+        let all: Vec<&(String, [f64; 3])> = self.robot.feet.iter().flat_map(|f| &f.points).collect();
         let mut links: Vec<&str> = Vec::new();
-        for (link, _) in self.robot.feet.iter().flat_map(|f| &f.points) {
+        for (link, _) in &all {
             if !links.contains(&link.as_str()) {
                 links.push(link);
             }
         }
-        let mut at = l.layer().start;
-        let mut power = 0.0;
-        for link in links {
-            for (_, place) in self.robot.feet.iter().flat_map(|f| &f.points).filter(|(l, _)| l == link) {
-                let f = Vector3::from_fn(|i, _| k[i] * (c.damping_time * dx[at + i] + x[at + i]));
-                let model = self.plant.model();
-                let point = model.frame(link, *place).unwrap();
-                let twist = model.frame_velocity(&self.data, &point);
-                let d = Vector3::from_column_slice(&x[at..at + 3]);
-                power += f.dot(&(twist.linear + twist.angular.cross(&d))); // (2.39) with the deformed node
-                at += 3;
-            }
-        }
-        power
+        let sorted = links.iter().flat_map(|&l| all.iter().filter(move |(link, _)| link == l));
+        let frame = |(link, place): &(String, [f64; 3])| self.plant.model().frame(link, *place).unwrap();
+        let first = self.plant.layout().layer().start;
+        sorted.enumerate().map(|(i, p)| (first + 3 * i, frame(p))).collect()
+    }
+
+    /// \[m\] @world Deformed contact points.
+    pub(crate) fn nodes(&mut self, t: f64, x: &[f64]) -> Vec<Vector3<f64>> {
+        self.load(t, x);
+        let model = self.plant.model();
+        let at = |(i, f): (usize, Frame)| {
+            model.frame_position(&self.data, &f) + Vector3::from_column_slice(&x[i..i + 3])
+        };
+        self.points().into_iter().map(at).collect()
+    }
+
+    /// \[W\] Power of the ground on the robot, from the layer's states alone: f = B d' + K d (2.37) at every point.
+    pub(crate) fn ground(&mut self, t: f64, x: &[f64], dx: &[f64]) -> f64 {
+        self.load(t, x);
+        let c = self.robot.contact;
+        let k = [c.tangential_stiffness, c.tangential_stiffness, c.normal_stiffness];
+        let power = |(at, point): (usize, Frame)| {
+            let f = Vector3::from_fn(|i, _| k[i] * (c.damping_time * dx[at + i] + x[at + i]));
+            let twist = self.plant.model().frame_velocity(&self.data, &point);
+            let d = Vector3::from_column_slice(&x[at..at + 3]);
+            f.dot(&(twist.linear + twist.angular.cross(&d))) // (2.39) with the deformed node
+        };
+        self.points().into_iter().map(power).sum()
     }
 }

@@ -1,0 +1,71 @@
+//! Nothing of the simulated robot allocates after the start, whatever its type.
+
+mod rig;
+
+use config::scene::Integrator;
+use config::{Setup, root};
+use messages::frames::encode_targets;
+use messages::{BusFrames, JointMode, JointTargets, Power};
+use realtime::allocations::{arm, counted, disarm};
+use rig::Rig;
+use sim_backend::SimBackend;
+
+#[global_allocator]
+static ALLOCATOR: realtime::CountingAllocator = realtime::CountingAllocator;
+
+/// Allocations and frees of `work`.
+fn during(work: impl FnOnce()) -> [u64; 2] {
+    arm();
+    work();
+    disarm();
+    counted()
+}
+
+#[test]
+fn the_counter_counts() {
+    assert_ne!(during(|| drop(std::hint::black_box(vec![0u8; 100])))[0], 0);
+}
+
+#[test]
+fn equations_of_motion() {
+    for depth in 1..=5 {
+        let mut rig = Rig::new(depth).moving(0.01, 0.1);
+        let mut dx = vec![0.0; rig.x.len()];
+        let counts = during(|| {
+            let Rig { plant, x, drives, outside, .. } = &mut rig;
+            for i in 0..5 {
+                let t = 1e-4 * f64::from(i);
+                plant.rate(t, x, drives, outside, &mut dx);
+                plant.implicit_step(t, 1e-4, x, drives, outside);
+            }
+            plant.snapshot(5e-4, x, drives, outside);
+            plant.advance(5e-4);
+        });
+        assert_eq!(counts, [0, 0], "type {depth}");
+    }
+}
+
+#[test]
+fn cycles_of_the_simulated_robot() {
+    for depth in 1..=5 {
+        for integrator in [Integrator::Euler, Integrator::RungeKutta4, Integrator::SemiImplicit] {
+            let mut setup = Setup::load(&root(None), "stand").unwrap();
+            (setup.scene.depth, setup.scene.integrator, setup.scene.substeps) = (depth, integrator, 1);
+            let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+            let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
+            for (j, q) in setup.robot.poses[&setup.scene.start_pose].iter().enumerate() {
+                targets.angle[j] = *q;
+            }
+            let mut frames = BusFrames::default();
+            let counts = during(|| {
+                for tick in 1..=5 {
+                    targets.header.tick = tick;
+                    encode_targets(&setup.robot.nodes, &targets, &mut frames);
+                    sim.step(Some(&frames), Some(&Power { toggle: tick, on: 1, ..Power::default() }));
+                    sim.take_event();
+                }
+            });
+            assert_eq!(counts, [0, 0], "type {depth}, {integrator:?}");
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Every type of model as a robot at the end of the bus: repeatable, harmless when the supply fails, and never a number
+//! that is none.
+
+use config::scene::Integrator;
+use config::{Setup, root};
+use messages::command::PushCommand;
+use messages::frames::encode_targets;
+use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, SimState};
+use sim_backend::SimBackend;
+
+fn setup(depth: u8) -> Setup {
+    let mut setup = Setup::load(&root(None), "stand").unwrap();
+    setup.scene.depth = depth;
+    setup.scene.integrator = Integrator::SemiImplicit;
+    setup.scene.substeps = 4;
+    setup
+}
+
+/// Cycles from tick `from` to before `to`, with the supply on or not, to targets changed by `change`.
+fn cycles(
+    sim: &mut SimBackend,
+    setup: &Setup,
+    [from, to]: [u64; 2],
+    on: bool,
+    change: impl Fn(u64, &mut JointTargets),
+) -> Option<EventCode> {
+    let mut frames = BusFrames::default();
+    let mut event = None;
+    for tick in from..to {
+        let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
+        targets.header.tick = tick;
+        for (j, q) in setup.robot.poses[&setup.scene.start_pose].iter().enumerate() {
+            targets.angle[j] = *q;
+        }
+        change(tick, &mut targets);
+        encode_targets(&setup.robot.nodes, &targets, &mut frames);
+        let (answer, truth) =
+            sim.step(Some(&frames), Some(&Power { toggle: tick, on: on.into(), ..Power::default() }));
+        assert!(finite(truth), "cycle {tick}: {truth:?}");
+        assert!(answer.count > 0);
+        event = event.or(sim.take_event().map(|e| e.0));
+    }
+    event
+}
+
+fn finite(s: &SimState) -> bool {
+    let wrench = s.foot_wrench.iter().flat_map(|w| w.force.into_iter().chain(w.moment));
+    let rest =
+        [&s.position[..], &s.orientation, &s.velocity, &s.angular_velocity, &s.com, &s.joint_angle[..24]];
+    wrench.chain(s.feet.into_iter().flatten()).chain(rest.concat()).all(f64::is_finite)
+}
+
+#[test]
+fn two_runs_are_bit_for_bit_the_same() {
+    for depth in 1..=5 {
+        let setup = setup(depth);
+        let run = || {
+            let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+            let swing = |tick: u64, t: &mut JointTargets| t.angle[3] += 0.02 * (0.02 * tick as f64).sin();
+            assert_eq!(cycles(&mut sim, &setup, [1, 60], true, swing), None, "type {depth}");
+            (*sim.state(), sim.integrated().to_vec())
+        };
+        assert_eq!(run(), run(), "type {depth}");
+    }
+}
+
+/// Targets that jump between the ends of what a frame can say, and what is no number: the robot falls at worst.
+#[test]
+fn wild_targets_leave_numbers() {
+    for depth in 1..=5 {
+        let setup = setup(depth);
+        let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+        let wild = |tick: u64, t: &mut JointTargets| {
+            let angle = [1e300, f64::NAN, -1e300, f64::INFINITY][tick as usize % 4];
+            (t.angle, t.speed) = ([angle; messages::MAX_JOINTS], [-angle; messages::MAX_JOINTS]);
+        };
+        cycles(&mut sim, &setup, [1, 40], true, wild);
+        assert!(sim.integrated().iter().all(|x| x.is_finite()), "type {depth}");
+    }
+}
+
+/// A force that no number can follow: the robot stops where it last was, and says so.
+#[test]
+fn what_diverges_is_reported_and_held() {
+    for depth in 1..=5 {
+        let setup = setup(depth);
+        for force in [1e300, f64::NAN, f64::INFINITY] {
+            let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+            cycles(&mut sim, &setup, [1, 4], true, |_, _| {});
+            let before = sim.state().position;
+            sim.push(&PushCommand { force: [force, 0.0, 0.0], duration: 0.01 });
+            let mut frames = BusFrames::default();
+            let mut event = None;
+            for tick in 4..8 {
+                frames.header.tick = tick;
+                sim.step(Some(&frames), Some(&Power { toggle: tick, on: 1, ..Power::default() }));
+                event = event.or(sim.take_event().map(|e| e.0));
+            }
+            assert_eq!(event, Some(EventCode::Diverged), "type {depth}, {force} N");
+            assert!(sim.integrated().iter().all(|x| x.is_finite()), "type {depth}, {force} N");
+            assert!((sim.state().position[0] - before[0]).abs() < 1e-3, "type {depth}, {force} N");
+        }
+    }
+}
+
+/// The supply fails on the ground: brakes hold, the robot stays up.
+#[test]
+fn brakes_hold_a_standing_robot() {
+    for depth in 1..=5 {
+        let setup = setup(depth);
+        let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+        cycles(&mut sim, &setup, [1, 50], true, |_, _| {});
+        let before = *sim.state();
+        let end = if depth > 3 { 250 } else { 2050 };
+        cycles(&mut sim, &setup, [50, end], false, |_, _| {});
+        let after = *sim.state();
+        assert_eq!((after.power, after.fallen), (0, 0), "type {depth}");
+        for (j, (a, b)) in before.joint_angle.iter().zip(after.joint_angle).enumerate() {
+            assert!((a - b).abs() < 0.01, "type {depth}: joint {j} gives way by {} rad", a - b);
+        }
+        let carried: f64 = after.foot_wrench.iter().map(|w| w.force[2]).sum();
+        assert!((carried - 60.885 * 9.81).abs() < 10.0, "type {depth}: {carried} N");
+    }
+}
