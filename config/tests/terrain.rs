@@ -22,7 +22,7 @@ fn a_board_lies_on_the_ground() {
 
 #[test]
 fn a_box_moves() {
-    let [object] = &shipped("box").objects[..] else { panic!() };
+    let [object] = &shipped("passing_box").objects[..] else { panic!() };
     assert_eq!((object.appears, object.vanishes, object.friction), (1.0, 9.0, Some(0.4)));
     let [(4.0, _), (7.0, end)] = object.poses[..] else { panic!() };
     assert!((end.rotation[2] - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
