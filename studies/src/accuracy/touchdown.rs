@@ -1,8 +1,6 @@
 //! A mass of 60 kg falls 10 mm onto one contact point: the force jumps, and with it every order falls to one (chart 2).
 //!
 //! Exact: parabola, then damped oscillation about the static deflection in closed form; the mass does not lift off again.
-//! The node is held by its velocity, so who does not look for the event leaves it where it was a step late; that is what
-//! is left of BDF's error, too. (`recovery`, zero here, would take it back.)
 
 use std::error::Error;
 
