@@ -166,6 +166,31 @@ fn an_edge_carries_where_it_is() {
     }
 }
 
+/// Two bricks in height: with the rates found, B d' + K d (2.37), multiplied out, is zero at every node inside and the
+/// force of the ground on the sole, within the cone.
+#[test]
+fn nodes_inside_of_a_high_pad_carry_no_force() {
+    for bricks in [[3, 2, 2], [2, 2, 3]] {
+        let mut sole = Sole::of_bricks(0.4, bricks);
+        sole.d.iter_mut().zip(1..).for_each(|(d, k)| *d = 3e-4 * f64::from(k).sin());
+        let twist =
+            Twist { linear: Vector3::new(0.05, -0.02, -0.04), angular: Vector3::new(0.1, -0.2, 0.05) };
+        let outcome = sole.rates(-2e-4, &twist, &sharp(0.6));
+        assert!(outcome.report.converged && outcome.force.z > 1.0, "{outcome:?}");
+        let layer = sole.pad.layer();
+        let sum: Vec<f64> = sole.d.iter().zip(&sole.dd).map(|(d, dd)| d + ALPHA * dd).collect();
+        let f = layer.stiffness() * nalgebra::DVector::from_vec(sum);
+        let (at_sole, inside) = f.as_slice().split_at(3 * layer.contacts());
+        assert!(!inside.is_empty() && inside.iter().all(|f| f.abs() < 1e-8), "{inside:?}");
+        let mut total = Vector3::zeros();
+        for f in at_sole.chunks_exact(3) {
+            assert!(f[2] > -1e-6 && f[0].hypot(f[1]) < 0.6 * f[2] + 1e-6, "{f:?}");
+            total += Vector3::from_column_slice(f);
+        }
+        assert!((total - outcome.force).norm() < 1e-8, "{total} and {}", outcome.force);
+    }
+}
+
 /// Nothing that is not a number comes out, and the report says that it went in.
 #[test]
 fn bad_data_are_told() {

@@ -28,7 +28,11 @@ pub(crate) fn layer(poisson: f64, bricks: [usize; 3]) -> Layer {
 impl Sole {
     /// A pad of Lola's size, its middle 0.1 m ahead of and 0.05 m left of the segment's origin.
     pub(crate) fn new(poisson: f64) -> Self {
-        let pad = Pad::new(Arc::new(layer(poisson, [5, 5, 1])), Vector3::new(0.1, 0.05, 0.0));
+        Self::of_bricks(poisson, [5, 5, 1])
+    }
+
+    pub(crate) fn of_bricks(poisson: f64, bricks: [usize; 3]) -> Self {
+        let pad = Pad::new(Arc::new(layer(poisson, bricks)), Vector3::new(0.1, 0.05, 0.0));
         let states = 3 * pad.layer().nodes();
         let ground = vec![None; pad.layer().contacts()];
         Self { memory: pad.memory(), pad, d: vec![0.0; states], dd: vec![0.0; states], ground }
