@@ -74,6 +74,17 @@ fn one_process_and_all_processes_write_the_same_log_on_one_core_and_on_two() {
     }
 }
 
+/// The model is chosen before the processes begin, and all of them get the same.
+#[test]
+fn a_scene_that_leaves_the_model_open_is_the_same_in_one_process_and_in_all() {
+    let site = site();
+    let text = std::fs::read_to_string(site.config("scenes/walk.toml")).unwrap();
+    let auto = "depth = \"auto\"\ntolerance = { inclination = 0.05, trial = 0.5 }";
+    let text = text.replace("depth = 1\nintegrator = \"euler\"\nsubsteps = 4", auto);
+    std::fs::write(site.config("scenes/walk.toml"), text).unwrap();
+    assert_eq!(different(&sim(&site), &run(&site, &[0, 1])), [""; 0]);
+}
+
 /// What the comparison is worth: the whole chain is in it, and every cycle.
 #[test]
 fn the_log_that_is_compared_holds_every_cycle_of_the_chain() {

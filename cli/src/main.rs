@@ -6,7 +6,6 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use cli::run::{Order, Outcome};
-use config::Setup;
 use daemon::Commands;
 use ipc::{Mode, Space};
 use messages::command::Domain;
@@ -256,9 +255,9 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         Task::Run { scene, lockstep, out, no_log, no_plots, dir } => {
             let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
             let log = (!no_log).then(|| out.join(format!("{scene}.mcap")));
-            run(Order { mode, scene, config, dir, log, progress: true }, no_plots)
+            run(Order { mode, scene, method: None, config, dir, log, progress: true }, no_plots)
         }
-        Task::Sim { scene, json, log } => sim(&Setup::load(&config, &scene)?, json, log),
+        Task::Sim { scene, json, log } => sim(&config, &scene, json, log),
         Task::Topic { what, dir } => {
             realtime::end_with_reader();
             match what {
@@ -327,12 +326,13 @@ fn commands(name: &str, domains: &[Domain], space: &Space) -> Result<Commands, S
     Ok(Box::new(move || client.received().next()))
 }
 
-fn run(order: Order, no_plots: bool) -> Result<ExitCode, Box<dyn Error>> {
+fn run(mut order: Order, no_plots: bool) -> Result<ExitCode, Box<dyn Error>> {
     if let Some(directory) = order.log.as_ref().and_then(|log| log.parent()) {
         std::fs::create_dir_all(directory)
             .map_err(|e| format!("{}: {e}; choose another place with --out", directory.display()))?;
     }
-    let setup = Setup::load(&order.config, &order.scene)?;
+    let (setup, choice) = cli::choose::load(&order.config, &order.scene, true)?;
+    order.method = choice.map(|choice| choice.method);
     let Outcome { died, interrupted } = cli::run::run(&order)?;
     if let Some(log) = &order.log {
         let figures = cli::run::figures_of(log, &setup)?;
@@ -351,13 +351,20 @@ fn run(order: Order, no_plots: bool) -> Result<ExitCode, Box<dyn Error>> {
     })
 }
 
-fn sim(setup: &Setup, json: bool, log: Option<PathBuf>) -> Result<ExitCode, Box<dyn Error>> {
+fn sim(
+    config: &std::path::Path,
+    scene: &str,
+    json: bool,
+    log: Option<PathBuf>,
+) -> Result<ExitCode, Box<dyn Error>> {
+    let (setup, choice) = cli::choose::load(config, scene, !json)?;
     let bar = if json {
         indicatif::ProgressBar::hidden()
     } else {
         indicatif::ProgressBar::new(setup.scene.duration as u64)
     };
-    let figures = cli::sim::run(setup, log.as_deref(), |t| bar.set_position(t as u64))?;
+    let mut figures = cli::sim::run(&setup, log.as_deref(), |t| bar.set_position(t as u64))?;
+    figures.depth_reason = choice.map(|choice| choice.reason());
     bar.finish_and_clear();
     if json {
         println!("{}", serde_json::to_string(&figures)?);
@@ -425,7 +432,7 @@ fn realtime_study(
     seconds: u64,
     out: &std::path::Path,
 ) -> Result<studies::cycles::Report, Box<dyn Error>> {
-    let setup = Setup::load(config, &scene)?;
+    let (setup, choice) = cli::choose::load(config, &scene, true)?;
     let row = setup.system.process(messages::Process::Lowlevel);
     let (core, priority) = row.map_or((0, 0), |row| (row.core.unwrap_or(0), row.priority));
     let cyclictest = || {
@@ -437,7 +444,8 @@ fn realtime_study(
     let log = out.join(format!("{scene}.mcap"));
     let before = cyclictest();
     let (mode, dir, config) = (Mode::RealTime, cli::RUN_DIR.into(), config.to_path_buf());
-    cli::run::run(&Order { mode, scene, config, dir, log: Some(log.clone()), progress: false })?;
+    let method = choice.map(|choice| choice.method);
+    cli::run::run(&Order { mode, scene, method, config, dir, log: Some(log.clone()), progress: false })?;
     let after = cyclictest();
     let fell = cli::run::figures_of(&log, &setup)?.fell;
     Ok(studies::cycles::Report {

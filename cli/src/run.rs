@@ -7,6 +7,7 @@ use std::process::{Child, Command as Spawn, ExitStatus, Stdio};
 use std::time::Duration;
 
 use config::Setup;
+use config::tolerance::Method;
 use indicatif::{ProgressBar, ProgressStyle};
 use ipc::{Mode, Reader, Run, Space};
 use messages::command::Domain;
@@ -23,6 +24,8 @@ pub struct Order {
     pub mode: Mode,
     /// Name of the scene.
     pub scene: String,
+    /// How it is simulated, if it leaves that open: [`crate::choose`].
+    pub method: Option<Method>,
     /// The configuration directory.
     pub config: PathBuf,
     /// The run directory.
@@ -60,7 +63,7 @@ const STAND_PATIENCE: u64 = 8 * clock::SECOND;
 /// # Errors
 /// The configuration is wrong, another run uses the directory, or a process does not start.
 pub fn run(order: &Order) -> Result<Outcome, Box<dyn Error>> {
-    let setup = Setup::load(&order.config, &order.scene)?;
+    let setup = Setup::load(&order.config, &order.scene)?.with_method(order.method)?;
     multibody_check(&setup)?;
     let stop = Stop::on_signals()?;
     let space = Space::create(&order.dir)?;
@@ -68,6 +71,7 @@ pub fn run(order: &Order) -> Result<Outcome, Box<dyn Error>> {
         dir: order.dir.clone(),
         mode: order.mode,
         scene: order.scene.clone(),
+        method: order.method.map(|method| method.to_string()),
         config: order.config.clone(),
         log: order.log.clone(),
     };

@@ -57,9 +57,9 @@ impl Chain {
     /// Builds every part of a scene.
     ///
     /// # Errors
-    /// The configuration does not fit together.
+    /// The configuration does not fit together, or leaves the depth open.
     pub fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
-        let Setup { scene, robot, gait, system, .. } = setup;
+        let Setup { scene, robot, gait, system, .. } = &setup.clone().with_method(None)?;
         let mut sim = SimBackend::new(robot, scene)?;
         let answer = *sim.step(None, None).0;
         Ok(Self {

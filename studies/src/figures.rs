@@ -12,6 +12,8 @@ pub struct Figures {
     pub robot: String,
     /// Modelling depth, and the integrator with its steps per bus cycle.
     pub depth: String,
+    /// Why that depth, of a scene that leaves it open.
+    pub depth_reason: Option<String>,
     /// Whether the robot fell.
     pub fell: bool,
     /// \[s\] Simulated time.
@@ -141,6 +143,7 @@ impl Gatherer {
             scene: scene.name.clone(),
             robot: scene.robot.clone(),
             depth: format!("type {}, {:?} x {}", scene.depth, scene.integrator, scene.substeps),
+            depth_reason: None,
             fell: self.fell,
             duration_s: self.time,
             distance_m: distance,

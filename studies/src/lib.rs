@@ -3,6 +3,7 @@
 //! | study | question |
 //! |---|---|
 //! | [`accuracy`] | which method is cheapest for a given accuracy? |
+//! | [`depth`] | which is cheapest for what this scene asks? |
 //! | [`push`] | which impulse does the walking robot survive? |
 //! | [`limits`] | where do methods fail, and is it told? |
 //! | [`speed`], [`simulation_speed`] | how fast is each part, and how accurate is it at that speed? |
@@ -14,6 +15,7 @@
 pub mod accuracy;
 pub mod chain;
 pub mod cycles;
+pub mod depth;
 pub mod figures;
 pub mod figures_of_thesis;
 pub mod limits;
