@@ -13,7 +13,7 @@ use contact::frame::frame;
 use contact::hexahedron::{Elasticity, Volume};
 use contact::point::{self, Law, State};
 use contact::{Ground, Layer, Material, Memory, Pad, Report, Settings, Twist};
-use environment::{Environment, Surface};
+use environment::{Environment, Hit, Surface};
 use multibody::{Data, Frame, Model};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
 
@@ -24,6 +24,8 @@ pub struct Feet {
     segments: Vec<Segment>,
     /// Whether each object of the environment carries something.
     touched: Vec<bool>,
+    /// \[m\] @world Every node that can touch; kept only where there are objects.
+    places: Vec<[f64; 3]>,
     worst: Report,
 }
 
@@ -51,6 +53,13 @@ struct Block {
 }
 
 const CONVERGED: Report = Report { sweeps: 0, residual: 0.0, converged: true, unique: true };
+
+/// What is below the feet, and what is noted about it.
+struct Below<'a> {
+    ground: &'a Environment,
+    touched: &'a mut [bool],
+    places: &'a mut Vec<[f64; 3]>,
+}
 
 /// \[m\] Height above which a node needs no exact gap: no step is so long.
 const FAR: f64 = 0.05;
@@ -86,7 +95,20 @@ impl Feet {
             }
         }
         let settings = Settings::of_friction(robot.contact.friction);
-        Ok(Self { law: law(robot), settings, segments, touched: vec![false; objects], worst: CONVERGED })
+        Ok(Self {
+            law: law(robot),
+            settings,
+            segments,
+            touched: vec![false; objects],
+            places: Vec::new(),
+            worst: CONVERGED,
+        }
+        .with_room(objects))
+    }
+
+    fn with_room(mut self, objects: usize) -> Self {
+        self.places.reserve(if objects > 0 { self.nodes() } else { 0 });
+        self
     }
 
     /// Contact nodes of both feet.
@@ -102,6 +124,11 @@ impl Feet {
     /// Which objects of the environment carry something, after [`Feet::update`].
     pub fn touched(&self) -> &[bool] {
         &self.touched
+    }
+
+    /// Where the nodes that can touch are \[m\] @world, after [`Feet::update`]; empty on ground without objects.
+    pub fn places(&self) -> &[[f64; 3]] {
+        &self.places
     }
 
     /// How the solver of the pads ended, the worst since the last call.
@@ -141,17 +168,18 @@ impl Feet {
 
     /// Forces of the ground, and rates of the nodes for displacements `d`, after the model's kinematics and motion.
     pub fn update(&mut self, model: &Model, data: &Data, ground: &Environment, d: &[f64], rate: &mut [f64]) {
-        self.touched.fill(false);
+        let Self { law, settings, segments, touched, places: seen, worst } = self;
+        touched.fill(false);
+        seen.clear();
+        let mut below = Below { ground, touched, places: seen };
         let mut at = 0;
-        for s in &mut self.segments {
+        for s in segments {
             let pose = model.frame_pose(data, &s.frame);
             let twist = model.frame_velocity(data, &s.frame);
             let n = 3 * s.elements.nodes();
             let (d, rate) = (&d[at..at + n], &mut rate[at..at + n]);
             (s.force, s.moment) = match &mut s.elements {
-                Elements::Points(places) => {
-                    points(&self.law, places, &pose, &twist, ground, &mut self.touched, d, rate)
-                }
+                Elements::Points(places) => points(law, places, &pose, &twist, &mut below, d, rate),
                 Elements::Pads(blocks) => {
                     let inside = Twist {
                         linear: pose.rotation.inverse() * twist.linear,
@@ -161,11 +189,12 @@ impl Feet {
                     let parts = d.chunks_exact(per).zip(rate.chunks_exact_mut(per));
                     let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
                     for (block, (d, rate)) in blocks.iter_mut().zip(parts) {
-                        block.look(&pose, ground, d, &mut self.touched);
-                        let Block { pad, memory, ground, .. } = block;
-                        let out = pad.solve(memory, d, ground, &inside, &self.settings, rate);
-                        if !out.report.converged && out.report.residual >= self.worst.residual {
-                            self.worst = out.report;
+                        let friction = block.look(&pose, &mut below, d).unwrap_or(settings.friction);
+                        let Block { pad, memory, ground } = block;
+                        let settings = Settings { friction, ..*settings };
+                        let out = pad.solve(memory, d, ground, &inside, &settings, rate);
+                        if !out.report.converged && out.report.residual >= worst.residual {
+                            *worst = out.report;
                         }
                         force += out.force;
                         moment += out.moment;
@@ -205,14 +234,12 @@ impl Feet {
 }
 
 /// Independent nodes of one segment: force and moment on it, world axes.
-#[allow(clippy::too_many_arguments)] // the kernel of all contact: everything it reads, by name
 fn points(
     law: &Law,
     places: &[Vector3<f64>],
     pose: &IsometryMatrix3<f64>,
     twist: &multibody::Twist,
-    ground: &Environment,
-    touched: &mut [bool],
+    below: &mut Below<'_>,
     d: &[f64],
     rate: &mut [f64],
 ) -> (Vector3<f64>, Vector3<f64>) {
@@ -220,17 +247,17 @@ fn points(
     for ((place, d), rate) in places.iter().zip(d.chunks_exact(3)).zip(rate.chunks_exact_mut(3)) {
         let (arm, d) = (pose.rotation * place, Vector3::new(d[0], d[1], d[2]));
         let w = twist.linear + twist.angular.cross(&arm);
-        let hit = ground.query((pose.translation.vector + arm + d).into());
+        let hit = below.hit((pose.translation.vector + arm + d).into());
         let (force, speed) = if hit.surface == Surface::Ground {
             let answer = point::solve(law, d.into(), w.into(), hit.gap);
             (Vector3::from(answer.force), Vector3::from(answer.rate))
         } else {
             let e: Matrix3<f64> = frame(&Vector3::from(hit.normal));
             let inside = |x: &Vector3<f64>| <[f64; 3]>::from(e.tr_mul(x));
-            let law = Law { friction: ground.friction(hit.surface).unwrap_or(law.friction), ..*law };
+            let law = Law { friction: below.ground.friction(hit.surface).unwrap_or(law.friction), ..*law };
             let answer = point::solve(&law, inside(&d), inside(&w), hit.gap);
             if let (Surface::Object(i), true) = (hit.surface, answer.state != State::Open) {
-                touched[i] = true;
+                below.touched[i] = true;
             }
             (e * Vector3::from(answer.force), e * Vector3::from(answer.rate))
         };
@@ -242,18 +269,30 @@ fn points(
 }
 
 impl Block {
-    /// Looks where the ground is under every node of the sole.
-    fn look(&mut self, pose: &IsometryMatrix3<f64>, ground: &Environment, d: &[f64], touched: &mut [bool]) {
+    /// Looks where the ground is under every node of the sole; friction of an object that carries, if it has its own.
+    fn look(&mut self, pose: &IsometryMatrix3<f64>, below: &mut Below<'_>, d: &[f64]) -> Option<f64> {
         let back = pose.rotation.inverse();
+        let mut friction = None;
         for (i, (to, d)) in self.ground.iter_mut().zip(d.chunks_exact(3)).enumerate() {
             let node = pose * Point3::from(self.pad.place(i) + Vector3::new(d[0], d[1], d[2]));
-            let hit = ground.query(node.coords.into());
+            let hit = below.hit(node.coords.into());
             let near = hit.surface != Surface::Far && hit.gap < FAR;
             *to = near.then(|| Ground { gap: hit.gap, normal: back * Vector3::from(hit.normal) });
             if let (Surface::Object(object), true) = (hit.surface, hit.gap <= 0.0) {
-                touched[object] = true;
+                below.touched[object] = true;
+                friction = friction.or(below.ground.friction(hit.surface));
             }
         }
+        friction
+    }
+}
+
+impl Below<'_> {
+    fn hit(&mut self, node: [f64; 3]) -> Hit {
+        if !self.touched.is_empty() {
+            self.places.push(node);
+        }
+        self.ground.query(node)
     }
 }
 

@@ -136,6 +136,7 @@ impl Plant {
         self.scratch.q[..7].copy_from_slice(&x[..7]);
         self.scratch.q[7..].copy_from_slice(joints);
         self.model.forward_kinematics(&mut self.data, &self.scratch.q);
+        self.scratch.seen.fill(f64::NAN);
         let depth = self.feet.deflection(self.model.mass() * -multibody::GRAVITY.z);
         x[2] = -self.feet.lowest(&self.model, &self.data) - depth;
         self.feet.press(&self.model, &self.data, depth, &mut x[l.layer()]);
@@ -303,7 +304,7 @@ impl Plant {
         if !self.environment.objects().is_empty() {
             self.scratch.seen.fill(f64::NAN);
         }
-        self.environment.advance(time, self.feet.touched(), &[])
+        self.environment.advance(time, self.feet.touched(), self.feet.places())
     }
 
     /// How the solver of the pads ended at worst since the last call.
