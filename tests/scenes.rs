@@ -89,12 +89,12 @@ fn walk_type3() {
 
 #[test]
 fn walk_type4() {
-    walks(&figures("walk_type4", 12.0), 1.0);
+    walks(&figures("walk_type4", 20.0), 1.0);
 }
 
 #[test]
 fn walk_type5() {
-    walks(&figures("walk_type5", 12.0), 1.0);
+    walks(&figures("walk_type5", 20.0), 1.0);
 }
 
 #[test]
@@ -104,12 +104,13 @@ fn walk_2kmh_sensors() {
 
 #[test]
 fn board() {
-    figures("board", 20.0);
+    walks(&figures("board", 20.0), 1.0);
 }
 
 #[test]
 fn uneven() {
-    figures("uneven", 20.0);
+    let f = figures("uneven", 20.0);
+    assert!(number(&f, "mean_speed_m_s") > 0.08 && number(&f, "steps") > 10.0, "{f:#}");
 }
 
 #[test]
@@ -119,7 +120,8 @@ fn stairs() {
 
 #[test]
 fn passing_box() {
-    figures("passing_box", 12.0);
+    let f = figures("passing_box", 12.0);
+    assert!(number(&f, "steps") > 5.0 && number(&f, "distance_m") < 0.02, "stays where it is: {f:#}");
 }
 
 #[test]

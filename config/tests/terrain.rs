@@ -16,7 +16,7 @@ fn flat_scenes_have_no_objects() {
 fn a_board_lies_on_the_ground() {
     let [board] = &shipped("board").objects[..] else { panic!() };
     let Shape::Box([_, _, thickness]) = board.shape else { panic!() };
-    assert_eq!((thickness, board.pose.position[2] - thickness / 2.0), (0.02, 0.0));
+    assert_eq!((thickness, board.pose.position[2] - thickness / 2.0), (0.008, 0.0));
     assert_eq!((board.appears, board.vanishes, board.friction), (0.0, f64::INFINITY, None));
 }
 
