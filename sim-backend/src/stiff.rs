@@ -20,6 +20,9 @@ use diffsol::{OdeEquationsImplicit, OdeSolverState, OdeSolverStopReason, VectorC
 type Matrix = NalgebraMat<f64>;
 type Lu = NalgebraLU<f64>;
 
+/// f: `rate(t, x, dx)` writes the derivative.
+pub type Rate<'a> = dyn FnMut(f64, &[f64], &mut [f64]) + 'a;
+
 /// How accurate a motion is to be, and what it may cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -108,13 +111,7 @@ impl Stiff {
     ///
     /// # Errors
     /// [`GaveUp`]; then `x` is the state of its time, and finite if it was at the begin.
-    pub fn advance(
-        &mut self,
-        t: f64,
-        h: f64,
-        x: &mut [f64],
-        rate: &mut dyn FnMut(f64, &[f64], &mut [f64]),
-    ) -> Result<Effort, GaveUp> {
+    pub fn advance(&mut self, t: f64, h: f64, x: &mut [f64], rate: &mut Rate<'_>) -> Result<Effort, GaveUp> {
         let n = x.len();
         let kept = std::mem::take(&mut self.jacobian);
         let watch = RefCell::new(Watch::new(n, self.limits.most_calls, rate, kept));
@@ -199,8 +196,8 @@ fn slope(near: f64, far: f64) -> f64 {
 }
 
 /// f as the library calls it, with the guard.
-struct Watch<'a> {
-    inner: &'a mut dyn FnMut(f64, &[f64], &mut [f64]),
+struct Watch<'a, 'b> {
+    inner: &'a mut Rate<'b>,
     calls: u32,
     most_calls: u32,
     not_finite: Option<usize>,
@@ -215,13 +212,8 @@ struct Watch<'a> {
     moved: Vec<f64>,
 }
 
-impl<'a> Watch<'a> {
-    fn new(
-        n: usize,
-        most_calls: u32,
-        inner: &'a mut dyn FnMut(f64, &[f64], &mut [f64]),
-        jacobian: Vec<f64>,
-    ) -> Self {
+impl<'a, 'b> Watch<'a, 'b> {
+    fn new(n: usize, most_calls: u32, inner: &'a mut Rate<'b>, jacobian: Vec<f64>) -> Self {
         let zero = || vec![0.0; n];
         let (calls, not_finite, used) = (0, None, jacobian.len() != n * n);
         let (last, change, to_and_fro, near, moved) = (zero(), zero(), zero(), zero(), zero());

@@ -74,9 +74,9 @@ impl System for Mass {
             x.copy_from_slice(&begin);
             self.parabola(middle, x);
             if open(x) {
-                above = middle
+                above = middle;
             } else {
-                below = middle
+                below = middle;
             }
             if middle == above && middle == below {
                 break;
