@@ -84,3 +84,33 @@ fn what_is_stood_on_does_not_vanish() {
         assert!(events.contains(&Event::Vanished(0)), "type {depth}: {events:?}");
     }
 }
+
+/// What a force sensor feels of the foot below it: its weight while the robot stands, nothing while it falls freely.
+#[test]
+fn inertia_below_the_force_sensors() {
+    let sensors = |rig: &Rig| {
+        let frame = |i: usize| {
+            let foot = &rig.robot.feet[i];
+            rig.plant.model().frame(&foot.sensor_link, foot.sensor).unwrap()
+        };
+        [frame(0), frame(1)]
+    };
+    for depth in [1, 2, 3] {
+        let mut rig = Rig::new(depth);
+        rig.run(Integrator::SemiImplicit, 0.0, 10.0, 40_000);
+        rig.snapshot(0.0);
+        let frames = sensors(&rig);
+        let [right, left] = rig.plant.carried(&frames).map(|w| w.force[2].abs() / 9.81);
+        assert!(
+            (right - left).abs() < 0.01 && (0.3..3.0).contains(&right),
+            "type {depth}: {right}, {left} kg"
+        );
+        let mut rig = Rig::new(1).in_the_air();
+        rig.snapshot(0.0);
+        for wrench in rig.plant.carried(&frames) {
+            let felt =
+                wrench.force.into_iter().chain(wrench.moment).fold(0.0, |most, x| f64::max(most, x.abs()));
+            assert!(felt < 1e-9, "{wrench:?}");
+        }
+    }
+}
