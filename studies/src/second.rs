@@ -32,13 +32,17 @@ impl Second {
     /// A configuration or robot is wrong, or the robot falls.
     pub fn record(setup: &Setup, begin: f64, cycles: usize) -> Result<Self, Box<dyn Error>> {
         let mut chain = Chain::new(setup)?;
-        let before =
-            (0..(begin / setup.scene.cycle) as usize).fold(JointTargets::default(), |_, _| chain.step().joint_targets);
+        let before = (0..(begin / setup.scene.cycle) as usize)
+            .fold(JointTargets::default(), |_, _| chain.step().joint_targets);
         let state = chain.robot().integrated().to_vec();
         let mut targets = vec![before];
         targets.extend((0..cycles).map(|_| chain.step().joint_targets));
         if chain.robot().state().fallen == 1 {
-            return Err(format!("scene {}: the robot falls on the model of type {}", setup.scene.name, setup.scene.depth).into());
+            return Err(format!(
+                "scene {}: the robot falls on the model of type {}",
+                setup.scene.name, setup.scene.depth
+            )
+            .into());
         }
         Ok(Self { state, cycle: setup.scene.cycle, joints: setup.robot.joints.len(), targets })
     }
@@ -58,7 +62,14 @@ impl Second {
     }
 
     /// Advances `x` by a cycle in `steps` steps.
-    pub fn advance(&self, plant: &mut Plant, stepper: &mut Stepper, steps: u32, drives: &[Drive], x: &mut [f64]) {
+    pub fn advance(
+        &self,
+        plant: &mut Plant,
+        stepper: &mut Stepper,
+        steps: u32,
+        drives: &[Drive],
+        x: &mut [f64],
+    ) {
         let h = self.cycle / f64::from(steps);
         for i in 0..steps {
             stepper.step(plant, f64::from(i) * h, h, x, drives, &POWERED);

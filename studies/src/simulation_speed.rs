@@ -47,8 +47,11 @@ pub struct Simulation {
 
 use Integrator::{Euler, RungeKutta4, SemiImplicit};
 
+/// A method and its steps per cycle.
+type Method = (Integrator, u32);
+
 /// What each type is measured with, and steps per cycle of its reference, by Runge-Kutta.
-const METHODS: [(u8, &[(Integrator, u32)], u32); 5] = [
+const METHODS: [(u8, &[Method], u32); 5] = [
     (1, &[(Euler, 1), (Euler, 4), (Euler, 16), (RungeKutta4, 1), (RungeKutta4, 4), (RungeKutta4, 32)], 64),
     (2, &[(SemiImplicit, 1), (SemiImplicit, 4), (SemiImplicit, 10), (Euler, 10), (RungeKutta4, 10)], 40),
     (3, &[(SemiImplicit, 1), (SemiImplicit, 4), (SemiImplicit, 10), (Euler, 40), (RungeKutta4, 10)], 40),
@@ -113,7 +116,7 @@ fn row(
     depth: u8,
     motion: &str,
     (second, plant): (&Second, &mut Plant),
-    (method, steps): (Integrator, u32),
+    (method, steps): Method,
     reference: &[Instant],
 ) -> Simulation {
     let mut best = simulate(second, plant, method, steps);

@@ -96,7 +96,7 @@ fn crossover(c: &mut Criterion) {
         };
         group.bench_function(BenchmarkId::new("hierarchy", mesh.len()), |b| b.iter(|| mesh.nearest(&next())));
         group.bench_function(BenchmarkId::new("search", mesh.len()), |b| {
-            b.iter(|| mesh.nearest_by_search(&next()))
+            b.iter(|| mesh.nearest_by_search(&next()));
         });
     }
 }

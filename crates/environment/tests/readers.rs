@@ -199,7 +199,7 @@ fn what_is_wrong_is_named_with_its_place() {
             &["line 6", "finite"],
         ),
         ("e.stl", text_stl().replacen("endloop", "endlop", 1).into_bytes(), &["line 7", "endlop"]),
-        ("f.stl", text_stl()[..300].as_bytes().to_vec(), &["line"]),
+        ("f.stl", text_stl().as_bytes()[..300].to_vec(), &["line"]),
         (
             "g.obj",
             obj().replacen("f 4 5 6", "f 4 5 60", 1).into_bytes(),
@@ -228,7 +228,7 @@ fn what_is_wrong_is_named_with_its_place() {
             &["line 13", "point 9", "only 6"],
         ),
         ("v.wrl", vrml().replace("translation 1 2", "translation 1 two").into_bytes(), &["line 14", "`two`"]),
-        ("w.wrl", vrml()[..300].as_bytes().to_vec(), &["ends within a node"]),
+        ("w.wrl", vrml().as_bytes()[..300].to_vec(), &["ends within a node"]),
         ("x.wrl", vrml().replace("scale -2", "center 1 0 0 scale -2").into_bytes(), &["line 14", "`center`"]),
     ];
     for (name, bytes, parts) in cases {

@@ -122,9 +122,9 @@ fn oscillator() -> Vec<Finding> {
         let rate = |_: f64, x: &[f64], dx: &mut [f64]| (dx[0], dx[1]) = (w * x[1], -w * x[0]);
         for _ in 0..60_000 {
             if runge_kutta {
-                method.runge_kutta_4(0.0, h, &mut x, rate)
+                method.runge_kutta_4(0.0, h, &mut x, rate);
             } else {
-                method.euler(0.0, h, &mut x, rate)
+                method.euler(0.0, h, &mut x, rate);
             }
         }
         x[0] * x[0] + x[1] * x[1]
