@@ -41,11 +41,11 @@ const LOST: [f64; 2] = [10.0, 0.5];
 const LANDINGS: [(&str, usize, u8); 8] = [
     ("settle", 500, 1),
     ("settle", 500, 2),
-    ("settle", 500, 3),
+    ("settle", 300, 3),
     ("settle", 200, 4),
-    ("edge", 300, 1),
-    ("edge", 300, 2),
-    ("edge", 300, 3),
+    ("edge", 200, 1),
+    ("edge", 200, 2),
+    ("edge", 200, 3),
     ("edge", 150, 4),
 ];
 
