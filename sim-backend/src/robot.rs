@@ -67,7 +67,7 @@ impl SimBackend {
             sensor_frames,
             sensor_set: SensorSet::new(&scene.sensors, robot, &hanging, scene.seed, scene.cycle),
             last_good: state.clone(),
-            stepper: Stepper::new(scene.integrator, state.len()),
+            stepper: stepper(scene, state.len()),
             drives: pose.iter().map(|&q| Drive::resting(q)).collect(),
             goals: pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect(),
             motions: pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect(),
@@ -184,6 +184,9 @@ impl SimBackend {
         for (goal, drive) in self.goals.iter_mut().zip(&self.drives) {
             *goal = drive.at(self.scene.cycle);
         }
+        if let Some(gave_up) = self.stepper.take_gave_up() {
+            self.event = Some((EventCode::IntegratorGaveUp, gave_up.state as u64));
+        }
         if let Some(fault) = self.plant.take_fault() {
             // A state that is no number is the graver news.
             self.event.get_or_insert((EventCode::DriveFault, fault.drive as u64));
@@ -277,5 +280,13 @@ impl SimBackend {
         truth.power = u64::from(powered);
         truth.fallen = u64::from(self.fallen);
         report.invalid == 0
+    }
+}
+
+fn stepper(scene: &Scene, states: usize) -> Stepper {
+    let stepper = Stepper::new(scene.integrator, states);
+    match scene.tolerance {
+        Some(tolerance) => stepper.with_tolerance(tolerance),
+        None => stepper,
     }
 }

@@ -72,11 +72,14 @@ pub enum EventCode {
     Diverged = 31,
     /// A simulated sensor left its range; detail: how many numbers.
     SensorClipped = 32,
+    /// The adaptive integrator met its bounds, as at dry friction; detail: the state that would not settle. The rest of the
+    /// cycle was done in one semi-implicit step.
+    IntegratorGaveUp = 33,
 }
 
 impl EventCode {
     /// All codes, in order of their numbers.
-    pub const ALL: [Self; 33] = [
+    pub const ALL: [Self; 34] = [
         Self::None,
         Self::Started,
         Self::Ended,
@@ -110,6 +113,7 @@ impl EventCode {
         Self::ObjectResumed,
         Self::Diverged,
         Self::SensorClipped,
+        Self::IntegratorGaveUp,
     ];
 
     /// The code of a number from a record.
