@@ -57,6 +57,11 @@ impl SimBackend {
     /// # Errors
     /// The robot's data do not fit together or do not allow the depth of the scene, or an object cannot be read.
     pub fn new(robot: &Robot, scene: &Scene) -> Result<Self, Box<dyn Error>> {
+        if scene.auto.is_some() {
+            return Err(
+                format!("scene `{}`: no model has been chosen for depth = \"auto\" yet", scene.name).into()
+            );
+        }
         let pose = &robot.poses[&scene.start_pose];
         let mut plant = Plant::new(robot, terrain::environment(scene)?, scene.depth, pose)?;
         let state = plant.standing(pose);
@@ -185,7 +190,7 @@ impl SimBackend {
             *goal = drive.at(self.scene.cycle);
         }
         if let Some(gave_up) = self.stepper.take_gave_up() {
-            self.event = Some((EventCode::IntegratorGaveUp, gave_up.state as u64));
+            self.event.get_or_insert((EventCode::IntegratorGaveUp, gave_up.state as u64));
         }
         if let Some(fault) = self.plant.take_fault() {
             // A state that is no number is the graver news.
@@ -196,11 +201,12 @@ impl SimBackend {
             self.event.get_or_insert((EventCode::ContactNotConverged, report.sweeps.into()));
         }
         for event in self.plant.advance(self.cycles as f64 * self.scene.cycle) {
-            self.event = match *event {
-                environment::Event::Refused(i) => Some((EventCode::ObjectHeld, i as u64)),
-                environment::Event::Resumed(i) => Some((EventCode::ObjectResumed, i as u64)),
+            let (code, object) = match *event {
+                environment::Event::Refused(i) => (EventCode::ObjectHeld, i),
+                environment::Event::Resumed(i) => (EventCode::ObjectResumed, i),
                 environment::Event::Appeared(_) | environment::Event::Vanished(_) => continue,
             };
+            self.event.get_or_insert((code, object as u64));
         }
     }
 
