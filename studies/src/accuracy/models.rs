@@ -277,7 +277,7 @@ mod tests {
     fn torques_that_made_a_motion_are_found_in_it() {
         let setup = Setup::load(&config::root(None), "stand").unwrap();
         let mut torques = Torques::new(&setup).unwrap();
-        let (model, h) = (&torques.model, 1e-4);
+        let (model, h) = (&torques.model, 1e-5);
         let mut data = Data::new(model);
         let mut q = model.neutral();
         q[7..].copy_from_slice(&setup.robot.poses["stand"]);
@@ -302,6 +302,6 @@ mod tests {
             q.copy_from_slice(&next);
         }
         let found = torques.at([&states[2], &states[3], &states[4]], h);
-        assert!((found - 40.0).abs() < 0.4, "{found} N m instead of 40");
+        assert!((found - 40.0).abs() < 0.02, "{found} N m instead of 40");
     }
 }
