@@ -6,15 +6,15 @@
 //!
 //! | file | what fails |
 //! |---|---|
-//! | [`steps`] | explicit steps against contact layers, servos, circuits (F1-F4) |
-//! | [`stiction`] | signs of dry friction (F5, F6) |
-//! | [`touchdown`] | orders of convergence at a contact (F7) |
-//! | [`contact`] | fixed points, nearly incompressible rubber, much friction, penetration (F8-F11) |
-//! | [`drives`] | load torques, elasticity, linkages at their dead points (F12-F15, F24) |
-//! | [`planning`] | initial values instead of boundary values, collocation (F16, F20) |
-//! | [`motion`] | Euler angles, straight knees, energy over a minute (F22, F23) |
-//! | [`geometry`] | nearest points, edges (F25) |
-//! | [`signals`] | quantised speeds, numbers that are none (F26) |
+//! | `steps` | explicit steps against contact layers, servos, circuits (F1-F4) |
+//! | `stiction` | signs of dry friction (F5, F6) |
+//! | `touchdown` | orders of convergence at a contact (F7) |
+//! | `contact` | fixed points, nearly incompressible rubber, much friction, penetration (F8-F11) |
+//! | `drives` | load torques, elasticity, linkages at their dead points (F12-F15, F24) |
+//! | `planning` | initial values instead of boundary values, collocation (F16, F20) |
+//! | `motion` | Euler angles, straight knees, energy over a minute (F22, F23) |
+//! | `geometry` | nearest points, edges (F25) |
+//! | `signals` | quantised speeds, numbers that are none (F26) |
 
 mod contact;
 mod drives;
