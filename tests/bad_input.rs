@@ -52,8 +52,8 @@ fn a_number_in_the_wrong_unit_is_refused_with_the_range() {
 fn a_missing_scene_is_named_with_those_there_are() {
     refused(
         &Site::new(EXE),
-        "walk_3kmh",
-        &["scenes/walk_3kmh.toml", "cannot be read", "walk_1kmh, walk_2kmh"],
+        "walk_9kmh",
+        &["scenes/walk_9kmh.toml", "cannot be read", "walk_1kmh, walk_2kmh"],
     );
 }
 

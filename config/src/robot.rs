@@ -9,7 +9,7 @@ pub use crate::drive::Drive;
 use crate::drive::drives;
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
-use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
+use crate::section::{self, POSITIVE, Section};
 
 /// A robot: its URDF and everything else that is data about it.
 #[derive(Clone, Debug)]
@@ -197,7 +197,7 @@ impl Contact {
             pads: table.has("pads").then(|| table.table("pads", Pads::build)).flatten(),
             normal_stiffness: table.number("normal_stiffness", "N/m", POSITIVE),
             tangential_stiffness: table.number("tangential_stiffness", "N/m", POSITIVE),
-            damping_time: table.number("damping_time", "s", NOT_NEGATIVE),
+            damping_time: table.number("damping_time", "s", POSITIVE),
             friction: table.number("friction", "", 0.0..=2.0),
         }
     }
@@ -207,11 +207,20 @@ impl Pads {
     fn build(table: &Section<'_, '_>) -> Self {
         Self {
             size: table.numbers("size", "m", 1e-4..=1.0),
-            bricks: table.numbers("bricks", "", 1.0..=20.0).map(|n: f64| n as usize),
+            bricks: whole(table, "bricks"),
             modulus: table.number("modulus", "N/m^2", POSITIVE),
             poisson: table.number("poisson", "", 0.0..=0.499),
         }
     }
+}
+
+/// Three whole numbers.
+fn whole(table: &Section<'_, '_>, key: &str) -> [usize; 3] {
+    let numbers: [f64; 3] = table.numbers(key, "", 1.0..=20.0);
+    if numbers.iter().any(|n| n.fract() != 0.0 && n.is_finite()) {
+        table.problem(key, format!("{numbers:?} are not all whole numbers"));
+    }
+    numbers.map(|n| n as usize)
 }
 
 impl Foot {

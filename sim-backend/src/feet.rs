@@ -12,7 +12,7 @@ use config::Robot;
 use contact::frame::frame;
 use contact::hexahedron::{Elasticity, Volume};
 use contact::point::{self, Law, State};
-use contact::{Ground, Layer, Material, Memory, Pad, Report, Settings, Twist};
+use contact::{Ground, Layer, Material, Memory, Pad, Report, Settings, TOUCHING, Twist};
 use environment::{Environment, Hit, Surface};
 use multibody::{Data, Frame, Model};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
@@ -95,20 +95,15 @@ impl Feet {
             }
         }
         let settings = Settings::of_friction(robot.contact.friction);
+        let nodes: usize = segments.iter().map(|s| s.elements.nodes()).sum();
         Ok(Self {
             law: law(robot),
             settings,
             segments,
             touched: vec![false; objects],
-            places: Vec::new(),
+            places: Vec::with_capacity(if objects > 0 { nodes } else { 0 }),
             worst: CONVERGED,
-        }
-        .with_room(objects))
-    }
-
-    fn with_room(mut self, objects: usize) -> Self {
-        self.places.reserve(if objects > 0 { self.nodes() } else { 0 });
-        self
+        })
     }
 
     /// Contact nodes of both feet.
@@ -278,7 +273,7 @@ impl Block {
             let hit = below.hit(node.coords.into());
             let near = hit.surface != Surface::Far && hit.gap < FAR;
             *to = near.then(|| Ground { gap: hit.gap, normal: back * Vector3::from(hit.normal) });
-            if let (Surface::Object(object), true) = (hit.surface, hit.gap <= 0.0) {
+            if let (Surface::Object(object), true) = (hit.surface, hit.gap < TOUCHING) {
                 below.touched[object] = true;
                 friction = friction.or(below.ground.friction(hit.surface));
             }

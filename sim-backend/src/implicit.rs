@@ -5,10 +5,10 @@
 //! a shaft either sticks (w+ = 0, friction inside of its cone) or turns (friction C against the direction), found by
 //! trying, as for the contact points; that is the proximal point of (2.44), (2.45) with each state solved exactly.
 
-use drives::{Elasticity, Sliding};
+use drives::{Elasticity, NoLoadTorque, Sliding};
 use multibody::{Data, Model};
 
-use crate::train::{CURRENT_BANDWIDTH, Given, POSITION_GAIN, Shaft, Train};
+use crate::train::{CURRENT_BANDWIDTH, Fault, Given, POSITION_GAIN, Shaft, Train, Why};
 
 /// How many times the shaft's inertia per step a sticking shaft resists.
 const STICKING: f64 = 1e7;
@@ -36,20 +36,25 @@ enum Slip {
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Step {
     motor: Line,
+    /// Level of dry friction of the gear \[N m\], and with the brake.
+    dry: f64,
     coulomb: f64,
     viscous: f64,
     slip: Slip,
     /// Speed at the end \[rad/s\].
     end: f64,
-    /// Torque on a rotor behind an elastic gear \[N m\].
+    /// Torque on a rotor behind an elastic gear \[N m\], and what of it turns the rotor along with its stator.
     torque: f64,
+    along: f64,
+    /// The torque that the model was told of.
+    set: f64,
 }
 
 impl Train {
     /// Solves M a = `force` - (bias, contact: all in `force`) with the drives at the end of a step `h` \[s\].
     ///
-    /// In: generalized force without the drives, mass matrix in `data`. Out: acceleration in `out`. Returns the rounds it
-    /// took to find which shafts stick.
+    /// In: generalized force without the drives, mass matrix in `data`. Out: acceleration in `out`. Which shafts stick is
+    /// found in rounds; if these end before, the shaft that goes to and fro is a [`Fault`].
     pub fn solve(
         &mut self,
         h: f64,
@@ -58,9 +63,11 @@ impl Train {
         data: &mut Data,
         force: &[f64],
         out: &mut [f64],
-    ) -> usize {
+    ) {
         for s in &mut self.shafts {
-            s.begin(h, given);
+            if let Err(why) = s.begin(h, given) {
+                self.fault.get_or_insert(Fault { drive: s.motor, why: Why::Friction(why) });
+            }
         }
         for round in 1..=ROUNDS {
             out.copy_from_slice(force);
@@ -78,22 +85,44 @@ impl Train {
                 damper.set(ratio, h * line.b);
             }
             model.solve_damped(data, &self.dampers, out);
-            let mut settled = true;
             for s in &mut self.shafts {
                 s.finish(h, given, &out[6..]);
-                settled &= s.settle(h);
             }
-            if settled {
-                return round;
+            let Some(wrong) = self.shafts.iter().position(|s| !s.is_settled(h)) else { return };
+            if round == ROUNDS {
+                self.fault.get_or_insert(Fault { drive: wrong, why: Why::Unsettled });
+                return;
+            }
+            for s in self.shafts.iter_mut().filter(|s| !s.is_settled(h)) {
+                s.change();
             }
         }
-        ROUNDS
     }
 
     /// What the free rotors do to their stators: the torque that the step before found.
-    pub fn free_rotors(&self, data: &mut Data) {
-        for s in self.shafts.iter().filter(|s| s.elastic.is_some()) {
+    pub fn free_rotors(&mut self, data: &mut Data) {
+        for s in self.shafts.iter_mut().filter(|s| s.elastic.is_some()) {
+            s.step.set = s.step.torque;
             data.set_free_rotor(s.motor, s.speed, s.step.torque);
+        }
+    }
+
+    /// Notes how the stators of the free rotors turn, after the acceleration has been taken to the bodies.
+    pub fn turn_along(&mut self, model: &Model, data: &Data) {
+        for s in self.shafts.iter_mut().filter(|s| s.elastic.is_some()) {
+            s.step.along = s.step.set - s.drive.rotor_inertia * model.rotor_acceleration(data, s.motor);
+        }
+    }
+
+    /// What friction does now, to be restored after a trial.
+    pub(crate) fn steps(&self) -> impl Iterator<Item = Step> + '_ {
+        self.shafts.iter().map(|s| s.step)
+    }
+
+    /// Restores what [`Train::steps`] gave.
+    pub(crate) fn restore(&mut self, steps: &[Step]) {
+        for (s, step) in self.shafts.iter_mut().zip(steps) {
+            s.step = *step;
         }
     }
 
@@ -119,14 +148,15 @@ impl Train {
 
 impl Shaft {
     /// Motor and friction as functions of the speed at the end of the step.
-    fn begin(&mut self, h: f64, given: &Given<'_>) {
+    fn begin(&mut self, h: f64, given: &Given<'_>) -> Result<(), NoLoadTorque> {
         let current = given.current[self.motor];
-        let driving = self.drive.motor.torque(current);
-        let before = Sliding { dry: self.step.coulomb, viscous: self.step.viscous };
-        let Sliding { dry, viscous } = self.drive.friction.sliding(self.speed, driving).unwrap_or(before);
+        let found = self.drive.friction.sliding(self.speed, self.drive.motor.torque(current));
+        let before = Sliding { dry: self.step.dry, viscous: self.step.viscous };
+        let Sliding { dry, viscous } = *found.as_ref().unwrap_or(&before);
         let brake = if given.powered { 0.0 } else { self.brake() };
         let motor = self.motor_line(h, given.powered, current);
-        self.step = Step { motor, coulomb: dry + brake, viscous, ..self.step };
+        self.step = Step { motor, dry, coulomb: dry + brake, viscous, ..self.step };
+        found.map(|_| ())
     }
 
     /// Torque of the motor: (2.57) and the control laws, implicit.
@@ -181,7 +211,8 @@ impl Shaft {
         let twist = given.joint.0[self.joints[0]] - given.rotor.0[e];
         let stiff = h * h * spring.tangent(twist);
         let total = inertia + h * n * n * shaft.b + stiff;
-        let free = inertia * given.rotor.1[e] + h * (n * shaft.t + spring.torque(twist));
+        let driving = n * (shaft.t - self.step.along) + spring.torque(twist);
+        let free = inertia * given.rotor.1[e] + h * driving;
         (free / total, stiff / total)
     }
 
@@ -196,25 +227,26 @@ impl Shaft {
                 let (free, share) = self.rotor(h, given, *e, spring, self.shaft(h));
                 let joint = given.joint.1[self.joints[0]] + h * a[self.joints[0]];
                 let end = self.gear.ratio[0] * (free + share * joint);
-                self.step.torque = self.drive.rotor_inertia * (end - self.speed) / h;
+                self.step.torque = self.drive.rotor_inertia * (end - self.speed) / h + self.step.along;
                 end
             }
         };
     }
 
-    /// Corrects what friction does; true if it was right.
-    fn settle(&mut self, h: f64) -> bool {
+    /// Whether friction does what it was taken to do.
+    fn is_settled(&self, h: f64) -> bool {
         let Step { coulomb, slip, end, .. } = self.step;
-        let right = match slip {
+        match slip {
             Slip::Turns(s) => s * end >= 0.0,
             Slip::Sticks => STICKING * self.inertia / h * end.abs() <= coulomb,
-        };
-        if !right {
-            self.step.slip = match slip {
-                Slip::Turns(_) => Slip::Sticks,
-                Slip::Sticks => Slip::Turns(end.signum()),
-            };
         }
-        right
+    }
+
+    /// The other thing that friction can do.
+    fn change(&mut self) {
+        self.step.slip = match self.step.slip {
+            Slip::Turns(_) => Slip::Sticks,
+            Slip::Sticks => Slip::Turns(self.step.end.signum()),
+        };
     }
 }

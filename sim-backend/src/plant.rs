@@ -20,6 +20,7 @@ use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use crate::drive::{Drive, Motion};
 use crate::feet::Feet;
+use crate::implicit::Step;
 use crate::layout::Layout;
 use crate::sensors::carried;
 use crate::train::{Fault, Given, Train};
@@ -35,6 +36,8 @@ pub struct Plant {
     limbs: Limbs,
     soles: [Frame; 2],
     train: Option<Train>,
+    /// \[s\] Length of the implicit steps by which the state moves; none if it moves by [`Plant::rate`].
+    implicit: Option<f64>,
     scratch: Scratch,
 }
 
@@ -53,6 +56,7 @@ struct Scratch {
     rate: Vec<f64>,
     /// q, v and d of the last evaluation, whose kinematics, gears and contact forces still hold.
     seen: Vec<f64>,
+    steps: Vec<Step>,
 }
 
 /// Result of one evaluation at the end of a cycle: what sensors and logs want to know.
@@ -66,6 +70,8 @@ pub struct Snapshot {
     pub com: Vector3<f64>,
     /// \[m/s^2\] @torso Acceleration of the torso's origin less gravity.
     pub specific_force: Vector3<f64>,
+    /// \[rad/s^2\] @torso
+    pub angular_acceleration: Vector3<f64>,
 }
 
 /// What acts on the robot besides the ground.
@@ -120,7 +126,18 @@ impl Plant {
             train.set_constant_gears(&mut data);
         }
         let limbs = model.limbs(&feet.frames());
-        Ok(Self { data, model, layout, environment, feet, limbs, soles, train, scratch })
+        Ok(Self {
+            data,
+            model,
+            layout,
+            environment,
+            feet,
+            limbs,
+            soles,
+            train,
+            implicit: dynamic.then_some(1e-3),
+            scratch,
+        })
     }
 
     /// Where each state is.
@@ -162,6 +179,7 @@ impl Plant {
 
     /// The derivative of `x` with the references of `drives`, `tau` \[s\] into the cycle.
     pub fn rate(&mut self, tau: f64, x: &[f64], drives: &[Drive], outside: &Outside, dx: &mut [f64]) {
+        self.implicit = None;
         let l = self.layout;
         self.load(tau, x, drives);
         self.touch_ground(&x[l.layer()]);
@@ -195,26 +213,10 @@ impl Plant {
     /// its end; then positions with the speeds of the end. First order.
     pub fn implicit_step(&mut self, tau: f64, h: f64, x: &mut [f64], drives: &[Drive], outside: &Outside) {
         let l = self.layout;
+        self.implicit = Some(h);
         // References of the end of the step, with which the drives work.
         self.load(if l.joints == 0 { tau } else { tau + h }, x, drives);
-        self.touch_ground(&x[l.layer()]);
-        let Self { model, data, feet, scratch, train, .. } = self;
-        if l.joints == 0 {
-            self.base_rate(x, outside);
-        } else {
-            let Scratch { v, force, acceleration, bias, .. } = scratch;
-            outside_force(model, data, feet, outside, x, force);
-            if let Some(train) = train {
-                let given = given(&l, x, &scratch.reference, outside.powered);
-                train.load(&given, data);
-                train.free_rotors(data);
-                model.dynamics_here(data, v, bias);
-                for (f, b) in force.iter_mut().zip(&*bias) {
-                    *f -= b;
-                }
-                train.solve(h, &given, model, data, force, acceleration);
-            }
-        }
+        self.accelerate(h, x, outside);
         let Self { model, scratch, train, .. } = self;
         let Scratch { q, v, acceleration, next, .. } = scratch;
         for (v, a) in v.iter_mut().zip(&acceleration[..6 + l.joints]) {
@@ -239,14 +241,19 @@ impl Plant {
 
     /// What the state looks like from outside.
     pub fn snapshot(&mut self, tau: f64, x: &[f64], drives: &[Drive], outside: &Outside) -> Snapshot {
-        let mut rate = std::mem::take(&mut self.scratch.rate);
-        self.rate(tau, x, drives, outside, &mut rate);
-        let l = self.layout;
-        let (speed, change) = (&x[l.speed()], &rate[l.speed()]);
+        match self.implicit {
+            None => {
+                let mut rate = std::mem::take(&mut self.scratch.rate);
+                self.rate(tau, x, drives, outside, &mut rate);
+                self.scratch.rate = rate;
+            }
+            Some(h) => self.try_acceleration(tau, h, x, drives, outside),
+        }
+        let (speed, change) = (&x[self.layout.speed()], &self.scratch.acceleration);
         let omega = Vector3::from_column_slice(&speed[3..6]);
         let acceleration =
             Vector3::from_column_slice(&change[..3]) + omega.cross(&Vector3::from_column_slice(&speed[..3]));
-        self.scratch.rate = rate;
+        let angular_acceleration = Vector3::from_column_slice(&change[3..6]);
         let Self { model, data, feet, soles, .. } = self;
         model.forward_kinematics_here(data);
         let mut foot_wrench = [Wrench { force: [0.0; 3], moment: [0.0; 3] }; 2];
@@ -265,6 +272,7 @@ impl Plant {
             feet: sole_places,
             com: model.cog(data),
             specific_force: acceleration - orientation(x).inverse() * multibody::GRAVITY,
+            angular_acceleration,
         }
     }
 
@@ -334,6 +342,43 @@ impl Plant {
         feet.update(model, data, environment, d, layer_rate);
     }
 
+    /// Acceleration over an implicit step of `h` \[s\] from the loaded state: drives and dry friction at its end.
+    fn accelerate(&mut self, h: f64, x: &[f64], outside: &Outside) {
+        let l = self.layout;
+        self.touch_ground(&x[l.layer()]);
+        let Self { model, data, feet, scratch, train, .. } = self;
+        let Some(train) = train.as_mut().filter(|_| l.joints > 0) else {
+            return self.base_rate(x, outside);
+        };
+        let Scratch { v, force, acceleration, bias, .. } = scratch;
+        outside_force(model, data, feet, outside, x, force);
+        let given = given(&l, x, &scratch.reference, outside.powered);
+        train.load(&given, data);
+        train.free_rotors(data);
+        model.dynamics_here(data, v, bias);
+        for (f, b) in force.iter_mut().zip(&*bias) {
+            *f -= b;
+        }
+        train.solve(h, &given, model, data, force, acceleration);
+        if train.elastic() > 0 {
+            model.accelerate(data, v, acceleration);
+            train.turn_along(model, data);
+        }
+    }
+
+    /// The acceleration that the next implicit step would find, and nothing moves.
+    fn try_acceleration(&mut self, tau: f64, h: f64, x: &[f64], drives: &[Drive], outside: &Outside) {
+        self.load(tau, x, drives);
+        if let Some(train) = &self.train {
+            self.scratch.steps.clear();
+            self.scratch.steps.extend(train.steps());
+        }
+        self.accelerate(h, x, outside);
+        if let Some(train) = &mut self.train {
+            train.restore(&self.scratch.steps);
+        }
+    }
+
     /// Acceleration of the torso while the joints follow their references (2.80).
     fn base_rate(&mut self, x: &[f64], outside: &Outside) {
         let Self { model, data, feet, scratch, train, .. } = self;
@@ -346,7 +391,7 @@ impl Plant {
         let (force, moment) = feet.total(model, data, &Vector3::zeros(), None);
         let base_force = at_base(x, &(force + push), &(moment + pushed.cross(&push)));
         let (m, bias) = model.base_dynamics_here(data, v, joint_acceleration);
-        let a = m.cholesky().map_or(Vector6::zeros(), |c| c.solve(&(base_force - bias)));
+        let a = m.cholesky().map_or(Vector6::repeat(f64::NAN), |c| c.solve(&(base_force - bias)));
         acceleration[..6].copy_from_slice(a.as_slice());
         acceleration[6..].copy_from_slice(joint_acceleration);
     }
@@ -382,6 +427,7 @@ impl Scratch {
             next: model.neutral(),
             rate: vec![0.0; layout.len()],
             seen: vec![f64::NAN; model.nq() + model.nv() + 3 * layout.nodes],
+            steps: Vec::with_capacity(model.n()),
         }
     }
 }

@@ -200,7 +200,7 @@ impl SimBackend {
         if !report.converged {
             self.event.get_or_insert((EventCode::ContactNotConverged, report.sweeps.into()));
         }
-        for event in self.plant.advance(self.cycles as f64 * self.scene.cycle) {
+        for event in self.plant.advance((self.cycles + 1) as f64 * self.scene.cycle) {
             let (code, object) = match *event {
                 environment::Event::Refused(i) => (EventCode::ObjectHeld, i),
                 environment::Event::Resumed(i) => (EventCode::ObjectResumed, i),
@@ -264,8 +264,10 @@ impl SimBackend {
         seen.imu = Imu {
             orientation: o.coords.into(),
             angular_velocity: omega.into(),
-            // The angular acceleration's share at an IMU away from the origin is left out: zero for Lola.
-            acceleration: (s.specific_force + omega.cross(&omega.cross(&imu))).into(),
+            acceleration: (s.specific_force
+                + s.angular_acceleration.cross(&imu)
+                + omega.cross(&omega.cross(&imu)))
+            .into(),
         };
         let report = self.sensor_set.measure(&seen, &mut self.sensors);
         self.sensors.power = u64::from(powered);

@@ -37,7 +37,7 @@ pub(crate) const SLOW: f64 = 1.0;
 pub struct Train {
     pub(crate) shafts: Vec<Shaft>,
     elastic: usize,
-    fault: Option<Fault>,
+    pub(crate) fault: Option<Fault>,
     /// What an implicit step adds to the mass matrix, one per drive.
     pub(crate) dampers: Vec<Damper>,
 }
@@ -58,6 +58,8 @@ pub enum Why {
     Linkage(OutOfDomain),
     /// The friction has no unique load torque.
     Friction(NoLoadTorque),
+    /// An implicit step did not find out whether the shaft sticks or turns.
+    Unsettled,
 }
 
 /// One motor with its gear.

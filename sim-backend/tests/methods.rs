@@ -166,3 +166,24 @@ fn sliding_gears_are_the_same_implicit_and_explicit() {
     let euler = distance(&run(Integrator::Euler, 2000, false), &exact);
     assert!(b < 0.01 * friction && (a / b - 2.0).abs() < 0.2, "{friction} {a} {b} {euler}");
 }
+
+/// The rotor behind an elastic gear is carried along by a stator that turns: the implicit step finds the motion of the
+/// explicit one, and comes nearer in proportion to its length.
+#[test]
+fn elastic_gears_are_the_same_implicit_and_explicit() {
+    let run = |integrator, steps| {
+        let mut robot = lola();
+        robot.drives.iter_mut().for_each(|d| d.friction = Friction::Free);
+        let mut rig = Rig::of(robot, 3, Environment::flat()).in_the_air();
+        let l = *rig.plant.layout();
+        rig.x[l.speed()][3..6].copy_from_slice(&[2.0, -3.0, 1.0]);
+        for j in 0..l.joints {
+            rig.x[l.speed().start + 6 + j] = if j % 2 == 0 { 1.0 } else { -1.0 };
+        }
+        rig.run(integrator, 0.0, 0.02, steps);
+        rig.x
+    };
+    let exact = run(Integrator::RungeKutta4, 4000);
+    let [a, b, c] = [2000, 4000, 8000].map(|n| distance(&run(Integrator::SemiImplicit, n), &exact));
+    assert!((a / b - 2.0).abs() < 0.2 && (b / c - 2.0).abs() < 0.2, "{a} {b} {c}");
+}

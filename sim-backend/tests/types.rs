@@ -120,5 +120,10 @@ fn brakes_hold_a_standing_robot() {
         }
         let carried: f64 = after.foot_wrench.iter().map(|w| w.force[2]).sum();
         assert!((carried - 60.885 * 9.81).abs() < 10.0, "type {depth}: {carried} N");
+        // What the sensors see of it is a robot that rests, too.
+        let mut sensors = messages::Sensors::default();
+        messages::frames::decode_sensors(&setup.robot.nodes, sim.step(None, None).0, &mut sensors);
+        let felt = sensors.imu.acceleration;
+        assert!((felt[2] - 9.81).abs() < 0.05 && felt[0].hypot(felt[1]) < 0.2, "type {depth}: {felt:?}");
     }
 }

@@ -32,7 +32,7 @@ impl Second {
     /// A configuration or robot is wrong, or the robot falls.
     pub fn record(setup: &Setup, begin: f64, cycles: usize) -> Result<Self, Box<dyn Error>> {
         let mut chain = Chain::new(setup)?;
-        let before = (0..(begin / setup.scene.cycle) as usize)
+        let before = (0..(begin / setup.scene.cycle).round() as usize)
             .fold(JointTargets::default(), |_, _| chain.step().joint_targets);
         let state = chain.robot().integrated().to_vec();
         let mut targets = vec![before];

@@ -58,7 +58,7 @@ pub struct Report {
 pub const SCALE: (f64, f64) = (0.1, 1e-3);
 
 /// \[m\] Height below which a node may carry force: a node at rest is at the ground only up to rounding.
-pub(crate) const TOUCHING: f64 = 1e-6;
+pub const TOUCHING: f64 = 1e-6;
 
 /// r-factors \[N s/m\] of a node, tangential and normal (2.49), (2.48) with the block of the inverse (errata 1).
 pub(crate) fn factors(e: &Matrix3<f64>, mobility: &Matrix3<f64>) -> (f64, f64) {

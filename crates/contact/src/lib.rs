@@ -23,7 +23,7 @@ mod prox;
 pub mod solver;
 mod velocity;
 
-pub use law::{Method, Report, Settings};
+pub use law::{Method, Report, Settings, TOUCHING};
 pub use layer::{Layer, Material};
 pub use memory::Memory;
 pub use pad::{Ground, Outcome, Pad, Twist};

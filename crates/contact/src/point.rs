@@ -12,6 +12,8 @@
 //! | g_N | height of the node above the ground | m | contact |
 //! | lambda | force of the ground on the node | N | contact |
 
+use crate::law::TOUCHING;
+
 /// Stiffness, damping and friction of a contact point.
 #[derive(Clone, Copy, Debug)]
 pub struct Law {
@@ -46,10 +48,6 @@ pub struct Answer {
     /// Which case it was.
     pub state: State,
 }
-
-/// Height \[m\] below which a node counts as touching: a node that rests on the ground is there only up to rounding, and
-/// must not lose its force for a step (errata 1, algorithm 1 line 4).
-const TOUCHING: f64 = 1e-6;
 
 /// Solves the contact law for one node: lambda and d' from d, w and g_N.
 pub fn solve(law: &Law, d: [f64; 3], w: [f64; 3], gap: f64) -> Answer {

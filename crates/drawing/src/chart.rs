@@ -33,7 +33,6 @@ pub struct Chart {
     marks: Vec<Mark>,
     legend: Vec<(String, Key)>,
     equal: bool,
-    y_axis: bool,
     logarithmic: bool,
     height: f32,
     least_height: f64,
@@ -57,7 +56,6 @@ impl Chart {
             marks: Vec::new(),
             legend: Vec::new(),
             equal: false,
-            y_axis: true,
             logarithmic: false,
             height: 300.0,
             least_height: 0.0,
@@ -85,12 +83,6 @@ impl Chart {
     /// Both axes logarithmic; points that are not positive are left out.
     pub fn logarithmic(mut self) -> Self {
         self.logarithmic = true;
-        self
-    }
-
-    /// Without numbers on the y axis.
-    pub fn without_y_axis(mut self) -> Self {
-        self.y_axis = false;
         self
     }
 
@@ -239,9 +231,6 @@ impl Chart {
             let x = view.place([x, 0.0])[0];
             canvas.line(&[[x, top], [x, bottom]], pen);
             canvas.text([x, bottom + 27.0], &label, TICK, Anchor::Middle);
-        }
-        if !self.y_axis {
-            return;
         }
         for (y, label) in self.ticks(view.ranges[1], (((bottom - top) / 55.0) as usize).max(2)) {
             let y = view.place([0.0, y])[1];

@@ -52,11 +52,6 @@ impl Process {
             Self::Observer => "observer",
         }
     }
-
-    /// The process of that name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|p| p.name() == name)
-    }
 }
 
 /// One row of the table.

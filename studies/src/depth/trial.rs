@@ -18,8 +18,8 @@ pub struct Trial {
     pub cpu_s: f64,
     /// Whether the robot fell.
     pub fell: bool,
-    /// Whether the equations of motion diverged.
-    diverged: bool,
+    /// Whether the simulation itself failed: it diverged, or a drive, the contact or the integrator left its model.
+    lost: bool,
     /// \[rad\] Inclination about x and y.
     inclination: Vec<[f64; 2]>,
     /// \[N\] Force on each foot.
@@ -34,6 +34,10 @@ pub struct Trial {
     position: [f64; 3],
 }
 
+/// Events after which a simulation says nothing about the robot.
+const LOST: [EventCode; 4] =
+    [EventCode::Diverged, EventCode::DriveFault, EventCode::ContactNotConverged, EventCode::IntegratorGaveUp];
+
 impl Trial {
     /// Simulates the first `cycles` bus cycles of a scene, everything in the loop.
     ///
@@ -47,7 +51,7 @@ impl Trial {
             method,
             cpu_s: 0.0,
             fell: false,
-            diverged: false,
+            lost: false,
             inclination: Vec::with_capacity(cycles),
             force: Vec::with_capacity(cycles),
             angle: Vec::with_capacity(cycles * setup.robot.joints.len()),
@@ -58,7 +62,7 @@ impl Trial {
         let begun = processor_time();
         for _ in 0..cycles {
             let cycle = chain.step();
-            trial.diverged |= cycle.events.iter().any(|(_, code, _)| *code == EventCode::Diverged);
+            trial.lost |= cycle.events.iter().any(|(_, code, _)| LOST.contains(code));
             let sim = cycle.sim_state;
             trial.add(&setup, &sim);
             if method.depth > 1 {
@@ -97,11 +101,11 @@ impl Trial {
         self.current.extend_from_slice(current);
     }
 
-    /// How far `other` is from this in one output, in its unit; infinite if either diverged, if only one of them fell, or
+    /// How far `other` is from this in one output, in its unit; infinite if either is lost or fell, or
     /// if one of them has no such output.
     pub fn distance(&self, other: &Self, output: Output) -> f64 {
         let missing = output.needs_motors() && (self.current.is_empty() || other.current.is_empty());
-        if missing || self.diverged || other.diverged || self.fell != other.fell {
+        if missing || self.lost || other.lost || self.fell || other.fell {
             return f64::INFINITY;
         }
         match output {
