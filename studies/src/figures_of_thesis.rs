@@ -108,8 +108,8 @@ pub struct Comparison {
     pub walks: [Walk; 2],
     /// What is compared.
     pub judged: String,
-    /// \[1\] 1 - with/without; 1 if the robot falls without, nothing if it falls with it.
-    pub reduction: f64,
+    /// \[1\] 1 - with/without; none if the robot falls in either walk, of which there is no figure then.
+    pub reduction: Option<f64>,
     /// \[1\] What the text promises at least.
     pub promised: f64,
     /// Whether it is kept.
@@ -162,8 +162,7 @@ fn compare(root: &Path, case: &Case, depth: u8, out: &Path) -> Result<Comparison
     };
     let walks = [walk(0)?, walk(1)?];
     let [with, without] = [&walks[0], &walks[1]].map(case.judged);
-    let saved = walks[1].fell && !walks[0].fell;
-    let reduction = if saved { 1.0 } else { 1.0 - with / without };
+    let reduction = (!walks.iter().any(|w| w.fell)).then_some(1.0 - with / without);
     let picture = out.join(format!("figure_{}.png", case.figure.replace('.', "_")));
     let about =
         format!("{}, {:.1} km/h, model type {}", setup.robot.name, 3.6 * case.forward, setup.scene.depth);
@@ -174,7 +173,7 @@ fn compare(root: &Path, case: &Case, depth: u8, out: &Path) -> Result<Comparison
         judged: case.judged_name.into(),
         reduction,
         promised: case.promised,
-        kept: reduction > case.promised,
+        kept: reduction.is_some_and(|r| r > case.promised),
         picture,
         walks,
     })
@@ -333,12 +332,13 @@ pub fn table(report: &Report) -> String {
 
 /// What became of the figure that is compared.
 fn change(f: &Comparison) -> String {
-    let [with, without] = [&f.walks[0], &f.walks[1]];
-    match (with.fell, without.fell) {
-        (true, _) => format!("unknown: falls {}", with.name),
-        (_, true) => format!("beyond measure: falls {}", without.name),
-        _ if f.reduction < 0.0 => format!("{:.0} % larger", -100.0 * f.reduction),
-        _ => format!("{:.0} % smaller", 100.0 * f.reduction),
+    match f.reduction {
+        Some(r) if r < 0.0 => format!("{:.0} % larger", -100.0 * r),
+        Some(r) => format!("{:.0} % smaller", 100.0 * r),
+        None => {
+            let fell: Vec<&str> = f.walks.iter().filter(|w| w.fell).map(|w| w.name.as_str()).collect();
+            format!("not measured: falls {}", fell.join(" and "))
+        }
     }
 }
 
@@ -357,7 +357,7 @@ mod tests {
         let report = run(&config::root(None), Some("4.17"), 1, &out).unwrap();
         let f = &report.figures[0];
         assert!(f.walks.iter().all(|walk| !walk.fell), "{f:#?}");
-        assert!(f.kept && f.reduction > 0.45, "{f:#?}");
+        assert!(f.kept && f.reduction.is_some_and(|r| r > 0.45), "{f:#?}");
         assert!(f.walks[0].cost_rad2_s < f.walks[1].cost_rad2_s);
         assert!(f.picture.is_file());
         std::fs::remove_dir_all(out).unwrap();
