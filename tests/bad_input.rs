@@ -37,7 +37,7 @@ fn one_error(said: &Said, texts: &[&str]) {
 fn a_misspelt_key_is_named_with_its_line_and_the_nearest_one() {
     let site = Site::new(EXE);
     site.edit("gaits/lola.toml", "swing_height", "swing_heigth");
-    let texts = ["gaits/lola.toml", "line 6", "step.swing_heigth", "unknown key", "`swing_height`"];
+    let texts = ["gaits/lola.toml", "line 8", "step.swing_heigth", "unknown key", "`swing_height`"];
     refused(&site, "stand", &texts);
 }
 

@@ -10,7 +10,7 @@ use std::path::Path;
 
 const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
 
-/// Standing up, three steps and a push on the way.
+/// Standing up, three steps, a point to look at, an order that the head refuses and a push on the way.
 const SCENE: &str = "
 [[command]]
 time = 0.2
@@ -19,6 +19,16 @@ topic = \"walk/stand\"
 time = 2.4
 topic = \"walk/velocity\"
 forward = 0.278
+[[command]]
+time = 2.6
+topic = \"head/fixate\"
+x = 2.0
+y = 1.0
+z = 1.0
+[[command]]
+time = 4.0
+topic = \"head/joints\"
+pan = 2.0
 [[push]]
 time = 4.5
 duration = 0.1

@@ -5,6 +5,7 @@ pub mod fit_friction;
 pub mod param;
 pub mod plot;
 pub mod run;
+pub mod scorecard;
 pub mod sim;
 pub mod topic;
 

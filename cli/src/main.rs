@@ -1,5 +1,7 @@
 //! The command `gangwerk`. Without arguments it shows the demonstration scene.
 
+mod study;
+
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -83,13 +85,45 @@ enum Task {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// How near the walk of a log came to the limits of its contact: zero-moment point, foot rotation, wrench cone.
+    Stability {
+        /// An MCAP file of a simulated robot.
+        log: PathBuf,
+        /// Where the pictures go; default: beside the log.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Coefficient of friction; default: that of the log's robot in the configuration.
+        #[arg(long, value_name = "MU")]
+        friction: Option<f64>,
+        /// One JSON object on standard output instead of a table.
+        #[arg(long)]
+        json: bool,
+    },
     /// Speed against accuracy, and where methods fail.
     Study {
         #[command(subcommand)]
-        what: StudyTask,
+        what: study::Task,
         /// End with one JSON object on standard output instead of a table.
         #[arg(long, global = true)]
         json: bool,
+    },
+    /// Walk everything the robots are to be able to do, and hold it against what is demanded and what others reached.
+    Scorecard {
+        /// Only entries whose name contains this, for example: "2 km/h", push.
+        #[arg(long, value_name = "NAME")]
+        only: Option<String>,
+        /// Only bus cycles of 1 ms, and pushes at two instants.
+        #[arg(long)]
+        quick: bool,
+        /// Seed of everything random.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// One JSON object on standard output instead of a table.
+        #[arg(long)]
+        json: bool,
+        /// Where scorecard.txt, scorecard.json, and logs and pictures of some of the walks go.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
     },
     /// Fit friction parameters of a gear to a table of efficiencies, with the older model beside the newer one.
     FitFriction {
@@ -176,59 +210,6 @@ enum TopicTask {
     },
 }
 
-#[derive(Subcommand)]
-enum StudyTask {
-    /// Which impulse the walking robot survives.
-    Push {
-        /// Only this scene; default: walking in place and at 1 km/h.
-        #[arg(long)]
-        scene: Option<String>,
-        /// How many instants of a stride are tried.
-        #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..=1000))]
-        instants: u64,
-    },
-    /// Which method is cheapest for a given accuracy: charts of processor time against error.
-    Accuracy {
-        /// Only these charts: flight, touchdown, slip, stiction, joint, solver, ...
-        #[arg(long, value_name = "PART")]
-        only: Option<String>,
-        /// What MuJoCo found in the same scenes; `sh tests/peers/mujoco.sh --points FILE` writes it.
-        #[arg(long, value_name = "FILE")]
-        peers: Option<PathBuf>,
-        /// Where pictures and accuracy.json go.
-        #[arg(long, value_name = "DIR", default_value = "runs/study/accuracy")]
-        out: PathBuf,
-    },
-    /// How fast simulation, planner and stabilizer are, and how accurate at that speed.
-    Speed,
-    /// Where methods fail: predicted and measured limits, and how each failure is reported.
-    Limits,
-    /// Figures of the thesis that compare two walks: 5.2, 4.17, 9.1.
-    Thesis {
-        /// Only this figure.
-        #[arg(long)]
-        figure: Option<String>,
-        /// Type of the model: 1, reduced; 2, with motors; 3, with elastic gears.
-        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
-        depth: u8,
-        /// Where the pictures go.
-        #[arg(long, value_name = "DIR", default_value = "runs/thesis")]
-        out: PathBuf,
-    },
-    /// How well the processes keep real time, beside cyclictest before and after.
-    Realtime {
-        /// The scene that is run.
-        #[arg(long, default_value = "walk_60s")]
-        scene: String,
-        /// How long cyclictest runs \[s\]; 0: not at all.
-        #[arg(long, default_value_t = 20)]
-        cyclictest: u64,
-        /// Where the log goes.
-        #[arg(long, value_name = "DIR", default_value = "runs/realtime")]
-        out: PathBuf,
-    },
-}
-
 fn main() -> ExitCode {
     tracing_subscriber::fmt().with_writer(std::io::stderr).without_time().with_target(false).init();
     let arguments = Arguments::parse();
@@ -282,7 +263,16 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             draw(&log, &out)?;
             Ok(ExitCode::SUCCESS)
         }
-        Task::Study { what, json } => study(&config, what, json),
+        Task::Stability { log, out, friction, json } => {
+            let out = out.unwrap_or_else(|| log.with_extension(""));
+            study::stability(&config, &log, &out, friction, json)
+        }
+        Task::Study { what, json } => study::run(&config, what, json),
+        Task::Scorecard { only, quick, seed, json, out } => {
+            let order = studies::scorecard::Order { config: &config, only: only.as_deref(), quick, seed };
+            cli::scorecard::main(&order, json, out.as_deref())?;
+            Ok(ExitCode::SUCCESS)
+        }
         Task::FitFriction { file, out, json } => {
             fit_friction(&file, out, json)?;
             Ok(ExitCode::SUCCESS)
@@ -311,7 +301,7 @@ fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
             planner::daemon::main(&p.run, Box::new(|s: &Space| commands("planner", &[Domain::Walk], s)))?;
         }
         Task::Controller(p) => {
-            let connect = |s: &Space| commands("controller", &[Domain::Stabilize], s);
+            let connect = |s: &Space| commands("controller", &[Domain::Stabilize, Domain::Head], s);
             controller::daemon::main(&p.run, Box::new(connect))?;
         }
         Task::Lowlevel(p) => lowlevel::daemon::main(&p.run)?,
@@ -372,87 +362,6 @@ fn sim(
         println!("{}", cli::figures::table(&figures));
     }
     Ok(ExitCode::SUCCESS)
-}
-
-fn study(config: &std::path::Path, what: StudyTask, json: bool) -> Result<ExitCode, Box<dyn Error>> {
-    use studies::{cycles, figures_of_thesis, limits, push, speed};
-    let (object, table) = match what {
-        StudyTask::Accuracy { only, peers, out } => {
-            let report = accuracy_study(config, only.as_deref(), peers.as_deref(), &out)?;
-            (serde_json::to_string(&report)?, studies::accuracy::table(&report))
-        }
-        StudyTask::Push { scene, instants } => {
-            let report = push::run(config, scene.as_deref(), instants as usize)?;
-            (serde_json::to_string(&report)?, push::table(&report))
-        }
-        StudyTask::Limits => {
-            let report = limits::run(config)?;
-            (serde_json::to_string(&report)?, limits::table(&report))
-        }
-        StudyTask::Speed => {
-            let report = speed::run(config)?;
-            (serde_json::to_string(&report)?, speed::table(&report))
-        }
-        StudyTask::Thesis { figure, depth, out } => {
-            let report = figures_of_thesis::run(config, figure.as_deref(), depth, &out)?;
-            (serde_json::to_string(&report)?, figures_of_thesis::table(&report))
-        }
-        StudyTask::Realtime { scene, cyclictest, out } => {
-            let report = realtime_study(config, scene, cyclictest, &out)?;
-            (serde_json::to_string(&report)?, cycles::table(&report))
-        }
-    };
-    println!("{}", if json { object } else { table });
-    Ok(ExitCode::SUCCESS)
-}
-
-/// The charts of accuracy, with progress on standard error.
-fn accuracy_study(
-    config: &std::path::Path,
-    only: Option<&str>,
-    peers: Option<&std::path::Path>,
-    out: &std::path::Path,
-) -> Result<studies::accuracy::Report, Box<dyn Error>> {
-    let peers = peers.map(studies::accuracy::Peers::load).transpose()?.unwrap_or_default();
-    let bar = indicatif::ProgressBar::new(0);
-    bar.set_style(indicatif::ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}")?);
-    let report = studies::accuracy::run(config, &peers, out, only, |done, of, part| {
-        bar.set_length(of as u64);
-        bar.set_position(done as u64);
-        bar.set_message(part.to_string());
-    })?;
-    bar.finish_and_clear();
-    Ok(report)
-}
-
-/// cyclictest, the scene with all processes, cyclictest again: on the core and with the priority of the joint loop.
-fn realtime_study(
-    config: &std::path::Path,
-    scene: String,
-    seconds: u64,
-    out: &std::path::Path,
-) -> Result<studies::cycles::Report, Box<dyn Error>> {
-    let (setup, choice) = cli::choose::load(config, &scene, true)?;
-    let row = setup.system.process(messages::Process::Lowlevel);
-    let (core, priority) = row.map_or((0, 0), |row| (row.core.unwrap_or(0), row.priority));
-    let cyclictest = || {
-        let found = (seconds > 0).then(|| studies::cycles::cyclictest(core, priority, seconds))?;
-        found.inspect_err(|error| tracing::warn!("{error}")).ok()
-    };
-    std::fs::create_dir_all(out)
-        .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
-    let log = out.join(format!("{scene}.mcap"));
-    let before = cyclictest();
-    let (mode, dir, config) = (Mode::RealTime, cli::RUN_DIR.into(), config.to_path_buf());
-    let method = choice.map(|choice| choice.method);
-    cli::run::run(&Order { mode, scene, method, config, dir, log: Some(log.clone()), progress: false })?;
-    let after = cyclictest();
-    let fell = cli::run::figures_of(&log, &setup)?.fell;
-    Ok(studies::cycles::Report {
-        cyclictest_us: [before, after],
-        fell,
-        processes: studies::cycles::of_log(&log)?,
-    })
 }
 
 fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Error>> {

@@ -330,7 +330,7 @@ pub fn figures_of(log: &Path, setup: &Setup) -> Result<Figures, Box<dyn Error>> 
             gatherer.add(sim, state);
         }
     }
-    Ok(gatherer.figures(&setup.scene, 0.0, Some(log.display().to_string())))
+    Ok(gatherer.figures(setup, 0.0, Some(log.display().to_string())))
 }
 
 /// A signal's name for the summary.

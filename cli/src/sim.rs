@@ -45,7 +45,7 @@ pub fn run(
     if let Some(record) = record {
         record.finish()?;
     }
-    Ok(gatherer.figures(&setup.scene, cpu, log.map(|p| p.display().to_string())))
+    Ok(gatherer.figures(setup, cpu, log.map(|p| p.display().to_string())))
 }
 
 /// Writes what the logger would write.

@@ -6,10 +6,11 @@
 use std::collections::BTreeMap;
 
 use drives::{
-    Ankle, AnkleGeometry, Elasticity, Friction, HarmonicFriction, Knee, KneeGeometry, Motor, OutOfDomain,
-    ScrewFriction, Transmission,
+    Ankle, AnkleGeometry, Elasticity, Friction, HarmonicFriction, JointControl, Knee, KneeGeometry, Motor,
+    OutOfDomain, ScrewFriction, Transmission,
 };
 
+use crate::joint_control;
 use crate::robot::{Joint, joint_index};
 use crate::section::{NOT_NEGATIVE, POSITIVE, Section, nearest};
 
@@ -38,6 +39,8 @@ pub struct Drive {
     pub friction: Friction,
     /// Elasticity of the gear at its output; rigid if there is none.
     pub elasticity: Option<Elasticity>,
+    /// How it is controlled: as the row says, or the robot, or the scene instead of both.
+    pub control: JointControl,
 }
 
 /// `[motor.NAME]`.
@@ -73,7 +76,10 @@ const TRIED: usize = 17;
 pub(crate) fn drives(top: &Section<'_, '_>, joints: &[Joint]) -> Vec<Drive> {
     let motors = types(top, "motor", MotorType::build);
     let gears = types(top, "gear", GearType::build);
-    let drives = top.tables("drive", |row| Drive::build(row, joints, &motors, &gears));
+    let needed = top.has("drive") || top.has("joint_control");
+    let control = if needed { top.table("joint_control", joint_control::build) } else { None };
+    let control = control.unwrap_or(joint_control::NONE);
+    let drives = top.tables("drive", |row| Drive::build(row, joints, &motors, &gears, control));
     if !drives.is_empty() {
         check_order(top, &drives, joints);
     }
@@ -174,7 +180,10 @@ impl Drive {
         joints: &[Joint],
         motors: &BTreeMap<String, MotorType>,
         gears: &BTreeMap<String, GearType>,
+        control: JointControl,
     ) -> Self {
+        let own =
+            if row.has("joint_control") { row.table("joint_control", joint_control::build) } else { None };
         let bought = named(row, "motor", motors).unwrap_or(MotorType::NONE);
         let train = Train::build(row, joints, gears);
         Self {
@@ -189,6 +198,7 @@ impl Drive {
             current_limit: row.number("current_limit", "A", POSITIVE),
             friction: train.friction,
             elasticity: train.elasticity,
+            control: own.unwrap_or(control),
         }
     }
 }

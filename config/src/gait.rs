@@ -15,8 +15,47 @@ pub struct Gait {
     pub model: Model,
     /// What may be commanded.
     pub limits: Limits,
+    /// Steps over obstacles and onto platforms; none: the robot stays on level ground.
+    pub obstacles: Option<Obstacles>,
     /// Stabilizing control.
     pub control: Control,
+    /// \[1\] How far an arm's centre of gravity moves with that of the opposite leg; none: arms hang still.
+    pub arm_swing: Option<f64>,
+    /// How far the toe joints bend when the heel leaves the ground; none: toes stay straight.
+    pub toes: Option<Bend>,
+    /// How far a foot rolls over its front edge before it leaves the ground; none: it leaves it flat.
+    pub forefoot_roll: Option<Bend>,
+    /// How far the toes point up when the heel touches the ground; none: it lands flat.
+    pub heel_strike: Option<Bend>,
+}
+
+/// An angle that grows with the length of a step (4.29).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bend {
+    /// \[rad\] The largest one.
+    pub angle: f64,
+    /// \[m\] Lengths of a step up to which it is zero, and from which it is largest.
+    pub length: [f64; 2],
+}
+
+impl Bend {
+    /// \[rad\] After a step of `length` \[m\]; zero for a step backwards (4.29), clamped above as well.
+    pub fn at(&self, length: f64) -> f64 {
+        let [none, all] = self.length;
+        self.angle * ((length - none) / (all - none)).clamp(0.0, 1.0)
+    }
+
+    fn build(table: &Section<'_, '_>) -> Self {
+        let bend = Self {
+            angle: table.number("angle", "rad", 0.0..=1.5),
+            length: table.interval("length", "m", NOT_NEGATIVE),
+        };
+        let [none, all] = bend.length;
+        if all - none < 1e-6 {
+            table.problem("length", format!("[{none}, {all}] m: the second one must be larger"));
+        }
+        bend
+    }
 }
 
 /// Steps and feet.
@@ -63,6 +102,8 @@ pub struct Model {
     pub spacing: f64,
     /// \[s\] Time for raising or lowering the body while standing.
     pub stand_time: f64,
+    /// \[1\] Most friction a plan may ask of the ground.
+    pub friction: f64,
 }
 
 /// Ranges of walking commands (thesis 4.6.1); outside of them a command is refused.
@@ -76,6 +117,23 @@ pub struct Limits {
     pub turn: [f64; 2],
     /// \[s\] Step duration.
     pub duration: [f64; 2],
+}
+
+/// Steps over obstacles and onto platforms (thesis 4.3.3, 4.3.4).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Obstacles {
+    /// \[m\] Distance of a foothold from an obstacle or an edge.
+    pub distance: f64,
+    /// \[m\] Height over it in passing.
+    pub clearance: f64,
+    /// \[m\] Highest one.
+    pub height: f64,
+    /// \[m\] Longest step over or onto one.
+    pub length: f64,
+    /// \[rad\] Pitch, toes down, of a foot that is lifted high while it is still far behind: its ankle bends less.
+    pub tilt: f64,
+    /// \[s\] Duration of such a step.
+    pub duration: f64,
 }
 
 /// Gains of the stabilizer (thesis chapter 5).
@@ -105,7 +163,15 @@ pub struct Control {
     pub modification_limit: [f64; 3],
     /// \[m/s, rad/s, rad/s\] Limits of its rate.
     pub modification_rate: [f64; 3],
-    /// \[1/s\] K_x: drift compensation of the inverse kinematics (feedback path 1).
+    /// \[m/s, m\] How fast and how far a foot is lowered that finds no ground at its time.
+    pub search: [f64; 2],
+    /// \[1\] How much of the error of the upper body's inclination the swing foot makes good for (4.9).
+    pub inclination_compensation: f64,
+    /// \[1\] Share of the soles' deformation under the planned forces that is part of the foot trajectories (4.9).
+    pub planned_deformation: f64,
+    /// \[1\] Feedback path of figure 5.8: 1 the joint targets of the last cycle, 2 the measured joint angles.
+    pub feedback: u64,
+    /// \[1/s\] K_x: drift compensation (feedback path 1) or position control (path 2) of the inverse kinematics.
     pub drift_gain: f64,
     /// \[1/s\] alpha_N: weight of the null-space cost H (5.38).
     pub null_space_gain: f64,
@@ -129,7 +195,12 @@ impl Gait {
                 step: top.table("step", Step::build).unwrap_or_default(),
                 model: top.table("model", Model::build).unwrap_or_default(),
                 limits: top.table("limits", Limits::build).unwrap_or_default(),
+                obstacles: top.has("obstacles").then(|| top.table("obstacles", Obstacles::build)).flatten(),
                 control: top.table("control", Control::build).unwrap_or_default(),
+                arm_swing: top.has("arm_swing").then(|| top.number("arm_swing", "1", 0.0..=3.0)),
+                toes: bend(top, "toes"),
+                forefoot_roll: bend(top, "forefoot_roll"),
+                heel_strike: bend(top, "heel_strike"),
             };
             gait.check(top);
             gait
@@ -154,6 +225,15 @@ impl Gait {
                 format!("swing_lag + swing_lead = {sum} s leave nothing of a swing of {swing:.3} s"),
             );
         }
+        if let Some(o) = &self.obstacles {
+            let [least, most] = limits.duration;
+            if o.duration < least || o.duration > most {
+                top.problem(
+                    "obstacles",
+                    format!("duration {} s lies outside of limits.duration", o.duration),
+                );
+            }
+        }
         for (i, [speed, length, duration]) in step.by_speed.iter().enumerate() {
             if *length < limits.length[0] || *length > limits.length[1] {
                 top.problem(
@@ -176,6 +256,11 @@ impl Gait {
             }
         }
     }
+}
+
+/// An optional table.
+fn bend(top: &Section<'_, '_>, key: &str) -> Option<Bend> {
+    top.has(key).then(|| top.table(key, Bend::build)).flatten()
 }
 
 impl Step {
@@ -218,6 +303,7 @@ impl Model {
             zmp_margin: table.number("zmp_margin", "m", 0.0..=0.2),
             spacing: table.number("spacing", "s", 0.005..=0.5),
             stand_time: table.number("stand_time", "s", 0.1..=20.0),
+            friction: table.number("friction", "", POSITIVE),
         }
     }
 }
@@ -229,6 +315,19 @@ impl Limits {
             side: table.interval("side", "m", -1.0..=1.0),
             turn: table.interval("turn", "rad", -1.0..=1.0),
             duration: table.interval("duration", "s", 0.2..=20.0),
+        }
+    }
+}
+
+impl Obstacles {
+    fn build(table: &Section<'_, '_>) -> Self {
+        Self {
+            distance: table.number("distance", "m", 0.0..=0.2),
+            clearance: table.number("clearance", "m", 0.0..=0.2),
+            height: table.number("height", "m", 0.0..=0.5),
+            length: table.number("length", "m", POSITIVE),
+            tilt: table.number("tilt", "rad", 0.0..=0.8),
+            duration: table.number("duration", "s", POSITIVE),
         }
     }
 }
@@ -248,6 +347,10 @@ impl Control {
             position_gain: table.number("position_gain", "1/s", 0.0..=500.0),
             modification_limit: table.numbers("modification_limit", "m, rad, rad", 0.0..=1.0),
             modification_rate: table.numbers("modification_rate", "m/s, rad/s, rad/s", 0.0..=20.0),
+            search: table.numbers("search", "m/s, m", 0.0..=1.0),
+            inclination_compensation: table.number("inclination_compensation", "", 0.0..=1.0),
+            planned_deformation: table.number("planned_deformation", "", 0.0..=1.0),
+            feedback: table.integer("feedback", 1..=2),
             drift_gain: table.number("drift_gain", "1/s", 0.0..=500.0),
             null_space_gain: table.number("null_space_gain", "", 0.0..=1e3),
             force_filter: table.number("force_filter", "s", 0.0..=1.0),

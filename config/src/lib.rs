@@ -16,6 +16,8 @@ pub mod efficiency;
 mod error;
 mod file;
 pub mod gait;
+mod joint_control;
+pub mod limbs;
 pub mod parameters;
 pub mod robot;
 pub mod scene;
@@ -26,6 +28,7 @@ pub mod system;
 pub mod terrain;
 pub mod timeline;
 pub mod tolerance;
+pub mod unknown;
 
 pub use error::{ConfigError, Problem};
 pub use file::root;

@@ -9,6 +9,7 @@ pub use crate::drive::Drive;
 use crate::drive::drives;
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
+use crate::limbs::{Arms, Head};
 use crate::section::{self, POSITIVE, Section};
 
 /// A robot: its URDF and everything else that is data about it.
@@ -34,6 +35,10 @@ pub struct Robot {
     pub poses: BTreeMap<String, Vec<f64>>,
     /// Local controllers of the field bus: the joints (indices) each one drives.
     pub nodes: Vec<Vec<usize>>,
+    /// Camera head, if it has one.
+    pub head: Option<Head>,
+    /// Arms that swing, if it has them.
+    pub arms: Option<Arms>,
     /// Drives, one per joint in the joints' order; empty for a robot of ideal drives.
     pub drives: Vec<Drive>,
 }
@@ -155,10 +160,21 @@ impl Robot {
             imu: top.numbers("imu", "m", -2.0..=2.0),
             poses: poses(top, &joints),
             nodes: nodes(top, &names),
+            head: optional(top, "head", |table| Head::build(table, &joints)),
+            arms: optional(top, "arms", |table| Arms::build(table, &joints)),
             drives: drives(top, &joints),
             joints,
         }
     }
+}
+
+/// A table that may be missing.
+fn optional<T>(
+    top: &Section<'_, '_>,
+    key: &str,
+    build: impl FnOnce(&Section<'_, '_>) -> Option<T>,
+) -> Option<T> {
+    if top.has(key) { top.table(key, build).flatten() } else { None }
 }
 
 impl Joint {

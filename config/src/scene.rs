@@ -2,16 +2,19 @@
 
 use std::path::Path;
 
+use drives::JointControl;
 use messages::Command;
 use messages::command::{Domain, PushCommand};
 use messages::command_text::{COMMANDS, CommandInfo};
 
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
+use crate::joint_control;
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 use crate::sensors::Sensors;
 use crate::terrain::{self, TerrainObject};
 use crate::tolerance::{Method, Tolerance};
+use crate::unknown::Unknown;
 
 /// `scenes/NAME.toml`.
 #[derive(Clone, Debug)]
@@ -47,6 +50,10 @@ pub struct Scene {
     pub objects: Vec<TerrainObject>,
     /// Errors of the sensors.
     pub sensors: Sensors,
+    /// How all drives are controlled, instead of what the robot says.
+    pub joint_control: Option<JointControl>,
+    /// What the robot's software is not told.
+    pub unknown: Unknown,
     /// Commands by time \[s\], ascending.
     pub commands: Vec<(f64, Command)>,
     /// Pushes at the torso by time \[s\], ascending.
@@ -114,6 +121,11 @@ impl Scene {
             seed: top.integer("seed", 0..=u64::MAX),
             objects: top.tables("object", terrain::object),
             sensors: sensors(top),
+            joint_control: top
+                .has("joint_control")
+                .then(|| top.table("joint_control", joint_control::build))
+                .flatten(),
+            unknown: unknown(top),
             commands: top.tables("command", command),
             pushes: top.tables("push", push),
         };
@@ -186,12 +198,18 @@ fn sensors(top: &Section<'_, '_>) -> Sensors {
     named.flatten().unwrap_or_default()
 }
 
+/// `[unknown]`, if it is there.
+fn unknown(top: &Section<'_, '_>) -> Unknown {
+    let named = top.has("unknown").then(|| top.table("unknown", Unknown::build));
+    named.flatten().unwrap_or_default()
+}
+
 /// One `[[command]]`: `time`, the topic as `gangwerk topic` names it, and the topic's fields.
 fn command(row: &Section<'_, '_>) -> (f64, Command) {
     let time = row.number("time", "s", NOT_NEGATIVE);
     let scripted: Vec<&CommandInfo> = COMMANDS
         .iter()
-        .filter(|info| matches!(info.example().address().0, Domain::System | Domain::Walk))
+        .filter(|info| matches!(info.example().address().0, Domain::System | Domain::Walk | Domain::Head))
         .collect();
     let names: Vec<&str> = scripted.iter().map(|info| info.name).collect();
     let info = scripted[row.word("topic", &names)];

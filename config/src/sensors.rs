@@ -271,7 +271,7 @@ impl PerJoint {
         own.or(self.all)
     }
 
-    fn build(table: &Section<'_, '_>, key: &str, unit: &str, range: RangeInclusive<f64>) -> Self {
+    pub(crate) fn build(table: &Section<'_, '_>, key: &str, unit: &str, range: RangeInclusive<f64>) -> Self {
         if !table.has(key) {
             return Self::default();
         }

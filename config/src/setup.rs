@@ -31,7 +31,10 @@ impl Setup {
         let mut hash = Hash::default();
         let path = root.join("scenes").join(scene).with_extension("toml");
         let scene = Scene::load_hashed(&path, &mut hash)?;
-        let robot = Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut hash)?;
+        let mut robot = Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut hash)?;
+        if let Some(control) = scene.joint_control {
+            robot.drives.iter_mut().for_each(|drive| drive.control = control);
+        }
         let gait =
             Gait::load_hashed(&root.join("gaits").join(&scene.gait).with_extension("toml"), &mut hash)?;
         let system = System::load_hashed(&root.join("system.toml"), &mut hash)?;
@@ -79,6 +82,22 @@ impl Setup {
         for (key, text) in scene.sensors.unknown_joints(&scene.robot, &joints) {
             note(key, text);
         }
+        let to_head = |c: &Command| c.address().0 == messages::command::Domain::Head;
+        if let Some(i) = scene.commands.iter().position(|(_, c)| to_head(c) && self.robot.head.is_none()) {
+            let name = scene.commands[i].1.name();
+            note(format!("command[{i}]"), format!("{name}: robot {} has no [head]", scene.robot));
+        }
+        if self.gait.arm_swing.is_some() && self.robot.arms.is_none() {
+            let (gait, robot) = (&scene.gait, &scene.robot);
+            note("gait".to_owned(), format!("gait {gait} has arm_swing, but robot {robot} has no [arms]"));
+        }
+        for (name, _) in &scene.unknown.joint_offset.own {
+            if !joints.contains(&name.as_str()) {
+                let near = nearest(name, &joints).unwrap_or("none");
+                let text = format!("robot {} has no joint `{name}`; the nearest is `{near}`", scene.robot);
+                note("unknown.joint_offset_rad".to_owned(), text);
+            }
+        }
         problems
     }
 
@@ -97,6 +116,15 @@ impl Setup {
                 let most = self.gait.step.by_speed.last().map_or(0.0, |row| row[0]);
                 (v.forward.abs() > most)
                     .then(|| format!("forward = {} is beyond by_speed's {most} m/s", v.forward))
+            }
+            Command::Platform(p) => {
+                let most = self.gait.obstacles.map_or(0.0, |o| o.height);
+                (p.height.abs() > most)
+                    .then(|| format!("height = {} is beyond obstacles.height = {most} m", p.height))
+            }
+            Command::Distance(d) => {
+                let most = self.gait.step.by_speed.last().map_or(0.0, |row| row[0]);
+                (d.speed > most).then(|| format!("speed = {} is beyond by_speed's {most} m/s", d.speed))
             }
             _ => None,
         }

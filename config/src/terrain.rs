@@ -21,6 +21,8 @@ pub struct TerrainObject {
     pub appears: f64,
     /// \[s\] First moment it is not there any more; infinite if it stays.
     pub vanishes: f64,
+    /// The planner knows of it: an obstacle to step over.
+    pub known: bool,
     /// Where it is later, by time \[s\], ascending; it moves straight from one pose to the next.
     pub poses: Vec<(f64, TerrainPose)>,
 }
@@ -62,10 +64,15 @@ pub(crate) fn object(row: &Section<'_, '_>) -> TerrainObject {
         friction: row.has("friction").then(|| row.number("friction", "", 0.0..=10.0)),
         appears: optional("appears", "s", NOT_NEGATIVE, 0.0),
         vanishes: optional("vanishes", "s", POSITIVE, f64::INFINITY),
+        known: row.flag("known"),
         poses: row.tables("pose", |row| (row.number("time", "s", POSITIVE), pose(row))),
     };
     if object.vanishes <= object.appears {
         row.problem("vanishes", format!("must be later than it appears, {} s", object.appears));
+    }
+    let changes = !object.poses.is_empty() || object.appears > 0.0 || object.vanishes.is_finite();
+    if object.known && changes {
+        row.problem("known", "the planner knows only what stays where it is from the beginning to the end");
     }
     for pair in object.poses.windows(2) {
         if pair[1].0 <= pair[0].0 {

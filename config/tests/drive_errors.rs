@@ -159,3 +159,44 @@ fn efficiencies() {
         assert!(error.contains(text), "{text}\nis not in\n{error}");
     }
 }
+
+#[test]
+fn joint_control_that_cannot_be() {
+    refused(
+        "control",
+        &[("feedback = \"motor\"", "feedback = \"motr\""), ("position_gain = 100.0", "position_gain = 0.0")],
+        &[
+            "joint_control.feedback: `motr` is not known; it takes one of ",
+            "joint_control.position_gain: 0 is not allowed; it takes a number above 0 1/s",
+        ],
+    );
+    refused(
+        "voltage",
+        &[
+            ("law = \"cascade\"", "law = \"voltage\"\nposition = 8.0\nspeed = 0.0"),
+            ("feedback = \"motor\"\n", ""),
+            ("position_gain = 100.0 # [1/s]\n", ""),
+            ("speed_bandwidth = 600.0 # [rad/s] with the inertia of the hanging robot\n", ""),
+            ("current_bandwidth = 3000.0 # [rad/s]\n", ""),
+        ],
+        &["joint_control.sampling: the law \"voltage\" is computed once per cycle; it takes \"cycle\""],
+    );
+}
+
+#[test]
+fn drives_without_joint_control() {
+    refused("uncontrolled", &[("[joint_control]", "[joint_contrl]")], &["joint_control: ", "joint_contrl: "]);
+}
+
+/// A row may have a law of its own, a scene one for all.
+#[test]
+fn joint_control_of_one_drive() {
+    let own = "stator = \"right_thigh\"\njoint_control = { law = \"voltage\", position = 8.0, speed = 0.1, \
+               sampling = \"cycle\", delay = 1, speed_from = \"state\" }";
+    let spoilt = Spoilt::new("own", "robots/lola/robot.toml", &[("stator = \"right_thigh\"", own)]);
+    let urdf = config::root(None).join("robots/lola/lola.urdf");
+    fs::copy(urdf, spoilt.0.join("lola.urdf")).unwrap();
+    let robot = Robot::load(&spoilt.0).unwrap();
+    let differ = robot.drives.iter().filter(|d| matches!(d.control.law, drives::Law::Voltage(_)));
+    assert_eq!(differ.map(|d| d.name.as_str()).collect::<Vec<_>>(), ["right_knee_flexion"]);
+}

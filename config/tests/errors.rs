@@ -112,7 +112,7 @@ fn nan_and_infinity() {
         text(&copy.gait()),
         "lola.toml: 2 problems\n  \
          line 23: model.com_height: NaN is not allowed; it takes a number from 0.1 to 3 m\n  \
-         line 40: control.height_p: inf is not allowed; it takes a number of at least 0 N/m"
+         line 41: control.height_p: inf is not allowed; it takes a number of at least 0 N/m"
     );
 }
 
@@ -130,8 +130,8 @@ fn all_problems_at_once_in_the_order_of_lines() {
          line 4: step.width: 0.1 m must not be below width_min = 0.16 m\n  \
          line 12: step.change: has 2 entries; it takes 3 numbers, each a number above 0 m, m, rad\n  \
          line 22: model.stand_time: missing; it takes a number from 0.1 to 20 s\n  \
-         line 33: limits.side: its lower end 0.2 must lie below its upper end -0.2 m\n  \
-         line 52: control.force_filter: is of type boolean; it takes a number from 0 to 1 s"
+         line 34: limits.side: its lower end 0.2 must lie below its upper end -0.2 m\n  \
+         line 57: control.force_filter: is of type boolean; it takes a number from 0 to 1 s"
     );
 }
 
@@ -225,7 +225,7 @@ fn scene_and_its_commands() {
          line 19: command[1].forwards: unknown key; the nearest known one is `forward`\n  \
          line 34: command[4].topic: `walk/halt` is not known; it takes one of `system/emergency_stop`, \
          `system/reset`, `system/enable`, `system/end`, `walk/stand`, `walk/start`, `walk/stop`, `walk/step`, \
-         `walk/velocity`"
+         `walk/velocity`, `walk/distance`, `walk/platform`, `head/fixate`, `head/joints`, `head/rest`"
     );
 }
 
@@ -285,6 +285,73 @@ fn sensors_of_joints_that_the_robot_lacks() {
         text(&copy.scene("stand")),
         "stand.toml: sensors.encoder.bias_rad: robot lola has no joint `right_ankle_flexoin`; \
          the nearest is `right_ankle_flexion`"
+    );
+}
+
+#[test]
+fn head_and_arms() {
+    let file = "robots/lola/robot.toml";
+    let copy = Copy::new("head")
+        .spoil(file, "pan = \"head_pan\"", "pan = \"head_pain\"")
+        .spoil(file, "saccade_speed = 2.5", "saccade_speed = 3.5")
+        .spoil(file, "pursuit_speed = 2.0", "pursuit_speed = 4.0")
+        .spoil(file, "nearest = 0.2", "nearest = -0.2")
+        .spoil(file, "left = \"left_shoulder_flexion\"", "left = \"left_shoulder\"");
+    let error = text(&copy.robot());
+    for line in [
+        "robot.toml: 5 problems",
+        "head.pan: there is no joint `head_pain`; the nearest is `head_pan`",
+        "head.saccade_speed: is above the 3 rad/s of joint `head_tilt`",
+        "head.pursuit_speed: is above saccade_speed",
+        "head.nearest: -0.2 is not allowed",
+        "arms.left: there is no joint `left_shoulder`",
+    ] {
+        assert!(error.contains(line), "{line}\nis not in\n{error}");
+    }
+}
+
+#[test]
+fn what_a_robot_without_head_and_arms_cannot_do() {
+    let copy = Copy::new("headless").spoil("gaits/lola.toml", "[step]", "arm_swing = 1.0\n[step]").spoil(
+        "scenes/demo.toml",
+        "topic = \"walk/stop\"",
+        "topic = \"head/rest\"",
+    );
+    let file = copy.path("robots/lola/robot.toml");
+    let text_of = fs::read_to_string(&file).unwrap();
+    let (from, to) = (text_of.find("[head]").unwrap(), text_of.find("# Nine local").unwrap());
+    fs::write(&file, text_of.replace(&text_of[from..to], "")).unwrap();
+    assert_eq!(
+        text(&copy.scene("demo")),
+        "demo.toml: 2 problems\n  \
+         command[4]: head/rest: robot lola has no [head]\n  \
+         gait: gait lola has arm_swing, but robot lola has no [arms]"
+    );
+}
+
+#[test]
+fn what_the_software_is_not_told() {
+    let copy = Copy::new("unknown").spoil(
+        "scenes/stand.toml",
+        "seed = 1",
+        "seed = 1\n[unknown]\nground_tilt = [0.0, 50.0]\ncontact_stiffness = 0\njoint_ofset_rad = 0.1",
+    );
+    assert_eq!(
+        text(&copy.scene("stand")),
+        "stand.toml: 3 problems\n  \
+         line 12: unknown.ground_tilt[1]: 50 is not allowed; it takes a number from -30 to 30 deg\n  \
+         line 13: unknown.contact_stiffness: 0 is not allowed; it takes a number from 0.001 to 1000\n  \
+         line 14: unknown.joint_ofset_rad: unknown key; the nearest known one is `joint_offset_rad`"
+    );
+    let copy = Copy::new("unknown-joint").spoil(
+        "scenes/stand.toml",
+        "seed = 1",
+        "seed = 1\n[unknown]\njoint_offset_rad = { right_kne_flexion = 0.01 }",
+    );
+    assert_eq!(
+        text(&copy.scene("stand")),
+        "stand.toml: unknown.joint_offset_rad: robot lola has no joint `right_kne_flexion`; \
+         the nearest is `right_knee_flexion`"
     );
 }
 

@@ -1,8 +1,10 @@
 //! The process around the stabilizer: `gangwerk controller --run DIR`.
 
 use crate::Controller;
+use config::Timeline;
 use daemon::{Connect, Daemon};
 use ipc::Mode;
+use messages::command::Domain;
 use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, PARAMETERS, PLAN, PLANNER_TICK, SENSORS};
 use messages::{
     Command, ControllerState, Event, EventCode, Header, JointTargets, Parameters, Plan, Process, Sensors,
@@ -26,6 +28,10 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut controller = Controller::new(&d.setup.robot, &d.setup.gait, d.setup.scene.cycle)?;
     let mut silence = PlannerSilence::default();
     let mut commands = connect(&d.space)?;
+    let mut timeline = Timeline::new(&d.setup.scene, &[Domain::Head]);
+    if state.epoch() > 1 {
+        timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
+    }
     let mut set = d.space.writer::<Parameters>(&PARAMETERS)?;
     let mut parameters = Parameters::default();
     controller.report_parameters(&mut parameters);
@@ -44,11 +50,12 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             break;
         }
         d.begin_woken(header);
-        while let Some(command) = commands() {
-            let Command::Parameter(change) = command else { continue };
-            match controller.set_parameter(&change) {
-                Ok(()) => d.report(header, EventCode::ParameterSet, change.number.into()),
-                Err(code) => d.report(header, code, command.address().1.into()),
+        while let Some(command) = timeline.due(header.tick).or_else(&mut commands) {
+            if let Some((code, detail)) = controller.command(&command) {
+                d.report(header, code, detail);
+            }
+            if !matches!(command, Command::Parameter(_)) {
+                continue;
             }
             parameters.header = header;
             controller.report_parameters(&mut parameters);
@@ -58,7 +65,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         state.write(new_state);
         targets.write(new_targets);
         d.ring(bell);
-        if let Some((code, detail)) = controller.take_event() {
+        while let Some((code, detail)) = controller.take_event() {
             d.report(header, code, detail);
         }
         if silence.begins(header.tick, planner_tick.latest()) {

@@ -1,11 +1,11 @@
 //! What the sensors say about the task space.
 //!
-//! The inclination comes from the inertial measurement unit; heading and position from the foot that carries more,
-//! which is taken to stand where the plan wants it.
+//! The inclination comes from the inertial measurement unit; heading and position from the foot that is planned to
+//! carry more, which is taken to stand where the plan wants it.
 
 use config::Robot;
 use messages::{ControllerState, Sensors};
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector2, Vector3, Vector6};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector2, Vector3};
 
 use crate::following::Desired;
 use crate::task_space::TaskSpace;
@@ -18,10 +18,14 @@ pub struct Estimate {
     pub angles: TorsoAngles,
     /// Their rates \[rad/s\].
     pub rates: Vector3<f64>,
+    /// \[rad\] That heading less the one the IMU says.
+    pub turn: f64,
     /// world_from_torso with that heading.
     pub rotation: Matrix3<f64>,
     /// \[m\] Torso's origin.
     pub torso: Vector3<f64>,
+    /// \[m/s\] @torso Velocity of the torso's origin, the anchor foot being at rest.
+    pub torso_velocity: Vector3<f64>,
     /// \[m\] Centre of gravity.
     pub com: Vector3<f64>,
     /// \[m/s\] Its velocity, the anchor foot being at rest.
@@ -40,15 +44,16 @@ pub const LOADED: f64 = 20.0;
 const TOUCHING: f64 = 1.0;
 
 impl Estimate {
-    /// From the sensors, the kinematics of the measured joints and what is desired. Without load the heavier planned
-    /// foot is the anchor.
+    /// From the sensors, the kinematics of the measured joints and what is desired. The anchor is the foot that is
+    /// planned to carry more, unless it has lost the ground and the other one has not.
     pub fn new(robot: &Robot, sensors: &Sensors, measured: &TaskSpace, desired: &Desired) -> Self {
         let [x, y, z, w] = sensors.imu.orientation;
         let imu = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)).to_rotation_matrix();
         let force = |i: usize| sensors.foot_wrench[i].force[2];
-        let loaded = force(0).max(force(1)) > LOADED;
-        let anchor =
-            usize::from(if loaded { force(1) > force(0) } else { desired.load[1] > desired.load[0] });
+        // A swing foot that meets the ground early may press harder than the stance foot, and is not where it should be.
+        let heavier = usize::from(desired.load[1] > desired.load[0]);
+        let lost = force(heavier) <= LOADED && force(1 - heavier) > LOADED;
+        let anchor = if lost { 1 - heavier } else { heavier };
 
         let sole = measured.sole(anchor);
         let seen = imu.matrix() * sole.rotation;
@@ -60,8 +65,10 @@ impl Estimate {
         let mut estimate = Self {
             angles: torso::angles(&rotation),
             rates: torso::rates_from_omega(&rotation) * omega,
+            turn,
             rotation,
             torso,
+            torso_velocity: measured.torso_velocity(anchor),
             com: torso + rotation * measured.com(),
             com_velocity: rotation * measured.com_velocity(anchor),
             feet: std::array::from_fn(|i| {
@@ -117,14 +124,6 @@ impl Estimate {
             state.inclination_rate_error[i] = desired.torso.velocity[i] - self.rates[i];
         }
     }
-}
-
-/// Force control coordinates (F_z, T_x, T_y) of both sensors.
-pub fn force_coordinates(sensors: &Sensors) -> Vector6<f64> {
-    Vector6::from_fn(|i, _| {
-        let w = &sensors.foot_wrench[i / 3];
-        [w.force[2], w.moment[0], w.moment[1]][i % 3]
-    })
 }
 
 /// Distance of `p` to the nearest edge of the convex hull of `points`, negative outside (then the largest distance to

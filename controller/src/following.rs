@@ -5,9 +5,12 @@ use messages::record::{Field, Visit};
 use messages::{EventCode, GaitState, LEFT, Plan};
 
 /// The active plan and the one that follows it.
+#[derive(Clone)]
 pub struct PlanFollower {
     active: Plan,
     next: Plan,
+    /// \[m\] Rear and front edge of each sole in its frame.
+    edges: [[f64; 2]; 2],
 }
 
 /// Desired task space at one instant, in the planning frame of the active plan (thesis table 4.2).
@@ -19,18 +22,20 @@ pub struct Desired {
     pub torso: Sample<3>,
     /// \[m, rad\] Sole frames: x, y, z, heading; right, left.
     pub feet: [Sample<4>; 2],
+    /// \[rad\] Pitch of the soles; right, left.
+    pub pitch: [Sample<1>; 2],
     /// \[rad\] Toe joints; right, left.
     pub toes: [Sample<1>; 2],
-    /// \[m\] Zero-moment point.
+    /// \[m\] Zero-moment point at height 0: there the force line of the planned one passes.
     pub zmp: [f64; 2],
     /// \[1\] Load factors; right, left.
     pub load: [f64; 2],
 }
 
 impl PlanFollower {
-    /// No plan yet.
-    pub fn new() -> Self {
-        Self { active: Plan::default(), next: Plan::default() }
+    /// No plan yet; `edges` \[m\] are the rear and the front edge of each sole in its frame.
+    pub fn new(edges: [[f64; 2]; 2]) -> Self {
+        Self { active: Plan::default(), next: Plan::default(), edges }
     }
 
     /// Id of the plan being executed; 0 before the first one.
@@ -86,21 +91,46 @@ impl PlanFollower {
         let left = p.load_left.sample(t).position[0].clamp(0.0, 1.0);
         let mut load = [1.0 - left; 2];
         load[LEFT] = left;
+        let (com, zmp) = (p.com.sample(t), p.zmp.sample(t).0);
+        let fall = p.zmp_height.sample(t).0[0] / (com.acceleration[2] - multibody::GRAVITY.z);
+        let pitch = [p.pitch[0].sample(t), p.pitch[1].sample(t)];
         Desired {
-            com: p.com.sample(t),
+            com,
             torso: p.torso.sample(t),
-            feet: [p.feet[0].sample(t), p.feet[1].sample(t)],
+            feet: [0, 1].map(|i| rolled(&p.feet[i].sample(t), &pitch[i], self.edges[i])),
+            pitch,
             toes: [p.toes[0].sample(t), p.toes[1].sample(t)],
-            zmp: p.zmp.sample(t).0,
+            zmp: [0, 1].map(|d| zmp[d] - fall * com.acceleration[d]),
             load,
         }
     }
 }
 
-impl Default for PlanFollower {
-    fn default() -> Self {
-        Self::new()
+/// Sole frame of a foot whose footprint is at `flat` and whose sole is pitched about one of its edges \[m\]: toes down
+/// about the front one, toes up about the rear one. That edge stays in the footprint: the rolling condition (4.5).
+fn rolled(flat: &Sample<4>, pitch: &Sample<1>, [rear, front]: [f64; 2]) -> Sample<4> {
+    let (angle, rate, second) = (pitch.position[0], pitch.velocity[0], pitch.acceleration[0]);
+    if angle == 0.0 && rate == 0.0 && second == 0.0 {
+        return *flat;
     }
+    let edge = if angle < 0.0 { rear } else { front };
+    let (s, c) = angle.sin_cos();
+    // From the edge, forward and up: edge (1 - cos, sin).
+    let forward = [edge * (1.0 - c), edge * s * rate, edge * (c * rate * rate + s * second)];
+    let up = [edge * s, edge * c * rate, edge * (c * second - s * rate * rate)];
+    let (sin, cos) = flat.position[3].sin_cos();
+    let (turn, turning) = (flat.velocity[3], flat.acceleration[3]);
+    let mut sole = *flat;
+    for (d, axis, across) in [(0, cos, -sin), (1, sin, cos)] {
+        sole.position[d] += forward[0] * axis;
+        sole.velocity[d] += forward[1] * axis + forward[0] * turn * across;
+        sole.acceleration[d] += forward[2] * axis + (2.0 * forward[1] * turn + forward[0] * turning) * across
+            - forward[0] * turn * turn * axis;
+    }
+    sole.position[2] += up[0];
+    sole.velocity[2] += up[1];
+    sole.acceleration[2] += up[2];
+    sole
 }
 
 /// Whether every number of a plan is finite.
@@ -129,7 +159,7 @@ mod tests {
 
     #[test]
     fn switches_exactly_at_the_start_cycle() {
-        let mut f = PlanFollower::new();
+        let mut f = PlanFollower::new([[-0.1, 0.1]; 2]);
         assert_eq!(f.update(5, Some(&plan(1, 10))), None);
         assert_eq!(f.id(), 0);
         assert_eq!(f.update(9, None), None);
@@ -139,7 +169,7 @@ mod tests {
 
     #[test]
     fn a_plan_that_begins_in_the_past_is_refused_once() {
-        let mut f = PlanFollower::new();
+        let mut f = PlanFollower::new([[-0.1, 0.1]; 2]);
         f.update(10, Some(&plan(1, 10)));
         assert_eq!(f.update(20, Some(&plan(2, 19))), Some((EventCode::PlanRefused, 2)));
         assert_eq!(f.update(21, Some(&plan(2, 19))), None);
@@ -149,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_plan_with_a_nan_anywhere_is_refused() {
-        let mut f = PlanFollower::new();
+        let mut f = PlanFollower::new([[-0.1, 0.1]; 2]);
         let mut bad = plan(1, 10);
         bad.com.coefficients[95][2][5] = f64::NAN;
         assert_eq!(f.update(10, Some(&bad)), Some((EventCode::PlanRefused, 1)));
@@ -158,5 +188,44 @@ mod tests {
     #[test]
     fn nan_load_factors_never_reach_the_controller() {
         assert!(!f64::NAN.clamp(0.0, 1.0).is_finite(), "clamp lets NaN through: plans are checked before");
+    }
+
+    /// The edge stays where it is and the derivatives are those of the positions, on a foot that turns meanwhile.
+    #[test]
+    fn a_foot_rolls_over_its_edge_without_slipping() {
+        let edges = [-0.255, 0.035];
+        let flat = |t: f64| Sample {
+            position: [0.3, 0.1, 0.02, 0.4 + 0.5 * t + t * t],
+            velocity: [0.0, 0.0, 0.0, 0.5 + 2.0 * t],
+            acceleration: [0.0, 0.0, 0.0, 2.0],
+        };
+        for (sign, edge) in [(1.0, edges[1]), (-1.0, edges[0])] {
+            let pitch = |t: f64| Sample {
+                position: [sign * (0.1 + 0.8 * t - t * t)],
+                velocity: [sign * (0.8 - 2.0 * t)],
+                acceleration: [sign * -2.0],
+            };
+            let at = |t: f64| rolled(&flat(t), &pitch(t), edges);
+            let (t, h) = (0.1, 1e-4);
+            let [now, before, after] = [at(t), at(t - h), at(t + h)];
+            for d in 0..3 {
+                let rate = (after.position[d] - before.position[d]) / (2.0 * h);
+                let second = (after.velocity[d] - before.velocity[d]) / (2.0 * h);
+                assert!((now.velocity[d] - rate).abs() < 1e-7, "{d}: {} is {rate}", now.velocity[d]);
+                assert!((now.acceleration[d] - second).abs() < 1e-6, "{d}");
+            }
+            // The edge in the world: sole frame, heading, pitch.
+            let (angle, heading) = (pitch(t).position[0], flat(t).position[3]);
+            let forward = edge * angle.cos();
+            let p = now.position;
+            let touching =
+                [p[0] + forward * heading.cos(), p[1] + forward * heading.sin(), p[2] - edge * angle.sin()];
+            let footprint = [0.3 + edge * heading.cos(), 0.1 + edge * heading.sin(), 0.02];
+            for d in 0..3 {
+                assert!((touching[d] - footprint[d]).abs() < 1e-15);
+            }
+            assert!(p[2] > 0.02, "no part of the sole is under the ground");
+        }
+        assert_eq!(rolled(&flat(0.1), &Sample::rest([0.0]), edges), flat(0.1));
     }
 }

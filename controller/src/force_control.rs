@@ -6,27 +6,72 @@
 //! | symbol | name | unit |
 //! |---|---|---|
 //! | C | stiffness of one contact point | N/m |
-//! | N | twist of both soles per unit of modification, torso held | 1 |
-//! | G = K N | gain from modification to force, feet coupled through the moving CoG | N/m, N m/rad |
+//! | K | stiffness of one foot on its closed contact points | N/m, N m/rad |
+//! | K^+ | its damped inverse, zero where no contact resists | m/N, rad/(N m) |
+//! | P = K^+ K | what of a foot's motion the contact resists | 1 |
+//! | N | motion of both soles against the torso per unit of modification, feet coupled through the moving CoG | 1 |
 //! | Delta x_lambda | modification (z, roll, pitch) of each foot | m, rad, rad |
 //!
-//! Errata 2: G needs the same weighted inverse as the inverse kinematics does (5.30); the return to zero uses x_d0
-//! (5.32); compression is positive, so the stiffness enters with a minus sign (5.28).
+//! G = K N is what (5.30) inverts. Errata 2: N needs the same weighted inverse as the inverse kinematics does (5.30);
+//! the return to zero uses x_d0 (5.32); compression is positive, so the stiffness enters with a minus sign (5.28);
+//! an edge has no vanishing row but rank 2: what it does not resist is position controlled.
 
 use config::gait::Control;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-/// Change of (F_z, T_x, T_y) about the sensor with (z, roll, pitch) of the sole frame, all points in contact (5.23).
+use crate::contact::{Contact, Phase};
+
+/// Change of (F_z, T_x, T_y) about the sensor with (z, roll, pitch) of the sole frame (5.23).
 ///
-/// `points` are the contact points relative to the sole frame, `sensor` the force sensor relative to it \[m\].
-pub fn contact_stiffness(points: &[Vector3<f64>], sensor: Vector3<f64>, stiffness: f64) -> Matrix3<f64> {
+/// `points` are the contact points relative to the sole frame and how closed each is, `sensor` the force sensor
+/// relative to it \[m\].
+pub fn contact_stiffness(
+    points: impl Iterator<Item = (Vector3<f64>, f64)>,
+    sensor: Vector3<f64>,
+    stiffness: f64,
+) -> Matrix3<f64> {
     let mut k = Matrix3::zeros();
-    for p in points {
+    for (p, closed) in points {
         let compression = Vector3::new(-1.0, -p.y, p.x); // of this point, per (z, roll, pitch)
         let lever = Vector3::new(1.0, p.y - sensor.y, -(p.x - sensor.x)); // (F_z, T_x, T_y) per unit of force
-        k += lever * compression.transpose() * stiffness;
+        k += lever * compression.transpose() * (stiffness * closed);
     }
     k
+}
+
+/// What a foot's contact resists.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compliance {
+    /// K^+ \[m/N, rad/(N m)\]
+    pub inverse: Matrix3<f64>,
+    /// P
+    pub resisted: Matrix3<f64>,
+}
+
+impl Compliance {
+    /// Of a foot with stiffness K: damped where K is nearly singular, exact elsewhere.
+    pub fn new(k: &Matrix3<f64>) -> Self {
+        const LENGTH: f64 = 0.1; // m: moments and angles against forces and heights (errata 2, gap 18)
+        /// Singular values below this share of the largest are damped: with 0.02 the moments of a foot whose toe bends
+        /// chatter at 20 Hz (knee 25 mrad off its target at 2 km/h, 4 mrad with 0.06), from 0.2 on she falls ...
+        const SMALL: f64 = 0.06;
+        let s = Vector3::new(1.0, 1.0 / LENGTH, 1.0 / LENGTH);
+        let scale = Matrix3::from_diagonal(&s);
+        let svd = (scale * k * scale).svd(true, true);
+        let (Some(u), Some(v)) = (svd.u, svd.v_t) else { return Self::none() };
+        let small = SMALL * svd.singular_values.max();
+        if !(small > 0.0) {
+            return Self::none();
+        }
+        // ... so that their inverse goes to zero with them.
+        let inverse = svd.singular_values.map(|x| if x < small { x / (small * small) } else { 1.0 / x });
+        let inverse = scale * v.transpose() * Matrix3::from_diagonal(&inverse) * u.transpose() * scale;
+        Self { inverse, resisted: inverse * k }
+    }
+
+    fn none() -> Self {
+        Self { inverse: Matrix3::zeros(), resisted: Matrix3::zeros() }
+    }
 }
 
 /// Modifications of both feet: (z, roll, pitch) right, then left.
@@ -40,6 +85,18 @@ pub struct Modification {
     pub limited: bool,
 }
 
+impl Modification {
+    /// Moves component `i`, which is coordinate `c` of its foot, within its limits (5.33).
+    fn step(&mut self, control: &Control, (i, c): (usize, usize), wanted: f64, dt: f64) {
+        let (limit, rate_limit) = (control.modification_limit[c], control.modification_rate[c]);
+        let rate = wanted.clamp(-rate_limit, rate_limit);
+        let value = (self.value[i] + rate * dt).clamp(-limit, limit);
+        self.limited |= rate != wanted || value != self.value[i] + rate * dt;
+        self.rate[i] = (value - self.value[i]) / dt;
+        self.value[i] = value;
+    }
+}
+
 /// What the force controller is told in a cycle; vectors are (F_z, T_x, T_y) right, then left \[N, N m\].
 #[derive(Clone, Copy, Debug)]
 pub struct Forces {
@@ -49,106 +106,155 @@ pub struct Forces {
     pub desired_rate: Vector6<f64>,
     /// Measured and filtered: lambda.
     pub measured: Vector6<f64>,
-    /// Planned load factor of each foot.
-    pub load: [f64; 2],
+}
+
+/// What a foot's modification is to do apart from forces.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Guide {
+    /// Contact of the foot.
+    pub contact: Contact,
+    /// \[m/s\] Planned vertical velocity of the sole.
+    pub rise: f64,
+    /// \[m, rad, rad\] Where a foot in the air takes its modification.
+    pub target: Vector3<f64>,
 }
 
 /// One cycle of `dt` \[s\]: the rate of the modification (5.32) and its integral (5.33), both limited.
 ///
-/// `gain` is G with the stiffness of closed contacts for both feet: a foot in the air is position controlled, its
-/// rows do not matter (errata 2 to (5.32)).
+/// `motion` is N. A foot in the air is position controlled; its forces do not matter (errata 2 to (5.32)).
 pub fn modify(
     control: &Control,
-    gain: &Matrix6<f64>,
+    motion: &Matrix6<f64>,
+    feet: &[(Compliance, Guide); 2],
     forces: &Forces,
     last: &Modification,
     dt: f64,
 ) -> Modification {
     let k = Vector6::from_fn(|i, _| control.force_gain[i % 3]);
-    let alpha = Vector6::from_fn(|i, _| force_share(control, forces, i / 3));
     let wanted = forces.desired_rate * control.force_feed_forward
         + k.component_mul(&(forces.desired - forces.measured)); // (5.26)
-    let force_part = solve(gain, &alpha.component_mul(&wanted));
-    let position_part = -last.value * control.position_gain;
+    let mut of_soles = Vector6::zeros();
+    for (i, (compliance, guide)) in feet.iter().enumerate() {
+        let alpha = guide.contact.force_share();
+        of_soles
+            .fixed_rows_mut::<3>(3 * i)
+            .copy_from(&(compliance.inverse * wanted.fixed_rows::<3>(3 * i) * alpha));
+    }
+    let force_part = motion.lu().solve(&of_soles).unwrap_or_else(Vector6::zeros); // (5.30)
     let mut next = *last;
     next.limited = false;
-    for i in 0..6 {
-        let wanted = force_part[i] + (1.0 - alpha[i]) * position_part[i]; // (5.32)
-        let (limit, rate_limit) = (control.modification_limit[i % 3], control.modification_rate[i % 3]);
-        let rate = wanted.clamp(-rate_limit, rate_limit);
-        let value = (last.value[i] + rate * dt).clamp(-limit, limit); // (5.33)
-        next.limited |= rate != wanted || value != last.value[i] + rate * dt;
-        next.rate[i] = (value - last.value[i]) / dt;
-        next.value[i] = value;
+    for (i, (compliance, guide)) in feet.iter().enumerate() {
+        let value = last.value.fixed_rows::<3>(3 * i).into_owned();
+        let rate = force_part.fixed_rows::<3>(3 * i) + free_part(control, compliance, guide, &value);
+        for c in 0..3 {
+            next.step(control, (3 * i + c, c), rate[c], dt);
+        }
     }
     next
 }
 
-/// alpha_lambda of a foot: 0 position controlled, 1 force controlled. A foot is force controlled when it shall carry
-/// and does: a blend over the measured normal force, 0 for a foot that the plan has in the air.
-fn force_share(control: &Control, forces: &Forces, foot: usize) -> f64 {
-    if forces.load[foot] <= 0.0 {
-        return 0.0;
+/// Rate of what is not force controlled: (5.32), second line, and what early and late contact ask for.
+fn free_part(control: &Control, foot: &Compliance, guide: &Guide, value: &Vector3<f64>) -> Vector3<f64> {
+    let alpha = guide.contact.force_share();
+    let back = (guide.target - value) * control.position_gain;
+    let mut rate = back - foot.resisted * back * alpha;
+    match guide.contact.phase {
+        // A foot that rises must not be held down by what it gives up.
+        Phase::Swing if guide.rise >= 0.0 => rate[0] = rate[0].max(-guide.rise),
+        Phase::Swing | Phase::Stance => {}
+        Phase::Early => rate[0] -= guide.rise,
+        Phase::Late => {
+            let [speed, depth] = control.search;
+            rate[0] = if value[0] > -depth { -speed } else { 0.0 };
+        }
     }
-    let [low, high] = control.force_blend;
-    ((forces.measured[3 * foot] - low) / (high - low)).clamp(0.0, 1.0)
-}
-
-/// G^-1 b with rows and columns scaled to comparable units; zero where G cannot be inverted.
-fn solve(gain: &Matrix6<f64>, b: &Vector6<f64>) -> Vector6<f64> {
-    const LENGTH: f64 = 0.1; // m: moments and angles against forces and heights (errata 2, gap 18)
-    let s = Vector6::from_fn(|i, _| if i % 3 == 0 { 1.0 } else { 1.0 / LENGTH });
-    let scaled = Matrix6::from_fn(|i, j| s[i] * gain[(i, j)] * s[j]);
-    scaled.lu().solve(&b.component_mul(&s)).map_or(Vector6::zeros(), |x| x.component_mul(&s))
+    rate
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn flat_foot() -> Vec<Vector3<f64>> {
+    fn flat_foot() -> impl Iterator<Item = (Vector3<f64>, f64)> {
         [(-0.1, -0.05), (-0.1, 0.05), (0.15, -0.05), (0.15, 0.05)]
-            .map(|(x, y)| Vector3::new(x, y, 0.0))
-            .to_vec()
+            .into_iter()
+            .map(|(x, y)| (Vector3::new(x, y, 0.0), 1.0))
     }
 
-    fn gain() -> Matrix6<f64> {
-        let k = contact_stiffness(&flat_foot(), Vector3::zeros(), 1.5e5);
-        let mut g = Matrix6::zeros();
-        g.fixed_view_mut::<3, 3>(0, 0).copy_from(&k);
-        g.fixed_view_mut::<3, 3>(3, 3).copy_from(&k);
-        g
+    fn stiffness() -> Matrix3<f64> {
+        contact_stiffness(flat_foot(), Vector3::zeros(), 1.5e5)
+    }
+
+    fn foot(phase: Phase, felt: f64) -> (Compliance, Guide) {
+        let guide = Guide { contact: Contact { phase, felt }, rise: 0.0, target: Vector3::zeros() };
+        (Compliance::new(&stiffness()), guide)
+    }
+
+    fn no_forces() -> Forces {
+        Forces { desired: Vector6::zeros(), desired_rate: Vector6::zeros(), measured: Vector6::zeros() }
+    }
+
+    fn raised() -> Modification {
+        Modification { value: Vector6::new(0.004, 0.01, -0.01, 0.0, 0.0, 0.0), ..Default::default() }
     }
 
     /// Errata 2.13.
     #[test]
     fn stiffness_and_solution_of_the_errata() {
-        let k = contact_stiffness(&flat_foot(), Vector3::zeros(), 1.5e5);
+        let k = stiffness();
         let expected = Matrix3::new(-6e5, 0.0, 1.5e4, 0.0, -1500.0, 0.0, 1.5e4, 0.0, -9750.0);
         assert!((k - expected).abs().max() < 1e-9);
-        let b = Vector6::new(100.0, 5.0, -8.0, 0.0, 0.0, 0.0);
-        let x = solve(&gain(), &b);
-        let expected = Vector6::new(-0.000152, -0.00333333333333, 0.000586666666667, 0.0, 0.0, 0.0);
-        assert!((x - expected).abs().max() < 1e-14);
+        let c = Compliance::new(&k);
+        let expected = Vector3::new(-0.000152, -0.00333333333333, 0.000586666666667);
+        assert!((c.inverse * Vector3::new(100.0, 5.0, -8.0) - expected).abs().max() < 1e-14);
+        assert!((c.resisted - Matrix3::identity()).abs().max() < 1e-12);
     }
 
-    /// (5.26): on the contact it assumes, each force error decays as exp(-K t), by itself.
+    /// On its toe edge a foot resists being pressed and rolled, and not being turned about that edge.
+    #[test]
+    fn an_edge_is_force_controlled_in_two_directions_and_position_controlled_in_the_third() {
+        let edge = flat_foot().map(|(p, _)| (p, f64::from(u8::from(p.x > 0.0))));
+        let k = contact_stiffness(edge, Vector3::zeros(), 1.5e5);
+        let c = Compliance::new(&k);
+        let about_the_edge = Vector3::new(0.15, 0.0, 1.0); // pitch, toe down, about x = 0.15
+        assert!((k * about_the_edge).norm() < 1e-9 && (c.resisted * about_the_edge).norm() < 1e-9);
+        assert!((c.resisted * c.resisted - c.resisted).abs().max() < 1e-9, "a projection");
+        let force = Vector3::new(100.0, 0.0, -15.0); // at the edge: possible
+        assert!((k * (c.inverse * force) - force).norm() < 1e-9);
+        assert!((c.inverse * Vector3::new(0.0, 0.0, 5.0)).norm() < 1e-3, "an impossible moment moves little");
+    }
+
+    #[test]
+    fn inverse_stays_bounded_while_a_contact_opens() {
+        for k in 0..=100 {
+            let rear = 1.0 - 0.01 * f64::from(k);
+            let opening = flat_foot().map(|(p, _)| (p, if p.x > 0.0 { 1.0 } else { rear }));
+            let c = Compliance::new(&contact_stiffness(opening, Vector3::zeros(), 1.5e5));
+            assert!((c.inverse * Vector3::new(0.0, 0.0, 10.0)).norm() < 0.05, "{rear}");
+        }
+    }
+
+    /// (5.26): on the contact it assumes, each force error decays as exp(-K t), by itself, feet coupled or not.
     #[test]
     fn force_errors_decay_independently() {
         let control = Control { force_feed_forward: 0.0, ..crate::test_gains() };
-        let g = gain();
+        let mut motion = Matrix6::identity();
+        (motion[(0, 3)], motion[(3, 0)], motion[(2, 5)]) = (-0.2, -0.3, 0.1);
+        let mut k = Matrix6::zeros();
+        k.fixed_view_mut::<3, 3>(0, 0).copy_from(&stiffness());
+        k.fixed_view_mut::<3, 3>(3, 3).copy_from(&stiffness());
         let mut forces = Forces {
             desired: Vector6::new(330.0, 4.0, -6.0, 270.0, 0.0, 0.0),
-            desired_rate: Vector6::zeros(),
             measured: Vector6::new(300.0, 0.0, 0.0, 300.0, 0.0, 0.0),
-            load: [0.5, 0.5],
+            ..no_forces()
         };
         let error = forces.desired - forces.measured;
+        let feet = [foot(Phase::Stance, 1.0); 2];
         let mut m = Modification::default();
         for _ in 0..100 {
-            m = modify(&control, &g, &forces, &m, 1e-3);
+            m = modify(&control, &motion, &feet, &forces, &m, 1e-3);
             assert!(!m.limited);
-            forces.measured += g * m.rate * 1e-3;
+            forces.measured += k * motion * m.rate * 1e-3;
         }
         for i in 0..6 {
             let expected = error[i] * (1.0 - 1e-3 * control.force_gain[i % 3]).powi(100);
@@ -157,24 +263,41 @@ mod tests {
     }
 
     #[test]
-    fn a_foot_in_the_air_forgets_its_modification() {
+    fn a_foot_in_the_air_forgets_its_modification_but_never_presses_down_for_it_while_it_rises() {
         let control = crate::test_gains();
-        let forces = Forces {
-            desired: Vector6::zeros(),
-            desired_rate: Vector6::zeros(),
-            measured: Vector6::zeros(),
-            load: [0.0, 1.0],
-        };
-        let mut m =
-            Modification { value: Vector6::new(0.004, 0.01, -0.01, 0.0, 0.0, 0.0), ..Default::default() };
+        let mut feet = [foot(Phase::Swing, 0.0), foot(Phase::Stance, 1.0)];
+        feet[0].1.rise = 1e-4;
+        let mut m = raised();
+        for _ in 0..100 {
+            m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
+            assert!(m.rate[0] + feet[0].1.rise >= -1e-12);
+        }
+        feet[0].1.rise = -0.1;
         for _ in 0..500 {
-            m = modify(&control, &gain(), &forces, &m, 1e-3);
+            m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
         }
         assert!(m.value[0].abs() < 0.004 * (-0.49 * control.position_gain).exp());
     }
 
     #[test]
-    fn a_singular_gain_moves_nothing() {
-        assert_eq!(solve(&Matrix6::zeros(), &Vector6::repeat(1.0)), Vector6::zeros());
+    fn an_early_foot_stops_and_a_late_one_goes_down_to_its_depth() {
+        let control = crate::test_gains();
+        let mut feet = [foot(Phase::Early, 1.0), foot(Phase::Late, 0.0)];
+        feet[0].1.rise = -0.2;
+        let mut m = Modification::default();
+        m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
+        assert!((m.rate[0] + feet[0].1.rise).abs() < 1e-12, "does not go on down");
+        assert!((m.rate[3] + control.search[0]).abs() < 1e-12);
+        for _ in 0..1000 {
+            m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
+        }
+        let lowest = control.search[1].min(control.modification_limit[0]);
+        assert!((m.value[3] + lowest).abs() < 1e-3, "{}", m.value[3]);
+    }
+
+    #[test]
+    fn without_contact_or_numbers_nothing_is_inverted() {
+        assert_eq!(Compliance::new(&Matrix3::zeros()), Compliance::none());
+        assert_eq!(Compliance::new(&Matrix3::from_element(f64::NAN)), Compliance::none());
     }
 }

@@ -31,6 +31,7 @@ pub type TaskJacobian = SMatrix<f64, TASK, MAX_JOINTS>;
 type Gram = SMatrix<f64, TASK, TASK>;
 
 /// Weights, ranges and comfort of the joints.
+#[derive(Clone)]
 pub struct InverseKinematics {
     /// 1/W; zero for joints that are not free.
     inverse_weight: JointVector,

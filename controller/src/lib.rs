@@ -6,20 +6,28 @@
 //! |---|---|---|
 //! | which plan, and what it wants now | | [`following`] |
 //! | measured task space, inclination, zero-moment point | (4.11)-(4.17), (3.5) | [`estimate`], [`torso`] |
+//! | early and late contact | | [`contact`] |
 //! | contact force modification | (5.2)-(5.22) | [`contact_force`] |
 //! | hybrid position/force control | (5.23)-(5.33) | [`force_control`] |
 //! | inverse kinematics with null-space optimization | (5.34)-(5.39) | [`inverse_kinematics`] |
+//! | camera head | (4.55)-(4.59) | [`gaze`], [`saccade`] |
+//! | arm swing | 4.9 | [`arms`] |
 //! | direct kinematics of the desired joints (feedback path 1) | (4.5)-(4.10) | [`task_space`] |
 
+pub mod arms;
+pub mod contact;
 pub mod contact_force;
 pub mod daemon;
 pub mod estimate;
 pub mod following;
 pub mod force_control;
+pub mod gaze;
 pub mod inverse_kinematics;
+pub mod saccade;
 mod stabilizer;
 pub mod task_space;
 pub mod torso;
+mod watch;
 
 pub use stabilizer::Controller;
 
@@ -40,6 +48,10 @@ pub(crate) fn test_gains() -> config::gait::Control {
         modification_rate: [0.5, 2.0, 2.0],
         drift_gain: 50.0,
         null_space_gain: 1.0,
+        search: [0.15, 0.04],
+        inclination_compensation: 1.0,
+        planned_deformation: 0.0,
+        feedback: 1,
         force_filter: 0.005,
     }
 }

@@ -1,33 +1,37 @@
 //! One control cycle. Pure: no clock, no topics.
 
+mod forces;
+mod task;
+
 use config::gait::Control;
 use config::parameters::PARAMETERS;
 use config::{Gait, Robot};
-use messages::command::ParameterCommand;
-use messages::{ControllerState, EventCode, JointMode, JointTargets, MAX_JOINTS, Parameters, Plan, Sensors};
+use messages::{
+    Command, ControllerState, EventCode, JointMode, JointTargets, MAX_JOINTS, Parameters, Plan, Sensors,
+};
 use multibody::ModelError;
-use nalgebra::{Matrix3, Matrix6, Rotation3, SMatrix, Vector2, Vector3, Vector6};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
-use crate::contact_force::{FootWrench, Support, distribute, stabilize};
-use crate::estimate::{Estimate, force_coordinates};
+use crate::arms::Arms;
+use crate::contact::Contact;
+use crate::estimate::Estimate;
 use crate::following::{Desired, PlanFollower};
-use crate::force_control::{Forces, Modification, contact_stiffness, modify};
-use crate::inverse_kinematics::{InverseKinematics, JointVector, TaskJacobian, TaskVector};
+use crate::force_control::{Compliance, Guide, Modification, modify};
+use crate::gaze::{Gaze, TorsoMotion};
+use crate::inverse_kinematics::{InverseKinematics, JointVector, TaskJacobian};
 use crate::task_space::TaskSpace;
 use crate::torso;
+use crate::watch::Watch;
 
-/// Inclination error \[rad\] from which the robot counts as falling: joints are brought to rest.
-const FALLING: f64 = 0.5;
-/// Cycles without load on either foot, while the plan wants load, after which the robot counts as lifted.
-const LIFTED_CYCLES: u32 = 200;
 /// Cycles that may be missed and made good for by a longer step; the joint loop carries on meanwhile.
 const MISSED_CYCLES: u64 = 10;
-/// Cycles in a row that are bridged with the last good sensor data if a value is not finite.
-const BAD_CYCLES: u32 = 20;
-/// Joints without a task go to their comfortable angles with this time constant \[1/s\] and at most this speed \[rad/s\].
-const SETTLE: (f64, f64) = (2.0, 0.5);
+/// \[s\] A limit is told again after so long without it.
+const QUIET: f64 = 1.0;
+/// Feedback path 2.
+const MEASURED: u64 = 2;
 
 /// The stabilizing control of one robot.
+#[derive(Clone)]
 pub struct Controller {
     robot: Robot,
     control: Control,
@@ -37,7 +41,13 @@ pub struct Controller {
     measured: TaskSpace,
     ik: InverseKinematics,
     free: Vec<bool>,
+    contacts: [Contact; 2],
+    /// K and K^+ of each foot, and how its modification moves apart from forces.
     stiffness: [Matrix3<f64>; 2],
+    compliance: [Compliance; 2],
+    guides: [Guide; 2],
+    /// lambda_d0 at the beginning and at the end of the cycle.
+    planned_force: [Vector6<f64>; 2],
     jacobian: TaskJacobian,
     modification: Modification,
     filtered: Vector6<f64>,
@@ -47,15 +57,35 @@ pub struct Controller {
     started: bool,
     /// Tick of the last cycle, and the time since then \[s\]: more than a cycle if cycles were missed.
     last_tick: u64,
+    /// \[m\] @I_0 Heights at which the plan wanted the soles at the end of the last cycle.
+    sole_height: [f64; 2],
     elapsed: f64,
-    unloaded: u32,
-    /// The last sensor data without a NaN, and how many with one came since.
-    good: Sensors,
-    bad: u32,
-    stopped: bool,
+    watch: Watch,
+    gaze: Option<Gaze>,
+    arms: Option<Arms>,
     targets: JointTargets,
     state: ControllerState,
-    event: Option<(EventCode, u64)>,
+    events: Events,
+    /// Tick of the last damped task, limited modification and limited joint.
+    told: [Option<u64>; 3],
+}
+
+/// What happened and was not fetched yet, the first one first.
+#[derive(Clone, Default)]
+struct Events([Option<(EventCode, u64)>; 4]);
+
+impl Events {
+    /// The newest ones are dropped if nobody fetches them.
+    fn add(&mut self, event: Option<(EventCode, u64)>) {
+        if let Some(free) = self.0.iter_mut().find(|e| e.is_none()) {
+            *free = event;
+        }
+    }
+
+    fn take(&mut self) -> Option<(EventCode, u64)> {
+        self.0.rotate_left(1);
+        self.0[self.0.len() - 1].take()
+    }
 }
 
 impl Controller {
@@ -65,17 +95,20 @@ impl Controller {
         let free = desired.leg_joints(robot);
         let mut zero = TaskSpace::new(robot)?;
         zero.update(&vec![0.0; robot.joints.len()]);
-        let stiffness = std::array::from_fn(|i| foot_stiffness(robot, &zero, i));
         Ok(Self {
             ik: InverseKinematics::new(&robot.joints, &free, gait.control.null_space_gain),
             robot: robot.clone(),
             control: gait.control,
             dt,
-            plan: PlanFollower::new(),
+            plan: PlanFollower::new([0, 1].map(|i| [robot.feet[i].support[0], robot.feet[i].support[1]])),
             measured: zero,
             desired,
             free,
-            stiffness,
+            contacts: [Contact::default(); 2],
+            stiffness: [Matrix3::zeros(); 2],
+            compliance: [Compliance::new(&Matrix3::zeros()); 2],
+            guides: [Guide::default(); 2],
+            planned_force: [Vector6::zeros(); 2],
             jacobian: TaskJacobian::zeros(),
             modification: Modification::default(),
             filtered: Vector6::zeros(),
@@ -83,27 +116,41 @@ impl Controller {
             speed: JointVector::zeros(),
             started: false,
             last_tick: 0,
+            sole_height: [0.0; 2],
             elapsed: dt,
-            unloaded: 0,
-            good: Sensors::default(),
-            bad: 0,
-            stopped: false,
+            watch: Watch::default(),
+            gaze: Gaze::new(robot)?,
+            arms: Arms::new(robot, gait.arm_swing)?,
             targets: JointTargets::default(),
             state: ControllerState::default(),
-            event: None,
+            events: Events::default(),
+            told: [None; 3],
         })
     }
 
-    /// Something worth a line in the log, since the last call.
-    pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        self.event.take()
+    /// What it carries from cycle to cycle besides the plan, for studies that disturb it: joint targets \[rad\],
+    /// modification \[m, rad, rad\], filtered forces \[N, N m, N m\].
+    pub fn memory(&mut self) -> [&mut [f64]; 3] {
+        let n = self.robot.joints.len();
+        [&mut self.angle[..n], self.modification.value.as_mut_slice(), self.filtered.as_mut_slice()]
     }
 
-    /// Gives a parameter another value from the next cycle on; an event if there is no such parameter or value.
-    pub fn set_parameter(&mut self, command: &ParameterCommand) -> Result<(), EventCode> {
-        let parameter = PARAMETERS.get(command.number as usize);
-        let set = parameter.is_some_and(|p| p.set(&mut self.control, command.value));
-        if set { Ok(()) } else { Err(EventCode::CommandRefused) }
+    /// Something worth a line in the log, since the last step; to be called until there is none.
+    pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
+        self.events.take().or_else(|| self.gaze.as_mut()?.take_event())
+    }
+
+    /// Takes a command of the domains stabilize and head from the next cycle on; what to say about it.
+    pub fn command(&mut self, command: &Command) -> Option<(EventCode, u64)> {
+        let id = command.address().1.into();
+        if let Command::Parameter(change) = command {
+            let parameter = PARAMETERS.get(change.number as usize);
+            let set = parameter.is_some_and(|p| p.set(&mut self.control, change.value));
+            let refused = (EventCode::CommandRefused, id);
+            return Some(if set { (EventCode::ParameterSet, change.number.into()) } else { refused });
+        }
+        let taken = self.gaze.as_mut().is_some_and(|gaze| gaze.command(command));
+        (!taken).then_some((EventCode::HeadRefused, id))
     }
 
     /// Writes the present values of all parameters.
@@ -119,8 +166,12 @@ impl Controller {
         let tick = sensors.header.tick;
         self.elapsed = self.dt * tick.saturating_sub(self.last_tick).clamp(1, MISSED_CYCLES) as f64;
         self.last_tick = tick;
-        self.event = self.plan.update(tick, newest);
-        let sensors = &self.admit(sensors);
+        self.events.add(self.plan.update(tick, newest));
+        let (sensors, event) = self.watch.admit(sensors, self.robot.joints.len());
+        self.events.add(event.map(|code| (code, 0)));
+        let sensors = &sensors;
+        let (angles, speeds) = (&sensors.joint_angle, &sensors.joint_speed);
+        self.measured.update_motion(angles, speeds, &sensors.imu.angular_velocity);
         if sensors.power == 0 || !self.started {
             self.start_from(sensors);
         }
@@ -129,16 +180,13 @@ impl Controller {
         }
         let t = self.plan.time(tick, self.dt);
         let (now, end) = (self.plan.sample(t), self.plan.sample(t + self.dt));
-        self.measured.update_motion(
-            &sensors.joint_angle,
-            &sensors.joint_speed,
-            &sensors.imu.angular_velocity,
-        );
+        self.take_over(&now, &end);
         let estimate = Estimate::new(&self.robot, sensors, &self.measured, &self.reference(&now));
         if self.plan.id() > 0 && sensors.power == 1 {
-            self.watch(sensors, &now, &estimate);
+            let why = self.watch.check(sensors, &now, &estimate);
+            self.events.add(why.map(|code| (code, 0)));
         }
-        if self.plan.id() > 0 && !self.stopped && sensors.power == 1 {
+        if self.plan.id() > 0 && !self.watch.stopped() && sensors.power == 1 {
             self.stabilize(sensors, &now, &end, &estimate);
         } else {
             self.speed.fill(0.0);
@@ -147,24 +195,18 @@ impl Controller {
         (&self.targets, &self.state)
     }
 
-    /// The sensor data if they are finite, otherwise the last ones that were, for a while.
-    fn admit(&mut self, sensors: &Sensors) -> Sensors {
-        let n = self.robot.joints.len();
-        let (imu, wrench) = (&sensors.imu, &sensors.foot_wrench);
-        let finite = sensors.joint_angle[..n].iter().chain(&sensors.joint_speed[..n]).all(|x| x.is_finite())
-            && imu.orientation.iter().chain(&imu.angular_velocity).all(|x| x.is_finite())
-            && wrench.iter().all(|w| w.force.iter().chain(&w.moment).all(|x| x.is_finite()));
-        if finite {
-            self.good = *sensors;
-            self.bad = 0;
-        } else {
-            self.bad = self.bad.saturating_add(1);
-            self.good.header = sensors.header;
-            if self.bad == 1 {
-                self.event = Some((EventCode::SensorNotFinite, 0));
+    /// A plan that goes on from a sensed contact has its foot where the ground is, not where the plan before wanted it:
+    /// the modification takes up the difference, and the foot does not jump.
+    fn take_over(&mut self, now: &Desired, end: &Desired) {
+        let height = self.plan.plan().height;
+        let switched = self.state.plan_id > 0 && self.state.plan_id != self.plan.id();
+        for foot in 0..2 {
+            let jump = self.sole_height[foot] - (height + now.feet[foot].position[2]);
+            if switched && jump.abs() > 1e-4 {
+                self.modification.value[3 * foot] += jump;
             }
+            self.sole_height[foot] = height + end.feet[foot].position[2];
         }
-        self.good
     }
 
     /// Stands still where the joints are: while the supply is off the targets follow the measured angles.
@@ -172,8 +214,15 @@ impl Controller {
         self.angle = sensors.joint_angle;
         self.speed.fill(0.0);
         self.modification = Modification::default();
-        self.filtered = force_coordinates(sensors);
-        self.stopped = false;
+        self.contacts = [Contact::default(); 2];
+        self.filtered = self.force_coordinates(sensors);
+        self.watch.restart();
+        if let Some(gaze) = &mut self.gaze {
+            gaze.halt();
+        }
+        if let Some(arms) = &mut self.arms {
+            arms.halt();
+        }
         self.started = true;
     }
 
@@ -190,188 +239,57 @@ impl Controller {
         reference
     }
 
-    /// Falling and being lifted end in a controlled stop.
-    fn watch(&mut self, sensors: &Sensors, now: &Desired, estimate: &Estimate) {
-        let tilt = (0..2).map(|i| (now.torso.position[i] - estimate.angles[i]).abs()).fold(0.0, f64::max);
-        let load = sensors.foot_wrench[0].force[2].max(sensors.foot_wrench[1].force[2]);
-        self.unloaded = if load < crate::estimate::LOADED { self.unloaded + 1 } else { 0 };
-        let why = if self.bad > BAD_CYCLES {
-            Some(EventCode::SensorNotFinite)
-        } else if !(tilt < FALLING) {
-            Some(EventCode::Fallen)
-        } else if self.unloaded > LIFTED_CYCLES {
-            Some(EventCode::Lifted)
-        } else {
-            None
-        };
-        if let Some(why) = why.filter(|_| !self.stopped) {
-            self.stopped = true;
-            self.event = Some((why, 0));
-        }
-    }
-
     /// The chain of figure 5.8.
     fn stabilize(&mut self, sensors: &Sensors, now: &Desired, end: &Desired, estimate: &Estimate) {
-        self.desired.update(&self.angle);
+        let measured = self.control.feedback == MEASURED;
+        self.desired.update(if measured { &sensors.joint_angle } else { &self.angle });
         let torso = torso::rotation(&Vector3::from(end.torso.position)).unwrap_or_else(Matrix3::identity);
-        let forces = self.forces(sensors, now, end, estimate);
+        self.feel(sensors, now, end, estimate);
+        let forces = self.forces(now, end, estimate);
         self.desired.task_jacobian(&mut self.jacobian);
         let task = self.ik.factorise(&self.jacobian);
-        let gain = self.force_gain(&task, &torso, end);
-        self.modification = modify(&self.control, &gain, &forces, &self.modification, self.elapsed);
+        let motion = self.sole_motion(&task, &torso, end);
+        let feet = std::array::from_fn(|i| (self.compliance[i], self.guides[i]));
+        self.modification = modify(&self.control, &motion, &feet, &forces, &self.modification, self.elapsed);
         let velocity = self.task_velocity(&torso, end);
-        let given = self.given_speeds(end);
+        let mut given = self.given_speeds(end);
+        if let Some(gaze) = &mut self.gaze {
+            let torso = TorsoMotion {
+                origin: self.plan.plan().origin,
+                height: self.plan.plan().height,
+                turn: estimate.turn,
+                rotation: estimate.rotation,
+                position: estimate.torso,
+                velocity: estimate.torso_velocity,
+                omega: sensors.imu.angular_velocity.into(),
+            };
+            gaze.drive(&torso, self.elapsed, &self.angle, &self.speed, &mut given);
+        }
+        if let Some(arms) = &mut self.arms {
+            arms.drive(&self.desired, self.elapsed, self.control.drift_gain, &mut given);
+        }
         let wanted = self.ik.speeds(&task, &velocity, &given, &self.angle);
-        self.integrate(&wanted);
-        self.state.limited += u64::from(task.damped) + u64::from(self.modification.limited);
+        let held = self.integrate(&wanted);
+        self.tell_limits([task.damped, self.modification.limited, held]);
     }
 
-    /// Contact forces: what the plan wants with the stabilizing part, and what is measured (5.2)-(5.22).
-    fn forces(&mut self, sensors: &Sensors, now: &Desired, end: &Desired, estimate: &Estimate) -> Forces {
-        let error = Vector2::from_fn(|i, _| now.torso.position[i] - estimate.angles[i]);
-        let rate = Vector2::from_fn(|i, _| now.torso.velocity[i] - estimate.rates[i]);
-        let height = now.com.position[2] - estimate.com.z;
-        let height_rate = now.com.velocity[2] - estimate.com_velocity.z;
-        let stabilizing = stabilize(&self.control, error, rate, height, height_rate);
-        let modified = self.foot_forces(now, stabilizing);
-        let planned = self.foot_forces(now, (Vector3::zeros(), 0.0));
-        let planned_next = self.foot_forces(end, (Vector3::zeros(), 0.0));
-        for (i, w) in modified.iter().enumerate() {
-            self.state.wrench_desired[i].force = w.force.into();
-            self.state.wrench_desired[i].moment = w.moment.into();
-        }
-        let a = (self.elapsed / self.control.force_filter).min(1.0);
-        self.filtered += (force_coordinates(sensors) - self.filtered) * a;
-        Forces {
-            desired: coordinates(&modified),
-            desired_rate: (coordinates(&planned_next) - coordinates(&planned)) / self.dt,
-            measured: self.filtered,
-            load: now.load,
-        }
-    }
-
-    /// lambda_d1 in the sensor frames, whose axes are those of the flat soles (5.20), (5.21).
-    fn foot_forces(&self, at: &Desired, stabilizing: (Vector3<f64>, f64)) -> [FootWrench; 2] {
-        let mass = self.desired.mass();
-        let com = Vector3::from(at.com.position);
-        let force = (Vector3::from(at.com.acceleration) - multibody::GRAVITY) * mass;
-        let supports: [Support; 2] = std::array::from_fn(|i| self.support(at, i));
-        let wrenches = distribute(
-            &self.control,
-            mass * -multibody::GRAVITY.z,
-            (force, at.zmp.into(), com),
-            stabilizing,
-            &supports,
-        );
-        std::array::from_fn(|i| {
-            let back = Rotation3::from_axis_angle(&Vector3::z_axis(), -supports[i].heading);
-            FootWrench { force: back * wrenches[i].force, moment: back * wrenches[i].moment }
-        })
-    }
-
-    /// Where a foot carries, as planned.
-    fn support(&self, at: &Desired, foot: usize) -> Support {
-        let (sole, sensor) = (self.desired.sole(foot), self.desired.sensor(foot));
-        let offset = sole.rotation.transpose() * (sensor.position - sole.position); // sensor seen from the sole
-        let [x, y, z, heading] = at.feet[foot].position;
-        let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), heading);
-        let [back, front, right, left] = self.robot.feet[foot].support;
-        Support {
-            sensor: Vector3::new(x, y, z) + turn * offset,
-            load: at.load[foot],
-            sole: [back - offset.x, front - offset.x, right - offset.y, left - offset.y],
-            height: offset.z,
-            heading,
-        }
-    }
-
-    /// G: forces at both sensors per unit of modification, through the inverse kinematics (5.30).
-    fn force_gain(
-        &self,
-        task: &crate::inverse_kinematics::Factorised,
-        torso: &Matrix3<f64>,
-        end: &Desired,
-    ) -> Matrix6<f64> {
-        let axes: [Matrix3<f64>; 2] = std::array::from_fn(|i| self.foot_axes(torso, end, i));
-        let mut unit = SMatrix::<f64, 12, 6>::zeros();
-        for foot in 0..2 {
-            let (x, y, z) = (axes[foot].column(0), axes[foot].column(1), axes[foot].column(2));
-            unit.fixed_view_mut::<3, 1>(6 * foot, 3 * foot).copy_from(&z);
-            unit.fixed_view_mut::<3, 1>(6 * foot + 3, 3 * foot + 1).copy_from(&x);
-            unit.fixed_view_mut::<3, 1>(6 * foot + 3, 3 * foot + 2).copy_from(&y);
-        }
-        let speeds = self.ik.columns(task, &unit);
-        let mut gain = Matrix6::zeros();
-        for foot in 0..2 {
-            let rows = axes[foot].transpose();
-            // Lift, roll and pitch of this sole against the torso.
-            let mut motion = SMatrix::<f64, 3, 6>::zeros();
-            for (j, twist) in
-                self.desired.sole_jacobian(foot).column_iter().enumerate().filter(|(j, _)| self.free[*j])
-            {
-                let (linear, turn) = (rows * twist.fixed_rows::<3>(0), rows * twist.fixed_rows::<3>(3));
-                motion += Vector3::new(linear.z, turn.x, turn.y) * speeds.row(j);
+    /// An event where a nearly singular task begins to be damped (1), a modification (2) or a joint (3) meets its limit,
+    /// each once until it was quiet for [`QUIET`].
+    fn tell_limits(&mut self, met: [bool; 3]) {
+        self.state.limited += u64::from(met[0]) + u64::from(met[1]);
+        for (what, last) in (1..).zip(&mut self.told).filter(|(what, _)| met[*what as usize - 1]) {
+            let since = |last| self.last_tick.saturating_sub(last) as f64 * self.dt;
+            if last.is_none_or(|last| since(last) > QUIET) {
+                self.events.add(Some((EventCode::ControlLimited, what)));
             }
-            gain.fixed_rows_mut::<3>(3 * foot).copy_from(&(self.stiffness[foot] * motion));
+            *last = Some(self.last_tick);
         }
-        gain
     }
 
-    /// Axes of the planned foot (heading x, y, vertical) in torso axes.
-    fn foot_axes(&self, torso: &Matrix3<f64>, at: &Desired, foot: usize) -> Matrix3<f64> {
-        let heading = Rotation3::from_axis_angle(&Vector3::z_axis(), at.feet[foot].position[3]);
-        torso.transpose() * heading.matrix()
-    }
-
-    /// x'_d1 with drift compensation K_x (x_d1 - x), torso axes (5.33), (5.35).
-    fn task_velocity(&self, torso: &Matrix3<f64>, end: &Desired) -> TaskVector {
-        let back = torso.transpose();
-        let omega = back * torso_omega(torso, end);
-        let com = Vector3::from(end.com.position);
-        let com_velocity = Vector3::from(end.com.velocity);
-        let mut x = TaskVector::zeros();
-        for foot in 0..2 {
-            let s = &end.feet[foot];
-            let axes = self.foot_axes(torso, end, foot);
-            let m = self.modification.value.fixed_rows::<3>(3 * foot).into_owned();
-            let m_rate = self.modification.rate.fixed_rows::<3>(3 * foot).into_owned();
-            let vertical = axes.column(2);
-
-            let position =
-                back * (Vector3::new(s.position[0], s.position[1], s.position[2]) - com) + vertical * m[0];
-            let velocity = back * (Vector3::new(s.velocity[0], s.velocity[1], s.velocity[2]) - com_velocity)
-                + vertical * m_rate[0]
-                - omega.cross(&position);
-            let tilt = Rotation3::from_axis_angle(&Vector3::y_axis(), m[2])
-                * Rotation3::from_axis_angle(&Vector3::x_axis(), m[1]);
-            let rotation = axes * tilt.matrix();
-            let turning = axes * Vector3::new(m_rate[1], m_rate[2], s.velocity[3]) - omega;
-
-            let is = self.desired.sole(foot);
-            let position_error = position - (is.position - self.desired.com());
-            let rotation_error = rotation_vector(&(rotation * is.rotation.transpose()));
-            let k = self.control.drift_gain;
-            x.fixed_rows_mut::<3>(6 * foot).copy_from(&(velocity + position_error * k));
-            x.fixed_rows_mut::<3>(6 * foot + 3).copy_from(&(turning + rotation_error * k));
-        }
-        x
-    }
-
-    /// Speeds of the joints that no foot needs: toes as planned, the others to their comfortable angles.
-    fn given_speeds(&self, end: &Desired) -> JointVector {
-        let mut speeds = JointVector::zeros();
-        for (j, joint) in self.robot.joints.iter().enumerate().filter(|(j, _)| !self.free[*j]) {
-            speeds[j] = (SETTLE.0 * (joint.comfort - self.angle[j])).clamp(-SETTLE.1, SETTLE.1);
-        }
-        for (foot, toe) in self.robot.feet.iter().enumerate().filter_map(|(i, f)| Some((i, f.toe?))) {
-            let s = &end.toes[foot];
-            speeds[toe] = s.velocity[0] + self.control.drift_gain * (s.position[0] - self.angle[toe]);
-        }
-        speeds
-    }
-
-    /// q_d of the end of the cycle, trapezoidal, so that angle and speed agree; within speed and range.
-    fn integrate(&mut self, wanted: &JointVector) {
+    /// q_d of the end of the cycle, trapezoidal, so that angle and speed agree; within speed and range. Whether one of
+    /// these held a joint.
+    fn integrate(&mut self, wanted: &JointVector) -> bool {
+        let before = self.state.limited;
         for (j, joint) in self.robot.joints.iter().enumerate() {
             let speed = wanted[j].clamp(-joint.speed_limit, joint.speed_limit);
             let angle = self.angle[j] + 0.5 * self.elapsed * (self.speed[j] + speed);
@@ -386,11 +304,12 @@ impl Controller {
                 self.angle[j] = held;
             }
         }
+        self.state.limited > before
     }
 
     fn report(&mut self, sensors: &Sensors, t: f64, now: &Desired, estimate: &Estimate) {
         self.targets.header = sensors.header;
-        self.targets.mode = match (self.plan.id(), self.stopped) {
+        self.targets.mode = match (self.plan.id(), self.watch.stopped()) {
             (_, true) => JointMode::Stop,
             (0, _) => JointMode::Hold,
             _ => JointMode::Track,
@@ -402,6 +321,8 @@ impl Controller {
         s.plan_id = self.plan.id();
         s.plan_time = t;
         s.gait = self.plan.gait(t) as u64;
+        s.contact = self.watch.contact().map(u64::from);
+        s.phase = [0, 1].map(|foot| self.plan.plan().phase(foot, t) as u64);
         s.origin = self.plan.plan().origin;
         s.com_desired = now.com.position;
         s.feet_desired = now.feet.map(|f| f.position);
@@ -413,35 +334,4 @@ impl Controller {
             s.modification[foot] = [m[0], -m[1], m[2]]; // z, s1, s0: s1 is minus roll, s0 is pitch (errata 2.4)
         }
     }
-}
-
-/// (F_z, T_x, T_y) of both feet.
-fn coordinates(wrenches: &[FootWrench; 2]) -> Vector6<f64> {
-    Vector6::from_fn(|i, _| {
-        let w = &wrenches[i / 3];
-        [w.force.z, w.moment.x, w.moment.y][i % 3]
-    })
-}
-
-/// Stiffness of a flat foot with all its contact points closed (5.23).
-fn foot_stiffness(robot: &Robot, zero: &TaskSpace, foot: usize) -> Matrix3<f64> {
-    let (sole, sensor) = (zero.sole(foot), zero.sensor(foot));
-    let sensor = sole.rotation.transpose() * (sensor.position - sole.position);
-    let points = zero.contact_points(robot, foot);
-    contact_stiffness(&points, sensor, robot.contact.normal_stiffness)
-}
-
-/// \[rad/s\] @I Planned angular velocity of the torso.
-fn torso_omega(torso: &Matrix3<f64>, at: &Desired) -> Vector3<f64> {
-    let rates = Vector3::from(at.torso.velocity);
-    if rates == Vector3::zeros() {
-        return rates;
-    }
-    torso::rates_from_omega(torso).try_inverse().map_or(Vector3::zeros(), |m| m * rates)
-}
-
-/// Rotation vector of a small rotation.
-fn rotation_vector(r: &Matrix3<f64>) -> Vector3<f64> {
-    // Twice the quaternion's vector part to first order; the drift loop sees it every cycle.
-    Vector3::new(r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]) * 0.5
 }

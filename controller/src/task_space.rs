@@ -3,6 +3,7 @@
 //! All vectors are in torso axes from the torso's origin, so that nothing here depends on where the robot is.
 
 use config::Robot;
+use config::robot::Foot;
 use multibody::{Data, Frame, Model, ModelError};
 use nalgebra::{Dyn, Matrix3, OMatrix, U3, U6, Vector3};
 
@@ -18,6 +19,7 @@ pub struct Place {
 }
 
 /// Kinematics of one set of joint angles.
+#[derive(Clone)]
 pub struct TaskSpace {
     model: Model,
     data: Data,
@@ -25,6 +27,7 @@ pub struct TaskSpace {
     v: Vec<f64>,
     soles: [Frame; 2],
     sensors: [Frame; 2],
+    points: [Vec<Frame>; 2],
     com_jacobian: OMatrix<f64, U3, Dyn>,
     sole_jacobian: [OMatrix<f64, U6, Dyn>; 2],
     com: Vector3<f64>,
@@ -40,7 +43,12 @@ impl TaskSpace {
         let n = model.n();
         let sole = |i: usize| model.frame(&robot.feet[i].link, robot.feet[i].sole);
         let sensor = |i: usize| model.frame(&robot.feet[i].sensor_link, robot.feet[i].sensor);
+        let points = |i: usize| {
+            let foot: &Foot = &robot.feet[i];
+            foot.points.iter().map(|(link, p)| model.frame(link, *p)).collect::<Result<Vec<_>, _>>()
+        };
         Ok(Self {
+            points: [points(0)?, points(1)?],
             soles: [sole(0)?, sole(1)?],
             sensors: [sensor(0)?, sensor(1)?],
             data: Data::new(&model),
@@ -103,17 +111,41 @@ impl TaskSpace {
         self.place(&self.soles[foot])
     }
 
+    /// \[m\], \[m/rad\] Centre of gravity of all that a joint carries, and how the joint moves it.
+    pub fn limb(&self, joint: usize) -> (Vector3<f64>, Vector3<f64>) {
+        self.model.carried_cog(&self.data, joint)
+    }
+
+    /// Of each foot the first joint from the torso on that the other foot does not hang on.
+    pub fn hips(&self) -> [usize; 2] {
+        let chain =
+            |foot: usize| std::iter::successors(self.soles[foot].joint(), |&j| self.model.parent_joint(j));
+        let own = |foot: usize| chain(foot).take_while(|&j| chain(1 - foot).all(|k| k != j)).last();
+        [own(0).unwrap_or(0), own(1).unwrap_or(0)]
+    }
+
+    /// A link's own frame.
+    pub fn link(&self, name: &str) -> Result<Place, ModelError> {
+        Ok(self.place(&self.model.frame(name, [0.0; 3])?))
+    }
+
+    /// \[m/s\] @torso Velocity of the torso's origin, the sole of `foot` being at rest, after
+    /// [`TaskSpace::update_motion`].
+    pub fn torso_velocity(&self, foot: usize) -> Vector3<f64> {
+        -self.model.frame_velocity(&self.data, &self.soles[foot]).linear
+    }
+
     /// Sensor frame of a foot.
     pub fn sensor(&self, foot: usize) -> Place {
         self.place(&self.sensors[foot])
     }
 
     /// \[m\] Contact points of a foot relative to its sole frame, in the present joint angles.
-    pub fn contact_points(&self, robot: &Robot, foot: usize) -> Vec<Vector3<f64>> {
+    pub fn contact_points(&self, foot: usize) -> impl Iterator<Item = Vector3<f64>> + Clone + '_ {
         let sole = self.sole(foot);
-        let at = |(link, p): &(String, [f64; 3])| self.model.frame(link, *p).ok();
-        let frames = robot.feet[foot].points.iter().filter_map(at);
-        frames.map(|f| sole.rotation.transpose() * (self.place(&f).position - sole.position)).collect()
+        let back = sole.rotation.transpose();
+        let at = |frame| self.model.frame_position(&self.data, frame);
+        self.points[foot].iter().map(move |frame| back * (at(frame) - sole.position))
     }
 
     fn place(&self, frame: &Frame) -> Place {

@@ -21,6 +21,7 @@ pub enum State {
 }
 
 /// The joint loop of one robot.
+#[derive(Clone)]
 pub struct JointLoop {
     robot: Robot,
     system: System,

@@ -1,4 +1,4 @@
-//! How long a plan takes, and how well its motion meets its zero-moment point.
+//! How long plans take, and how well their motion meets their zero-moment point.
 //!
 //! `cargo run --release -p planner --example plan_time`
 
@@ -6,34 +6,133 @@
 mod robot;
 
 use messages::{Command, command::VelocityCommand};
+use planner::analytic::Analytic;
+use planner::collocation::{Collocation, Ends, State};
+use planner::pose::Pose;
+use planner::sole::Sole;
+use planner::zmp::Chain;
 use realtime::clock;
 use robot::{Robot, checks};
+use std::hint::black_box;
+
+/// Calls that are timed one by one.
+const CALLS: usize = 3000;
 
 fn main() {
-    println!("speed    spacing  pieces  error of the zero-moment point   time per plan: median   p99");
-    for (kmh, spacing) in [(1.0, 0.08), (2.0, 0.16), (2.0, 0.08), (2.0, 0.06), (3.0, 0.08)] {
-        let mut gait = robot::gait();
-        gait.model.spacing = spacing;
-        let mut r = Robot::new(&gait);
-        r.stand();
-        r.step(&[Command::Velocity(VelocityCommand { forward: kmh / 3.6, left: 0.0, turn: 0.0 })]);
-        let mut times = Vec::new();
-        while times.len() < 300 {
-            let made = r.plans.len();
-            let start = clock::now();
-            r.step(&[]);
-            let took = (clock::now() - start) as f64 * 1e-3;
-            if r.plans.len() > made && r.plans.len() > 10 {
-                times.push(took);
-            }
-        }
-        times.sort_by(f64::total_cmp);
-        let plan = r.plans.last().expect("made");
-        let error = checks::zmp_error(plan, &gait) * 1e3;
-        let (median, p99) = (times[times.len() / 2], times[times.len() * 99 / 100]);
-        println!(
-            "{kmh} km/h   {spacing:.2} s   {:3}     {error:8.3} mm                       {median:6.1} us   {p99:6.1} us",
-            plan.com.pieces
-        );
+    println!("speed    spacing  points  error of the zero-moment point   time per plan: median   p99");
+    let cases = [(1.0, 0.08), (2.0, 0.3), (2.0, 0.16), (2.0, 0.08), (2.0, 0.06), (3.0, 0.08)];
+    for (kmh, spacing) in cases {
+        whole_plan(kmh, spacing);
     }
+    println!("\nsolution of the boundary value problem alone (4.6.5)        median   p99");
+    for steps in [3, 20] {
+        row(&format!("closed form, {steps} steps"), closed_form(steps));
+    }
+    for (steps, per_step) in [(5, 8), (20, 8)] {
+        let points = steps * per_step;
+        row(&format!("collocation, {points} points, {steps} steps"), collocation(steps, per_step));
+    }
+    println!("\nreference of the zero-moment point (4.6.4)                   median   p99");
+    for steps in [3, 7, 20] {
+        let begin = chain(steps);
+        row(&format!("direct, {steps} steps"), timed(|| black_box(begin).solve_directly()));
+        row(&format!("sweeps, {steps} steps"), timed(|| black_box(begin).relax(2000)));
+    }
+}
+
+fn row(what: &str, [median, p99]: [f64; 2]) {
+    println!("{what:58} {median:6.2} us {p99:6.2} us");
+}
+
+fn whole_plan(kmh: f64, spacing: f64) {
+    let mut gait = robot::gait();
+    gait.model.spacing = spacing;
+    let mut r = Robot::new(&gait);
+    r.stand();
+    r.step(&[Command::Velocity(VelocityCommand { forward: kmh / 3.6, left: 0.0, turn: 0.0 })]);
+    let mut times = Vec::new();
+    while times.len() < 300 {
+        let made = r.plans.len();
+        r.step(&[]);
+        if r.plans.len() > made && r.plans.len() > 10 {
+            times.push(r.took);
+        }
+    }
+    let plan = r.plans.last().expect("made");
+    let error = checks::zmp_error(plan, &gait) * 1e3;
+    let [median, p99] = spread(times);
+    let points = plan.com.pieces + 2;
+    println!(
+        "{kmh} km/h   {spacing:.2} s   {points:3}     {error:8.3} mm                       {median:6.1} us   {p99:6.1} us"
+    );
+}
+
+fn spread(mut times: Vec<f64>) -> [f64; 2] {
+    times.sort_by(f64::total_cmp);
+    [times[times.len() / 2], times[times.len() * 99 / 100]]
+}
+
+/// Median and p99 \[us\].
+fn timed<T>(mut call: impl FnMut() -> T) -> [f64; 2] {
+    let mut times = Vec::with_capacity(CALLS);
+    for _ in 0..CALLS {
+        let start = clock::now();
+        black_box(call());
+        times.push((clock::now() - start) as f64 * 1e-3);
+    }
+    spread(times)
+}
+
+/// Steps straight on: two phases each.
+fn chain(steps: usize) -> Chain {
+    let sole = Sole { center: [0.0; 2], half: [0.1, 0.03] };
+    let mut chain = Chain::new();
+    let foot = |k: usize| Pose::new(0.4 * k as f64, if k.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0);
+    chain.fix(0.0, [0.0, -0.1]);
+    for k in 1..=steps {
+        let begin = 0.8 * (k - 1) as f64;
+        chain.hold(begin + 0.16, &sole, &foot(k));
+        if k < steps {
+            chain.hold(begin + 0.8, &sole, &foot(k));
+        }
+    }
+    let end = foot(steps);
+    chain.fix(0.8 * steps as f64, [end.x, end.y]);
+    chain
+}
+
+const BEGIN: State = State { r: [0.01, -0.05], v: [0.2, 0.15] };
+
+fn closed_form(steps: usize) -> [f64; 2] {
+    let mut reference = chain(steps);
+    reference.solve();
+    let mut a = Analytic::new(0.9);
+    let goal = [0.4 * steps as f64, -0.02];
+    timed(|| (a.follow(black_box(&reference)), a.solve(&BEGIN, goal)))
+}
+
+/// Solution with amplitudes of both ends, and the motion at every point.
+fn collocation(steps: usize, per_step: usize) -> [f64; 2] {
+    let mut reference = chain(steps);
+    reference.solve();
+    let om2 = 9.81 / 0.9;
+    let end = 0.8 * steps as f64;
+    let trapezoid = |t: f64, at: f64| ((t - at) / 0.1).min((at + 0.8 - t) / 0.1).clamp(0.0, 1.0);
+    let forces = |t: f64| {
+        let p = reference.at(t);
+        [-om2 * p[0], -om2 * p[1], -om2 * trapezoid(t, 0.0), -om2 * trapezoid(t, end - 0.8)]
+    };
+    let mut c = Box::new(Collocation::new());
+    c.n = steps * per_step;
+    let spacing = end / (c.n - 1) as f64;
+    for i in 0..c.n {
+        let t = spacing * i as f64;
+        (c.t[i], c.om2[i], c.f[i], c.half[i]) = (t, om2, forces(t), forces(t + 0.5 * spacing));
+    }
+    let target = State { r: [0.4 * steps as f64, -0.02], v: [0.2, 0.1] };
+    timed(|| {
+        c.solve();
+        let ends = Ends { begin: BEGIN.r, end: target.r, gamma: c.amplitudes(&BEGIN, &target) };
+        (0..c.n).map(|i| c.motion(i, &ends)[0][0]).sum::<f64>()
+    })
 }

@@ -11,12 +11,15 @@
 //! | f | columns: r_x, r_y of the reference, q_0, q_1 of the modifications (4.49) | m/s^2 |
 //! | u | columns: the same, then unit value at the left end, unit value at the right end | m |
 //! | a, c | lengths of the intervals before and after a knot | s |
+//! | gamma | amplitudes of the modifications (4.49) | m |
+//! | w, xi | sqrt(om2) at the right end, divergent component r + v/w | 1/s, m |
 
 use crate::pose::{Pose, rotate};
+use crate::verdict::Verdict;
 use curves::Sample;
 
 /// Most knots of one problem.
-pub const MAX_KNOTS: usize = 97;
+pub const MAX_KNOTS: usize = 224;
 /// Columns of right-hand sides: r_x, r_y, q_0, q_1.
 pub const F: usize = 4;
 /// Columns of solutions: those of the right-hand sides, left end, right end.
@@ -43,6 +46,7 @@ impl State {
 }
 
 /// A problem and its solution.
+#[derive(Clone)]
 pub struct Collocation {
     /// Number of knots.
     pub n: usize,
@@ -80,47 +84,78 @@ impl Collocation {
         }
     }
 
-    /// Solves for all columns.
-    pub fn solve(&mut self) {
+    /// Solves for all columns. Anything but [`Verdict::Sound`]: there is no solution, or not with these knots.
+    pub fn solve(&mut self) -> Verdict {
         let n = self.n;
-        if n < 3 {
-            return;
+        if !(3..=MAX_KNOTS).contains(&n) {
+            return Verdict::Degenerate;
         }
         self.u[0] = [0.0; U];
         self.u[n - 1] = [0.0; U];
         self.u[0][LEFT] = 1.0;
         self.u[n - 1][RIGHT] = 1.0;
         self.upper[0] = 0.0;
+        let mut a = self.t[1] - self.t[0];
+        let mut by_a = 1.0 / a;
+        let mut falling = self.om2[0] <= 0.0 || self.om2[n - 1] <= 0.0;
+        let mut degenerate = a <= 0.0;
         for i in 1..n - 1 {
-            let (a, c) = (self.t[i] - self.t[i - 1], self.t[i + 1] - self.t[i]);
-            let [w_m, w_0, w_p] = hat_weights(a, c);
-            let lower = w_m * self.om2[i - 1] - 1.0 / a;
-            let diagonal = w_0 * self.om2[i] + 1.0 / a + 1.0 / c;
-            let upper = w_p * self.om2[i + 1] - 1.0 / c;
-            let pivot = 1.0 / (diagonal - lower * self.upper[i - 1]);
+            let c = self.t[i + 1] - self.t[i];
+            let by_c = 1.0 / c;
+            let [w_m, w_0, w_p] = hat_weights(a, c, by_a, by_c);
+            let lower = w_m * self.om2[i - 1] - by_a;
+            let diagonal = w_0 * self.om2[i] + by_a + by_c;
+            let upper = w_p * self.om2[i + 1] - by_c;
+            let pivot = diagonal - lower * self.upper[i - 1];
+            falling |= self.om2[i] <= 0.0;
+            degenerate |= c <= 0.0 || pivot <= 0.0;
+            let pivot = 1.0 / pivot;
             self.upper[i] = upper * pivot;
-            for k in 0..U {
-                let load = if k < F {
-                    a / 6.0 * (2.0 * self.half[i - 1][k] + self.f[i][k])
-                        + c / 6.0 * (self.f[i][k] + 2.0 * self.half[i][k])
-                } else {
-                    0.0
-                };
-                self.u[i][k] = (-load - lower * self.u[i - 1][k]) * pivot;
+            let (a6, c6) = (a / 6.0, c / 6.0);
+            let (before, at, after) = (&self.half[i - 1], &self.f[i], &self.half[i]);
+            let last = self.u[i - 1];
+            let next = &mut self.u[i];
+            for k in 0..F {
+                let load = a6 * (2.0 * before[k] + at[k]) + c6 * (at[k] + 2.0 * after[k]);
+                next[k] = (-load - lower * last[k]) * pivot;
             }
+            for k in F..U {
+                next[k] = -lower * last[k] * pivot;
+            }
+            (a, by_a) = (c, by_c);
         }
         for i in (1..n - 1).rev() {
-            for k in 0..U {
-                self.u[i][k] -= self.upper[i] * self.u[i + 1][k];
+            let next = self.u[i + 1];
+            let upper = self.upper[i];
+            for (u, v) in self.u[i].iter_mut().zip(next) {
+                *u -= upper * v;
             }
+        }
+        // What is not a number spreads to both ends; the loads there are in slopes only.
+        let ends = self.f[0].iter().chain(&self.f[n - 1]).chain(&self.u[1]).chain(&self.u[n - 2]);
+        let finite = ends.copied().all(f64::is_finite);
+        match (falling, degenerate, finite) {
+            (true, ..) => Verdict::Falling,
+            (_, true, _) => Verdict::Degenerate,
+            (.., false) => Verdict::NotFinite,
+            _ => Verdict::Sound,
         }
     }
 
     /// Slope of every column at knot `i` \[1/s\].
     pub fn slope(&self, i: usize) -> [f64; U] {
-        let n = self.n;
+        let (from, to, third, weights) = self.slope_at(i);
+        let middle = &self.half[from.min(to)];
+        std::array::from_fn(|k| {
+            let f = if k < F { [self.f[from][k], middle[k]] } else { [0.0; 2] };
+            weights.apply([self.u[from][k], self.u[to][k], self.u[third][k]], f)
+        })
+    }
+
+    /// Knots that the slope at knot `i` is made of, and their weights.
+    fn slope_at(&self, i: usize) -> (usize, usize, usize, SlopeWeights) {
         // The last knot has no interval after it: mirror the one before it.
-        let (from, to, third, sign) = if i + 1 == n {
+        let (from, to, third, sign) = if i + 1 == self.n {
             (i, i - 1, i.wrapping_sub(2), -1.0)
         } else if i == 0 {
             (0, 1, 2, 1.0)
@@ -128,15 +163,22 @@ impl Collocation {
             (i, i + 1, i - 1, 1.0)
         };
         let h = (self.t[to] - self.t[from]).abs();
-        let third_at = (self.t[third] - self.t[from]) * sign;
-        let [w_0, w_1, w_2] = slope_weights(h, third_at);
+        let x = (self.t[third] - self.t[from]) * sign;
+        let om2 = [self.om2[from], self.om2[to], self.om2[third]];
+        (from, to, third, SlopeWeights::new(h, x, om2, sign))
+    }
+
+    /// Position, velocity and acceleration in the plane at knot `i` between given ends.
+    pub fn motion(&self, i: usize, ends: &Ends) -> [[f64; 2]; 3] {
+        let (from, to, third, weights) = self.slope_at(i);
         let middle = &self.half[from.min(to)];
-        std::array::from_fn(|k| {
-            let (u0, u1, u2) = (self.u[from][k], self.u[to][k], self.u[third][k]);
-            let g = w_0 * self.om2[from] * u0 + w_1 * self.om2[to] * u1 + w_2 * self.om2[third] * u2;
-            let f = if k < F { h / 6.0 * (self.f[from][k] + 2.0 * middle[k]) } else { 0.0 };
-            sign * ((u1 - u0) / h - g / h - f)
-        })
+        let (a, b, c) = (ends.value(&self.u[from]), ends.value(&self.u[to]), ends.value(&self.u[third]));
+        let (f, m) = (ends.load(&self.f[from]), ends.load(middle));
+        [
+            a,
+            [0, 1].map(|d| weights.apply([a[d], b[d], c[d]], [f[d], m[d]])),
+            [0, 1].map(|d| self.om2[i] * a[d] + f[d]),
+        ]
     }
 
     /// The start state of the periodic solution whose end is its start, moved as `from` is moved to `to`
@@ -173,21 +215,93 @@ impl Collocation {
         }
         gamma
     }
+
+    /// The ends that begin with `begin` and meet only the divergent component of `target` (thesis 4.6.2, Takenaka;
+    /// gap 13), by the smallest amplitudes.
+    pub fn divergent_ends(&self, begin: &State, target: &State) -> Ends {
+        let (a, b) = (self.slope(0), self.slope(self.n - 1));
+        let w = self.om2[self.n - 1].sqrt();
+        let left = b[RIGHT] + w; // v_n + w r_n = xi w, solved for r_n, and that put into the slope at the begin
+        let by = a[RIGHT] / left;
+        let c = [a[2] - by * b[2], a[3] - by * b[3]];
+        let square = c[0] * c[0] + c[1] * c[1];
+        let mut ends = Ends { begin: begin.r, end: [0.0; 2], gamma: [[0.0; 2]; 2] };
+        for d in 0..2 {
+            let rest = target.v[d] + w * target.r[d] - b[d] - b[LEFT] * begin.r[d];
+            let e = begin.v[d] - a[d] - a[LEFT] * begin.r[d] - by * rest;
+            let gamma = c.map(|c| c * e / square);
+            ends.gamma[0][d] = gamma[0];
+            ends.gamma[1][d] = gamma[1];
+            ends.end[d] = (rest - b[2] * gamma[0] - b[3] * gamma[1]) / left;
+        }
+        ends
+    }
+}
+
+/// What selects one solution: positions at both ends and amplitudes, per axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ends {
+    /// \[m\]
+    pub begin: [f64; 2],
+    /// \[m\]
+    pub end: [f64; 2],
+    /// \[m\] gamma_0, gamma_1.
+    pub gamma: [[f64; 2]; 2],
+}
+
+impl Ends {
+    fn value(&self, u: &[f64; U]) -> [f64; 2] {
+        [0, 1].map(|d| {
+            u[d] + self.gamma[0][d] * u[2]
+                + self.gamma[1][d] * u[3]
+                + self.begin[d] * u[LEFT]
+                + self.end[d] * u[RIGHT]
+        })
+    }
+
+    fn load(&self, f: &[f64; F]) -> [f64; 2] {
+        [0, 1].map(|d| f[d] + self.gamma[0][d] * f[2] + self.gamma[1][d] * f[3])
+    }
+}
+
+/// Slope at a knot: difference to the next knot less the integral of (h - s) times the right-hand side.
+struct SlopeWeights {
+    values: [f64; 3],
+    load: f64,
+}
+
+impl SlopeWeights {
+    /// For the knots at 0, `h` and `x`, seen in the direction `sign`.
+    fn new(h: f64, x: f64, om2: [f64; 3], sign: f64) -> Self {
+        let by_h = sign / h;
+        let [w_0, w_1, w_2] = slope_weights(h, x);
+        Self {
+            values: [-by_h * (1.0 + w_0 * om2[0]), by_h * (1.0 - w_1 * om2[1]), -by_h * w_2 * om2[2]],
+            load: -sign * h / 6.0,
+        }
+    }
+
+    fn apply(&self, u: [f64; 3], [f, middle]: [f64; 2]) -> f64 {
+        let v = &self.values;
+        v[0] * u[0] + v[1] * u[1] + v[2] * u[2] + self.load * (f + 2.0 * middle)
+    }
 }
 
 /// Integral of the hat function of a knot times the parabola through (-a, 0, c): weights of the three values.
-fn hat_weights(a: f64, c: f64) -> [f64; 3] {
-    let m1 = (c * c - a * a) / 6.0;
+fn hat_weights(a: f64, c: f64, by_a: f64, by_c: f64) -> [f64; 3] {
+    let (sum, by_sum) = (a + c, 1.0 / (a + c));
+    let m1 = (c - a) * sum / 6.0;
     let m2 = (a * a * a + c * c * c) / 12.0;
-    let plus = (m2 + a * m1) / (c * (a + c));
-    let minus = (m2 - c * m1) / (a * (a + c));
-    [minus, (a + c) / 2.0 - plus - minus, plus]
+    let plus = (m2 + a * m1) * by_c * by_sum;
+    let minus = (m2 - c * m1) * by_a * by_sum;
+    [minus, sum / 2.0 - plus - minus, plus]
 }
 
 /// Integral of (h - s) times the parabola through (0, h, x) over [0, h]: weights of the three values.
 fn slope_weights(h: f64, x: f64) -> [f64; 3] {
     let (m0, m1, m2) = (h * h / 2.0, h * h * h / 6.0, h * h * h * h / 12.0);
-    let one = (m2 - x * m1) / (h * (h - x));
-    let other = (m2 - h * m1) / (x * (x - h));
+    let by = 1.0 / (h * x * (h - x));
+    let one = (m2 - x * m1) * x * by;
+    let other = (h * m1 - m2) * h * by;
     [m0 - one - other, one, other]
 }

@@ -11,22 +11,28 @@
 //! | symbol | name | unit |
 //! |---|---|---|
 //! | m_b, m_l | masses of the body and of one leg over the robot's | 1 |
-//! | z_b | height of the body mass point, given | m |
+//! | z_b | height of the body mass point over the zero-moment point, given | m |
 //! | y_b | body mass point | m |
 //! | z_l, y_l | leg mass point: `leg_height` above the sole frame's origin | m |
 //! | gamma | amplitude of a modification of the zero-moment point (4.49) | m |
 
-use crate::collocation::{Collocation, F, LEFT, MAX_KNOTS, RIGHT, State, U};
-use crate::feet::FootPath;
+use crate::collocation::{Collocation, Ends, F, MAX_KNOTS};
+use crate::feet::{FOOT_PIECES, FootPath};
+use crate::verdict::Verdict;
 use crate::zmp::{Chain, Shape};
 use config::gait;
-use curves::{Path, Sample};
+use curves::{Cursor, Path, Polyline, Sample};
 
 /// \[m/s^2\] Gravity, downwards.
 pub const GRAVITY: f64 = 9.81;
 
+/// Pieces of a height path.
+pub const HEIGHT_PIECES: usize = 16;
 /// Height of the body mass point over time.
-pub type HeightPath = Path<1, 16>;
+pub type HeightPath = Path<1, HEIGHT_PIECES>;
+
+/// Height of the zero-moment point over time: the plane in which it is given (4.33) lies there.
+pub type GroundPath = Polyline<1, 24>;
 
 /// Everything that drives the centre of gravity.
 #[derive(Clone, Copy)]
@@ -35,6 +41,8 @@ pub struct Drive<'a> {
     pub feet: &'a [FootPath; 2],
     /// Height of the body mass point \[m\].
     pub height: &'a HeightPath,
+    /// Height of the zero-moment point \[m\].
+    pub ground: &'a GroundPath,
     /// Reference of the zero-moment point.
     pub zmp: &'a Chain,
     /// Where the zero-moment point may be modified.
@@ -49,13 +57,71 @@ struct Legs {
     acceleration: [f64; 3],
 }
 
+/// What the ground must do for a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    /// Least vertical force over the robot's weight.
+    pub least_force: f64,
+    /// Largest ratio of horizontal to vertical force.
+    pub friction: f64,
+}
+
+impl Ground {
+    /// Nothing asked of it yet.
+    pub const UNTOUCHED: Self = Self { least_force: f64::INFINITY, friction: 0.0 };
+
+    /// With an acceleration of the centre of gravity \[m/s^2\].
+    fn with(self, [x, y, z]: [f64; 3]) -> Self {
+        let vertical = z + GRAVITY;
+        Self {
+            least_force: self.least_force.min(vertical / GRAVITY),
+            friction: self.friction.max((x * x + y * y).sqrt() / vertical),
+        }
+    }
+}
+
 /// Collocation of the three-mass model over one interval.
+#[derive(Clone)]
 pub struct ComSolver {
     leg: f64,
     body: f64,
     leg_height: f64,
     problem: Box<Collocation>,
     legs: Box<[Legs; MAX_KNOTS]>,
+    heights: Box<[Sample<1>; MAX_KNOTS]>,
+}
+
+/// Reads everything that drives the centre of gravity, in the order of time.
+struct Reader<'a> {
+    feet: [Cursor<'a, 4, FOOT_PIECES>; 2],
+    height: Cursor<'a, 1, HEIGHT_PIECES>,
+    ground: &'a GroundPath,
+    /// Height of the ground, if it is level.
+    level: Option<f64>,
+    zmp: &'a Chain,
+    node: usize,
+    shapes: [Shape; 2],
+}
+
+impl<'a> Reader<'a> {
+    fn new(drive: &Drive<'a>) -> Self {
+        Self {
+            feet: [drive.feet[0].cursor(), drive.feet[1].cursor()],
+            height: drive.height.cursor(),
+            ground: drive.ground,
+            level: level(drive.ground),
+            zmp: drive.zmp,
+            node: 0,
+            shapes: drive.shapes,
+        }
+    }
+}
+
+/// Height of the ground if it is the same everywhere.
+fn level(ground: &GroundPath) -> Option<f64> {
+    let values = &ground.values[..ground.points as usize];
+    let first = values.first().map_or(0.0, |v| v[0]);
+    values.iter().all(|v| v[0] == first).then_some(first)
 }
 
 impl ComSolver {
@@ -67,24 +133,24 @@ impl ComSolver {
             leg_height: model.leg_height,
             problem: Box::new(Collocation::new()),
             legs: Box::new([Legs::default(); MAX_KNOTS]),
+            heights: Box::new([Sample::rest([0.0]); MAX_KNOTS]),
         }
     }
 
-    fn legs(&self, feet: &[FootPath; 2], t: f64) -> ([Sample<4>; 2], Legs) {
-        let s = [feet[0].sample(t), feet[1].sample(t)];
-        let sum = |f: fn(&Sample<4>) -> &[f64; 4]| std::array::from_fn(|d| f(&s[0])[d] + f(&s[1])[d]);
-        let mut legs = Legs {
-            position: sum(|s| &s.position),
-            velocity: sum(|s| &s.velocity),
-            acceleration: sum(|s| &s.acceleration),
-        };
+    fn legs(&self, s: &[Sample<4>; 2]) -> Legs {
+        let mut legs = Legs::default();
+        for d in 0..3 {
+            legs.position[d] = s[0].position[d] + s[1].position[d];
+            legs.velocity[d] = s[0].velocity[d] + s[1].velocity[d];
+            legs.acceleration[d] = s[0].acceleration[d] + s[1].acceleration[d];
+        }
         legs.position[2] += 2.0 * self.leg_height;
-        (s, legs)
+        legs
     }
 
     /// The body mass point of a robot whose centre of gravity is `com` (errata on (4.51)-(4.54)).
     pub fn body(&self, com: &Sample<3>, feet: &[FootPath; 2], t: f64) -> Sample<3> {
-        let (_, legs) = self.legs(feet, t);
+        let legs = self.legs(&[feet[0].sample(t), feet[1].sample(t)]);
         let of = |c: &[f64; 3], l: &[f64; 3]| std::array::from_fn(|d| (c[d] - self.leg * l[d]) / self.body);
         Sample {
             position: of(&com.position, &legs.position),
@@ -93,55 +159,60 @@ impl ComSolver {
         }
     }
 
-    /// om2 and right-hand sides at `t`.
-    fn forces(&self, drive: &Drive, t: f64) -> (f64, [f64; F], Legs) {
-        let (feet, legs) = self.legs(drive.feet, t);
-        let z = drive.height.sample(t);
-        let (z_b, zdd_b) = (z.position[0], z.acceleration[0]);
+    /// om2 and right-hand sides at `t`, and what they were made of.
+    fn forces(&self, reader: &mut Reader<'_>, t: f64) -> (f64, [f64; F], Legs, Sample<1>) {
+        let [right, left] = &mut reader.feet;
+        let feet = [right.sample(t), left.sample(t)];
+        let legs = self.legs(&feet);
+        let z = reader.height.sample(t);
+        let ground = reader.level.unwrap_or_else(|| reader.ground.sample(t).0[0]);
+        let (z_b, zdd_b) = (z.position[0] - ground, z.acceleration[0]);
         let f_z = self.body * (zdd_b + GRAVITY) + self.leg * (legs.acceleration[2] + 2.0 * GRAVITY); // (4.35)
-        let p = drive.zmp.at(t);
-        let scale = 1.0 / (self.body * z_b);
-        let r = [0, 1].map(|d| {
-            let swing: f64 = feet
-                .iter()
-                .map(|l| {
-                    l.position[d] * (l.acceleration[2] + GRAVITY)
-                        - (l.position[2] + self.leg_height) * l.acceleration[d]
-                })
-                .sum();
-            scale * (self.leg * swing - p[d] * f_z) // (4.38), (4.39)
-        });
-        let q = [0, 1].map(|j| -scale * f_z * drive.shapes[j].at(t)); // (4.49)
-        ((zdd_b + GRAVITY) / z_b, [r[0], r[1], q[0], q[1]], legs)
+        let p = reader.zmp.after(t, &mut reader.node);
+        let by_z = 1.0 / z_b;
+        let scale = by_z / self.body;
+        let mut swing = [0.0; 2];
+        for l in &feet {
+            let (up, z_l) = (l.acceleration[2] + GRAVITY, l.position[2] + self.leg_height - ground);
+            for (d, swing) in swing.iter_mut().enumerate() {
+                *swing += l.position[d] * up - z_l * l.acceleration[d];
+            }
+        }
+        let r = [0, 1].map(|d| scale * (self.leg * swing[d] - p[d] * f_z)); // (4.38), (4.39)
+        let q = reader.shapes.map(|s| -scale * f_z * s.at(t)); // (4.49)
+        ((zdd_b + GRAVITY) * by_z, [r[0], r[1], q[0], q[1]], legs, z)
     }
 
     /// Places knots on all `marks` \[s\], and between them no farther apart than `spacing`, and solves (4.50).
-    pub fn solve(&mut self, drive: &Drive, marks: &[f64], spacing: f64) {
+    pub fn solve(&mut self, drive: &Drive, marks: &[f64], spacing: f64) -> Verdict {
         let mut n = 0;
         self.problem.t[0] = marks[0];
         for pair in marks.windows(2) {
             let pieces = pieces(pair[1] - pair[0], spacing);
-            for k in 1..=pieces {
-                n += 1;
-                if n >= MAX_KNOTS {
-                    return;
-                }
-                let s = k as f64 / pieces as f64;
-                self.problem.t[n] = if k == pieces { pair[1] } else { pair[0] + s * (pair[1] - pair[0]) };
+            if n + pieces >= MAX_KNOTS {
+                return Verdict::TooLong;
             }
+            let step = (pair[1] - pair[0]) / pieces as f64;
+            for k in 1..pieces {
+                self.problem.t[n + k] = pair[0] + k as f64 * step;
+            }
+            n += pieces;
+            self.problem.t[n] = pair[1];
         }
         self.problem.n = n + 1;
+        let mut reader = Reader::new(drive);
         for i in 0..=n {
             let t = self.problem.t[i];
-            let (om2, f, legs) = self.forces(drive, t);
+            let (om2, f, legs, height) = self.forces(&mut reader, t);
             self.problem.om2[i] = om2;
             self.problem.f[i] = f;
             self.legs[i] = legs;
+            self.heights[i] = height;
             if i < n {
-                self.problem.half[i] = self.forces(drive, 0.5 * (t + self.problem.t[i + 1])).1;
+                self.problem.half[i] = self.forces(&mut reader, 0.5 * (t + self.problem.t[i + 1])).1;
             }
         }
-        self.problem.solve();
+        self.problem.solve()
     }
 
     /// The problem that was solved last.
@@ -150,48 +221,36 @@ impl ComSolver {
     }
 
     /// Appends the robot's centre of gravity to `com`: quintics through position, velocity and acceleration at knots.
-    pub fn write<const N: usize>(
-        &self,
-        begin: &State,
-        end: &State,
-        gamma: &[[f64; 2]; 2],
-        height: &HeightPath,
-        com: &mut Path<3, N>,
-    ) {
-        let mut last = self.com(0, begin, end, gamma, height);
+    /// Returns what the ground must do meanwhile.
+    pub fn write<const N: usize>(&self, ends: &Ends, com: &mut Path<3, N>) -> Ground {
+        let mut last = self.com(0, ends);
+        let mut ground = Ground::UNTOUCHED.with(last.acceleration);
         for i in 1..self.problem.n {
-            let next = self.com(i, begin, end, gamma, height);
+            let next = self.com(i, ends);
             com.push(&last, &next, self.problem.t[i]);
+            let by_h = 1.0 / (self.problem.t[i] - self.problem.t[i - 1]);
+            // Half-way through a quintic, by Simpson's rule, which is exact for its acceleration.
+            let half = std::array::from_fn(|d| {
+                1.5 * by_h * (next.velocity[d] - last.velocity[d])
+                    - 0.25 * (last.acceleration[d] + next.acceleration[d])
+            });
+            ground = ground.with(half).with(next.acceleration);
             last = next;
         }
+        ground
     }
 
-    fn com(
-        &self,
-        i: usize,
-        begin: &State,
-        end: &State,
-        gamma: &[[f64; 2]; 2],
-        height: &HeightPath,
-    ) -> Sample<3> {
-        let p = &self.problem;
-        let slope = p.slope(i);
-        let z = height.sample(p.t[i]);
-        let of = |b: f64, l: f64| self.body * b + self.leg * l;
-        let mut com = Sample::rest([0.0, 0.0, of(z.position[0], self.legs[i].position[2])]);
-        com.velocity[2] = of(z.velocity[0], self.legs[i].velocity[2]);
-        com.acceleration[2] = of(z.acceleration[0], self.legs[i].acceleration[2]);
-        for d in 0..2 {
-            let sum = |u: &[f64; U]| {
-                u[d] + gamma[0][d] * u[2] + gamma[1][d] * u[3] + begin.r[d] * u[LEFT] + end.r[d] * u[RIGHT]
-            };
-            let f = p.f[i][d] + gamma[0][d] * p.f[i][2] + gamma[1][d] * p.f[i][3];
-            let body = [sum(&p.u[i]), sum(&slope), p.om2[i] * sum(&p.u[i]) + f];
-            com.position[d] = of(body[0], self.legs[i].position[d]);
-            com.velocity[d] = of(body[1], self.legs[i].velocity[d]);
-            com.acceleration[d] = of(body[2], self.legs[i].acceleration[d]);
+    fn com(&self, i: usize, ends: &Ends) -> Sample<3> {
+        let ([r, v, a], z, legs) = (self.problem.motion(i, ends), &self.heights[i], &self.legs[i]);
+        let of = |b: [f64; 2], z: [f64; 1], l: &[f64; 3]| {
+            let b = [b[0], b[1], z[0]];
+            std::array::from_fn(|d| self.body * b[d] + self.leg * l[d])
+        };
+        Sample {
+            position: of(r, z.position, &legs.position),
+            velocity: of(v, z.velocity, &legs.velocity),
+            acceleration: of(a, z.acceleration, &legs.acceleration),
         }
-        com
     }
 }
 

@@ -1,6 +1,6 @@
 //! The process around the planner: `gangwerk planner --run DIR`.
 
-use crate::Planner;
+use crate::{Planner, vision};
 use config::Timeline;
 use daemon::{Connect, Daemon};
 use ipc::Mode;
@@ -27,8 +27,8 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let waiter = d.space.waiter(Process::Planner)?;
     let mut commands = connect(&d.space)?;
     let mut timeline = Timeline::new(&d.setup.scene, &[Domain::Walk]);
-    let feet = &d.setup.robot.feet;
-    let mut planner = Planner::new(&d.setup.gait, [feet[0].support, feet[1].support]);
+    let mut planner = Planner::of(&d.setup.gait, &d.setup.robot);
+    planner.see(vision::known(&d.setup)?);
     let mut made = Box::new(Plan::default());
     if plan.epoch() > 1 {
         timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late

@@ -4,16 +4,21 @@
 //! path has common knots for its four components.
 
 use crate::pose::Pose;
+use crate::steps::Heights;
 use config::gait;
 use curves::{Path, Sample};
 
 /// Path of one foot: x, y, z \[m\] and heading \[rad\].
-pub type FootPath = Path<4, 32>;
+pub type FootPath = Path<4, FOOT_PIECES>;
+/// Pieces of a foot's path.
+pub const FOOT_PIECES: usize = 32;
 
 /// Share of a swing after which the foot has reached its full height.
 const RISEN: f64 = 0.4;
 /// Share of a swing after which the foot is lowered.
 const LOWERING: f64 = 0.6;
+/// Share of a swing, at both ends, during which a foot that is lifted high does not move horizontally.
+const UPRIGHT: f64 = 0.18;
 /// Instants within a swing at which a trajectory has a knot.
 pub const MARKS: usize = 6;
 
@@ -44,6 +49,12 @@ impl Swing {
         }
     }
 
+    /// The same, moving horizontally only while the foot is high.
+    pub fn upright(self) -> Self {
+        let h = UPRIGHT * (self.end - self.lift);
+        Self { depart: self.depart.max(self.lift + h), arrive: self.arrive.min(self.end - h), ..self }
+    }
+
     /// When the foot begins to come down.
     pub fn lowering(&self) -> f64 {
         self.lowering
@@ -51,22 +62,25 @@ impl Swing {
 
     /// All knots, ascending. The first is the lift-off, the last the landing.
     pub fn marks(&self) -> [f64; MARKS] {
-        // `new` limits lag and lead to 0.3 of the swing, so this order always holds.
+        // `new` limits lag and lead to 0.3 of the swing, and UPRIGHT is less: so this order always holds.
         [self.lift, self.depart, self.risen, self.lowering, self.arrive, self.end]
     }
 
-    fn at(&self, t: f64, from: &Pose, to: &Pose, height: f64) -> Sample<4> {
+    /// The foot at `t`.
+    pub(crate) fn at(&self, t: f64, from: &Pose, to: &Pose, heights: &Heights) -> Sample<4> {
         let (s, ds, dds) = ramp(t, self.depart, self.arrive);
-        let (z, dz, ddz) = if t < self.lowering {
-            ramp(t, self.lift, self.risen)
+        let apex = heights.takeoff.max(heights.landing) + heights.lift;
+        let (ground, (z, dz, ddz)) = if t < self.lowering {
+            (heights.takeoff, ramp(t, self.lift, self.risen))
         } else {
-            ramp(-t, -self.end, -self.lowering)
+            (heights.landing, ramp(-t, -self.end, -self.lowering))
         };
         // Going down is going up backwards: the rate changes its sign.
         let dz = if t < self.lowering { dz } else { -dz };
+        let height = apex - ground;
         let d = [to.x - from.x, to.y - from.y, to.heading - from.heading];
         Sample {
-            position: [from.x + s * d[0], from.y + s * d[1], z * height, from.heading + s * d[2]],
+            position: [from.x + s * d[0], from.y + s * d[1], ground + z * height, from.heading + s * d[2]],
             velocity: [ds * d[0], ds * d[1], dz * height, ds * d[2]],
             acceleration: [dds * d[0], dds * d[1], ddz * height, dds * d[2]],
         }
@@ -86,21 +100,21 @@ pub fn ramp(t: f64, begin: f64, end: f64) -> (f64, f64, f64) {
 }
 
 /// A foot that stands: the beginning of every path.
-pub fn stand(path: &mut FootPath, start: f64, at: &Pose) {
-    path.restart(start, [at.x, at.y, 0.0, at.heading]);
+pub fn stand(path: &mut FootPath, start: f64, at: &Pose, ground: f64) {
+    path.restart(start, [at.x, at.y, ground, at.heading]);
 }
 
 /// Appends a rest until lift-off and the swing to `to`.
-pub fn swing(path: &mut FootPath, swing: &Swing, from: &Pose, to: &Pose, height: f64) {
-    let rest = Sample::rest([from.x, from.y, 0.0, from.heading]);
+pub fn swing(path: &mut FootPath, swing: &Swing, from: &Pose, to: &Pose, heights: &Heights) {
+    let rest = Sample::rest([from.x, from.y, heights.takeoff, from.heading]);
     if swing.lift > path.end() {
         path.push(&rest, &rest, swing.lift);
     }
     let mut last = rest;
     for mark in &swing.marks()[1..MARKS - 1] {
-        let next = swing.at(*mark, from, to, height);
+        let next = swing.at(*mark, from, to, heights);
         path.push(&last, &next, *mark);
         last = next;
     }
-    path.push(&last, &Sample::rest([to.x, to.y, 0.0, to.heading]), swing.end);
+    path.push(&last, &Sample::rest([to.x, to.y, heights.landing, to.heading]), swing.end);
 }

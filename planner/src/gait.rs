@@ -1,11 +1,16 @@
 //! Gait coordination: standing, starting, walking, stopping (thesis 4.2, figure 4.5), and the planner itself.
 
 use crate::commands::{self, Wish};
+use crate::obstacles::Obstacles;
 use crate::pose::{Pose, rotate};
+use crate::roll::Roll;
+use crate::skills::{Skill, Task, Tasks};
 use crate::sole::Sole;
 use crate::steps::Parameters;
+use crate::touchdown::{found, lowered};
+use crate::verdict::Verdict;
 use crate::walk::{Builder, Origin, Walk};
-use config::Gait;
+use config::{Gait, Robot};
 use curves::Sample;
 use messages::{Command, ControllerState, EventCode, GaitState, LEFT, Plan, RIGHT};
 use std::f64::consts::FRAC_PI_2;
@@ -34,16 +39,22 @@ enum Move {
 }
 
 /// The planner: walking commands to plans.
+#[derive(Clone)]
 pub struct Planner {
     gait: Gait,
-    builder: Builder,
+    pub(crate) builder: Builder,
     wish: Wish,
     parameters: Parameters,
+    tasks: Tasks,
     /// The plan being executed, as the controller says.
-    active: Walk,
+    pub(crate) active: Walk,
     /// The plan that was published and has not been confirmed yet; its id is 0 if there is none.
-    next: Walk,
+    pub(crate) next: Walk,
     last_id: u64,
+    /// Start of the step for which no plan could be walked.
+    given_up: u64,
+    /// Plan and step whose early contact was looked at.
+    pub(crate) tried: (u64, usize),
     events: Vec<(EventCode, u64)>,
 }
 
@@ -56,10 +67,32 @@ impl Planner {
             builder: Builder::new(gait, support.map(Sole::new)),
             wish: Wish::Rest,
             parameters: Parameters::on_the_spot(duration),
+            tasks: Tasks::default(),
             active: Walk::new(),
             next: Walk::new(),
             last_id: 0,
+            given_up: 0,
+            tried: (0, 0),
             events: Vec::with_capacity(MAX_EVENTS),
+        }
+    }
+
+    /// A planner for this robot.
+    pub fn of(gait: &Gait, robot: &Robot) -> Self {
+        let toe = |i: usize| robot.feet[i].toe.map(|joint| robot.joints[joint].range);
+        Self::new(gait, [0, 1].map(|i| robot.feet[i].support)).with_toes([0, 1].map(toe))
+    }
+
+    /// The same with toe joints of these ranges \[rad\]: right, left.
+    pub fn with_toes(mut self, ranges: [Option<[f64; 2]>; 2]) -> Self {
+        self.builder.roll = Roll::new(&self.gait, ranges);
+        self
+    }
+
+    /// Obstacles that are known from now on \[m\] @I_0; a gait without steps over obstacles knows of none.
+    pub fn see(&mut self, known: Obstacles) {
+        if let Some(reactive) = &mut self.builder.reactive {
+            reactive.known = known;
         }
     }
 
@@ -132,6 +165,7 @@ impl Planner {
             (Idle, Wish::Stand) => Move::Stand,
             (Standing, Wish::Stand) if at_rest => Move::Stand,
             (Standing, Wish::Walk) if at_rest => Move::Start,
+            (Standing, Wish::Rest) if at_rest && self.tasks.next.is_some() => Move::Start,
             (Starting | Walking | Stopping, Wish::Walk) => Move::Step(Walking),
             (Starting | Walking, Wish::Rest | Wish::Stand) => Move::Step(Stopping),
             _ => Move::Nothing,
@@ -145,6 +179,7 @@ impl Planner {
             }
             Command::Start if gait != GaitState::Idle || self.wish == Wish::Stand => Some((Wish::Walk, None)),
             Command::Stop | Command::End => {
+                self.tasks.stop();
                 Some((if self.wish == Wish::Stand { Wish::Stand } else { Wish::Rest }, None))
             }
             Command::Step(step) => commands::from_step(step, &self.gait).map(|p| (self.wish, Some(p))),
@@ -154,19 +189,43 @@ impl Planner {
                 Some(p) => Some((Wish::Walk, Some(p))),
             }),
             Command::Stand | Command::Start => None,
+            Command::Distance(c) => self.give(Task::Distance(*c), gait),
+            Command::Platform(c) => self.give(Task::Platform(*c), gait),
             Command::EmergencyStop
             | Command::Reset
             | Command::Enable
             | Command::Push(_)
-            | Command::Parameter(_) => return,
+            | Command::Parameter(_)
+            | Command::Fixate(_)
+            | Command::HeadJoints(_)
+            | Command::HeadRest => return,
         };
         match taken {
+            Some((Wish::Walk, Some(_))) if !self.tasks.walk(gait == GaitState::Standing) => {
+                self.event(EventCode::CommandRefused, u64::from(command.address().1));
+            }
             Some((wish, parameters)) => {
                 self.wish = wish;
                 self.parameters = parameters.unwrap_or(self.parameters);
             }
             None => self.event(EventCode::CommandRefused, u64::from(command.address().1)),
         }
+    }
+
+    /// A skill comes next: at once from standing, otherwise after a stop.
+    fn give(&mut self, task: Task, gait: GaitState) -> Option<(Wish, Option<Parameters>)> {
+        if gait == GaitState::Idle && self.wish != Wish::Stand {
+            return None;
+        }
+        if let Err((code, detail)) = task.check(&self.gait, &self.builder.soles[RIGHT]) {
+            self.event(code, detail);
+            return None;
+        }
+        self.tasks.next = Some(task);
+        let still = matches!(gait, GaitState::Idle | GaitState::Standing);
+        let busy = self.tasks.active != Skill::Walk && !self.tasks.aborted;
+        let wish = if busy { self.wish } else { Wish::Rest };
+        Some((if still { Wish::Walk } else { wish }, None))
     }
 
     fn make(&mut self, tick: u64, gait: GaitState, state: &ControllerState, due: Move) -> bool {
@@ -183,18 +242,42 @@ impl Planner {
                 let p = self.parameters;
                 let left_first = if p.side == 0.0 { p.turn >= 0.0 } else { p.side > 0.0 };
                 let (from, _) = self.at_rest(if left_first { RIGHT } else { LEFT });
-                self.walk(&from, GaitState::Starting);
+                self.wish = Wish::Walk;
+                if !self.tasks.begin(&from, &self.gait, &self.builder.soles[from.stance])
+                    || !self.walk(&from, GaitState::Starting)
+                {
+                    self.wish = Wish::Rest;
+                    self.event(EventCode::PlanKept, self.active.plan.id);
+                    return false;
+                }
                 let rest = self.active.plan.start_tick + self.active.end_cycle;
                 self.publish((tick + LEAD).max(rest), tick)
             }
             Move::Step(to) => {
+                // A skill knows the heights it steps on.
+                let blind = self.tasks.active == Skill::Walk;
+                let touched = self.touched(tick, state).filter(|_| blind);
+                if touched.is_some_and(|(k, foot)| self.end_early(tick, k, foot, state, to)) {
+                    self.event(EventCode::EarlyContact, self.last_id + 1);
+                    return self.publish(tick + LEAD, tick);
+                }
                 let Some(k) = self.boundary(tick) else { return false };
                 let start = self.active.plan.start_tick + self.active.strides[k].end_cycle;
-                if start > tick + LEAD {
+                if start > tick + LEAD || start == self.given_up {
                     return false;
                 }
-                let from = self.at_boundary(k);
-                self.walk(&from, to);
+                let foot = touched.filter(|t| t.0 == k).map(|t| t.1);
+                let from = self.at_boundary(k, foot, state);
+                if !self.walk(&from, to) {
+                    // The active plan goes on: it can be walked, and ends standing.
+                    self.given_up = start;
+                    if self.tasks.active != Skill::Walk {
+                        self.tasks.stop();
+                        self.wish = Wish::Rest;
+                    }
+                    self.event(EventCode::PlanKept, self.active.plan.id);
+                    return false;
+                }
                 self.publish(start, tick)
             }
         }
@@ -208,14 +291,32 @@ impl Planner {
         (k + 1 < steps.len()).then_some(k)
     }
 
-    /// Plans with the full change of parameters or, if the zero-moment point would leave the support, with less.
-    fn walk(&mut self, from: &Origin, state: GaitState) {
+    /// Plans with the full change of parameters or, if that cannot be walked, with less; whether any can, and where
+    /// obstacles leave no way, whether a stop can.
+    pub(crate) fn walk(&mut self, from: &Origin, state: GaitState) -> bool {
+        let mut wish = self.parameters;
+        let starting = state == GaitState::Starting;
+        let script = self.tasks.before(from, starting, self.builder.step.first_length, &mut wish);
+        let told = self.wish == Wish::Walk;
+        let ends = state == GaitState::Walking && script.left().is_some_and(|n| n < 2);
+        let state = if ends { GaitState::Stopping } else { state };
+        if ends {
+            self.wish = Wish::Rest;
+        }
+        (self.builder.skill, self.builder.script) = (self.tasks.active, script);
         for share in [1.0, 0.5, 0.25, 0.0] {
-            self.builder.walk(from, state, &self.parameters, share, &mut self.next);
-            if self.next.margin >= 0.0 || state == GaitState::Stopping {
+            self.builder.walk(from, state, &wish, share, &mut self.next);
+            if self.next.verdict == Verdict::Sound || state == GaitState::Stopping {
                 break;
             }
         }
+        let Some((code, detail)) = self.next.blocked else { return self.next.verdict == Verdict::Sound };
+        if told {
+            self.event(code, detail);
+            self.tasks.stop();
+        }
+        self.wish = Wish::Rest;
+        state == GaitState::Walking && self.walk(from, GaitState::Stopping)
     }
 
     fn publish(&mut self, start_tick: u64, tick: u64) -> bool {
@@ -224,38 +325,54 @@ impl Planner {
         plan.header.tick = tick;
         plan.id = self.last_id;
         plan.start_tick = start_tick;
-        if self.next.margin.is_nan() || self.next.margin < 0.0 {
-            self.event(EventCode::ControlLimited, self.last_id);
-        }
         true
     }
 
     /// Standing on the feet of the active plan.
     fn at_rest(&self, stance: usize) -> (Origin, [f64; 2]) {
         let t = self.active.end_cycle as f64 * self.builder.cycle();
-        (self.origin(t, stance, Parameters::on_the_spot(self.parameters.duration), None), [0.0; 2])
+        let previous = Parameters::on_the_spot(self.parameters.duration);
+        let from = self.origin(t, self.soles(t), stance, previous, None);
+        (from, from.heights)
     }
 
-    /// The active plan at the end of its step `k`.
-    fn at_boundary(&self, k: usize) -> Origin {
+    /// The active plan at the end of its step `k`, on the ground as it was found.
+    fn at_boundary(&self, k: usize, touched: Option<usize>, state: &ControllerState) -> Origin {
         let s = &self.active.strides[k];
-        self.origin(s.end, 1 - s.stance, s.parameters, Some(s.width))
+        let mut soles = self.soles(s.end);
+        if let Some(foot) = touched {
+            soles[foot][2] = found(state, foot, soles[foot][2]);
+        }
+        let lower = lowered(state, s.stance);
+        for sole in &mut soles {
+            sole[2] += lower;
+        }
+        self.origin(s.end, soles, 1 - s.stance, s.parameters, Some(s.width))
     }
 
-    /// The active plan at `t`, seen from the planning frame below the new stance foot (gap 5).
-    fn origin(&self, t: f64, stance: usize, previous: Parameters, width: Option<f64>) -> Origin {
+    /// Sole frames of the active plan at `t`: x, y, z, heading.
+    pub(crate) fn soles(&self, t: f64) -> [[f64; 4]; 2] {
+        [0, 1].map(|i| self.active.plan.feet[i].sample(t).position)
+    }
+
+    /// The active plan at `t` with the feet at `soles`, seen from the planning frame below the new stance foot (gap 5).
+    pub(crate) fn origin(
+        &self,
+        t: f64,
+        soles: [[f64; 4]; 2],
+        stance: usize,
+        previous: Parameters,
+        width: Option<f64>,
+    ) -> Origin {
         let plan = &*self.active.plan;
-        let feet = [0, 1].map(|i| {
-            let p = plan.feet[i].sample(t).position;
-            Pose::new(p[0], p[1], p[3])
-        });
-        let frame = feet[stance];
+        let feet = soles.map(|p| Pose::new(p[0], p[1], p[3]));
+        let (frame, ground) = (feet[stance], soles[stance][2]);
         let feet = feet.map(|f| frame.relative(&f));
         let mut com = plan.com.sample(t);
         let at = frame.local([com.position[0], com.position[1]]);
         let v = rotate(-frame.heading, [com.velocity[0], com.velocity[1]]);
         let a = rotate(-frame.heading, [com.acceleration[0], com.acceleration[1]]);
-        com.position[..2].copy_from_slice(&at);
+        com.position = [at[0], at[1], com.position[2] - ground];
         com.velocity[..2].copy_from_slice(&v);
         com.acceleration[..2].copy_from_slice(&a);
         let mut torso = plan.torso.sample(t);
@@ -263,14 +380,19 @@ impl Planner {
         let [x, y, heading] = plan.origin;
         Origin {
             frame: Pose::new(x, y, heading).compose(&frame),
+            height: plan.height + ground,
             stance,
             feet,
+            heights: soles.map(|p| p[2] - ground),
             com,
             zmp: frame.local(plan.zmp.sample(t).0),
             torso,
+            pitch: [0, 1].map(|i| plan.pitch[i].sample(t)),
+            toes: [0, 1].map(|i| plan.toes[i].sample(t)),
             load_left: plan.load_left.sample(t).position[0],
             previous,
             width: width.unwrap_or(feet[1 - stance].y.abs()),
+            early: None,
         }
     }
 
@@ -297,14 +419,19 @@ fn measured(state: &ControllerState) -> Option<(Origin, [f64; 2])> {
     let mean = 0.5 * (feet[0].heading + feet[1].heading);
     let from = Origin {
         frame: Pose::new(x, y, heading).compose(&frame),
+        height: 0.0,
         stance: RIGHT,
         feet,
+        heights: [0.0; 2],
         com: Sample::rest([at[0], at[1], state.com[2] - ground]),
         zmp: at,
         torso: Sample::rest([FRAC_PI_2, FRAC_PI_2, mean]),
+        pitch: [Sample::rest([0.0]); 2],
+        toes: [Sample::rest([0.0]); 2],
         load_left: 0.5,
         previous: Parameters::on_the_spot(1.0),
         width: feet[LEFT].y.abs(),
+        early: None,
     };
     Some((from, state.feet.map(|f| f[2] - ground)))
 }

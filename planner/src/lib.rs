@@ -2,18 +2,23 @@
 //!
 //! | stage of figure 4.1 | thesis | errata | module |
 //! |---|---|---|---|
-//! | gait coordination, finite state machine | 4.2, figure 4.5 | | [`gait`] |
+//! | gait coordination, finite state machine | 4.2, figure 4.5 | | [`gait`], `touchdown` |
 //! | walking commands | 4.6.1 | | [`commands`] |
 //! | step sequence planning | 4.3, (4.1)-(4.4) | 2.1, 2.2 | [`steps`], `sequence` |
+//! | reactive step sequence planning, algorithm 3 | 4.3.3 | | `reactive`, [`obstacles`], [`vision`] |
+//! | higher level behaviour | 4.3.4 | | [`skills`] |
 //! | foot trajectories | 4.5, (4.22)-(4.28) | 2.5 | [`feet`] |
+//! | rolling of the feet, toe joints | 4.5, (4.29), (4.30) | 2.5, gaps 7, 8 | [`roll`] |
 //! | upper body orientation | 4.4.4, (4.11)-(4.13) | 2.3 | [`torso`] |
-//! | contact force (ZMP) trajectory | 4.6.4, (4.40)-(4.43) | 2.10 | [`zmp`], [`sole`] |
+//! | contact force (ZMP) trajectory | 4.6.4, (4.40)-(4.43) | 2.10 | [`zmp`], `active_set`, [`sole`] |
 //! | centre-of-gravity trajectory | 4.6.3, 4.6.5, (4.31)-(4.54) | 2.6-2.9 | [`com`], [`collocation`], `balance` |
 //! | contact force distribution | 4.8, (4.62) | gap 15 | [`load`] |
 //! | all of them, in this order | | | [`walk`] |
 //!
 //! [`Planner::step`] is pure: no clock, no input or output, no allocation after construction.
 
+mod active_set;
+pub mod analytic;
 mod balance;
 pub mod collocation;
 pub mod com;
@@ -23,11 +28,18 @@ pub mod feet;
 pub mod gait;
 pub mod load;
 mod marks;
+pub mod obstacles;
 pub mod pose;
+mod reactive;
+pub mod roll;
 mod sequence;
+pub mod skills;
 pub mod sole;
 pub mod steps;
 pub mod torso;
+mod touchdown;
+pub mod verdict;
+pub mod vision;
 pub mod walk;
 pub mod zmp;
 

@@ -3,9 +3,11 @@
 //! Linear over a double support, with corners smoothed by quintics, and moved with the zero-moment point where that
 //! leaves its straight way. By (4.64) both feet share what is left of the moment about the weighted middle of their
 //! sole frames, so the point `e = p - (1 - rho) r_0 - rho r_1` must lie in both soles, each seen in its own heading.
-//! Corners are as soft as that allows.
+//! Corners are as soft as that allows. Where feet are turned against each other and it cannot be, the stabilizer lets one
+//! foot take what the other one cannot carry; what both can carry together is `(1 - rho) S_0 + rho S_1`, a sum of
+//! rectangles, and a plan whose zero-moment point leaves that is none.
 
-use crate::pose::{Pose, rotate};
+use crate::pose::Pose;
 use crate::sole::Sole;
 use curves::{Path, Sample};
 
@@ -49,56 +51,84 @@ impl DoubleSupport<'_> {
         })
     }
 
-    /// Least distance of the point e from the edges of the soles at `t`, if the left foot carries `rho`.
-    fn margin(&self, t: f64, rho: f64) -> f64 {
+    /// Distance of the zero-moment point at `t` from the edges: of the soles for the point e, and of what both soles can
+    /// carry together, if the left foot carries `rho`.
+    fn margins(&self, t: f64, rho: f64, axes: &[[f64; 2]; 2]) -> [f64; 2] {
         let k = self.kinks.iter().position(|k| t < k.0).unwrap_or(self.kinks.len() - 1).max(1);
         let (a, b) = (self.kinks[k - 1], self.kinks[k]);
         let s = (t - a.0) / (b.0 - a.0);
-        let middle = [
-            (1.0 - rho) * self.feet[0].x + rho * self.feet[1].x,
-            (1.0 - rho) * self.feet[0].y + rho * self.feet[1].y,
-        ];
-        let e = [0, 1].map(|d| a.1[d] + s * (b.1[d] - a.1[d]) - middle[d]);
-        let here = Pose::default();
-        (0..2)
-            .map(|i| self.soles[i].margin(&here, rotate(-self.feet[i].heading, e)))
-            .fold(f64::INFINITY, f64::min)
+        let shares = [1.0 - rho, rho];
+        let e = [0, 1].map(|d| {
+            a.1[d] + s * (b.1[d] - a.1[d])
+                - shares[0] * self.feet[0].array()[d]
+                - shares[1] * self.feet[1].array()[d]
+        });
+        let along = |[c, s]: [f64; 2], v: [f64; 2]| [c * v[0] + s * v[1], c * v[1] - s * v[0]];
+        let mut shared = f64::INFINITY;
+        let mut off = e; // from the middle of what both can carry
+        for i in 0..2 {
+            let (sole, [c, s]) = (&self.soles[i], axes[i]);
+            let (q, m) = (along(axes[i], e), sole.center);
+            for d in 0..2 {
+                shared = shared.min(sole.half[d] - (q[d] - m[d]).abs());
+            }
+            off[0] -= shares[i] * (c * m[0] - s * m[1]);
+            off[1] -= shares[i] * (s * m[0] + c * m[1]);
+        }
+        // The sum of two rectangles has their edges; along a normal, extents add up.
+        let mut together = f64::INFINITY;
+        for i in 0..2 {
+            let turned = along(axes[i], axes[1 - i]).map(f64::abs);
+            let (own, other) = (self.soles[i].half, self.soles[1 - i].half);
+            let q = along(axes[i], off);
+            for d in 0..2 {
+                let reach = other[d] * turned[0] + other[1 - d] * turned[1];
+                together = together.min(shares[i] * own[d] + shares[1 - i] * reach - q[d].abs());
+            }
+        }
+        [shared, together]
     }
 
-    /// Appends the load over this double support to `path`.
-    pub fn lay(&self, path: &mut LoadPath) {
+    /// Appends the load over this double support to `path`; returns the least distance \[m\] of the zero-moment point
+    /// from the edge of what both soles can carry together.
+    pub fn lay(&self, path: &mut LoadPath) -> f64 {
         let n = self.kinks.len();
         if !(2..=4).contains(&n) {
-            return;
+            return f64::NAN;
         }
         let corners = self.corners();
         let corners = &corners[..n];
         let begun = path.pieces;
-        let (mut best, mut best_share) = (f64::NEG_INFINITY, CORNERS[0]);
+        let (mut best, mut best_share) = ([f64::NEG_INFINITY; 2], CORNERS[0]);
         for share in CORNERS {
             path.pieces = begun;
             smooth(path, corners, share);
-            let margin = self.least_margin(path);
-            if margin > ENOUGH {
-                return;
+            let margins = self.least_margins(path);
+            if margins[0] > ENOUGH {
+                return margins[1];
             }
-            if margin > best + 1e-3 {
-                (best, best_share) = (margin, share);
+            if margins[0] > best[0] + 1e-3 {
+                (best, best_share) = (margins, share);
             }
         }
         // Soles of different heading cannot both hold the point; sharp corners would not help.
         path.pieces = begun;
         smooth(path, corners, best_share);
+        best[1]
     }
 
-    fn least_margin(&self, path: &LoadPath) -> f64 {
+    fn least_margins(&self, path: &LoadPath) -> [f64; 2] {
         let (begin, end) = (self.kinks[0].0, self.kinks[self.kinks.len() - 1].0);
-        (1..PROBES)
-            .map(|k| {
-                let t = begin + (end - begin) * k as f64 / PROBES as f64;
-                self.margin(t, path.sample(t).position[0])
-            })
-            .fold(f64::INFINITY, f64::min)
+        let axes = [0, 1].map(|i| {
+            let (s, c) = self.feet[i].heading.sin_cos();
+            [c, s]
+        });
+        let mut load = path.cursor();
+        (1..PROBES).fold([f64::INFINITY; 2], |least, k| {
+            let t = begin + (end - begin) * k as f64 / PROBES as f64;
+            let m = self.margins(t, load.sample(t).position[0], &axes);
+            [least[0].min(m[0]), least[1].min(m[1])]
+        })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Instants at which the trajectories of a plan have kinks: collocation points lie on them (errata 2 to (4.50)).
 
 /// Instants at which a trajectory has a kink, ascending.
+#[derive(Clone)]
 pub(crate) struct Marks {
     len: usize,
     times: [f64; 64],

@@ -50,25 +50,58 @@ impl Sole {
     }
 }
 
+/// Convex hull of two soles: the support polygon of a double support.
+#[derive(Clone, Copy, Debug)]
+pub struct Hull {
+    count: usize,
+    /// Inward normal and distance from the origin of each edge.
+    edges: [([f64; 2], f64); 8],
+}
+
+impl Hull {
+    /// Hull of the soles `a` and `b`, each at its pose, by gift wrapping.
+    pub fn of(a: (&Sole, &Pose), b: (&Sole, &Pose)) -> Self {
+        let (ca, cb) = (a.0.corners(a.1), b.0.corners(b.1));
+        let corners = [ca[0], ca[1], ca[2], ca[3], cb[0], cb[1], cb[2], cb[3]];
+        let lower = |p: &[f64; 2], q: &[f64; 2]| p[1] < q[1] || (p[1] == q[1] && p[0] < q[0]);
+        let start = corners.into_iter().reduce(|p, q| if lower(&q, &p) { q } else { p }).unwrap_or_default();
+        let mut hull = Self { count: 0, edges: [([0.0; 2], 0.0); 8] };
+        let mut from = start;
+        while hull.count < hull.edges.len() {
+            let mut to = from;
+            let mut e = [0.0; 2];
+            for q in corners {
+                let v = [q[0] - from[0], q[1] - from[1]];
+                let (square, longest) = (v[0] * v[0] + v[1] * v[1], e[0] * e[0] + e[1] * e[1]);
+                let left = e[0] * v[1] - e[1] * v[0];
+                // Everything lies to the left of an edge; of points in line the farthest ends it.
+                let outer = left < 0.0 || (left == 0.0 && square > longest);
+                if square > 1e-18 && (longest == 0.0 || outer) {
+                    (to, e) = (q, v);
+                }
+            }
+            let by = 1.0 / (e[0] * e[0] + e[1] * e[1]).sqrt();
+            let normal = [-e[1] * by, e[0] * by];
+            hull.edges[hull.count] = (normal, normal[0] * from[0] + normal[1] * from[1]);
+            hull.count += 1;
+            if to == start {
+                break;
+            }
+            from = to;
+        }
+        hull
+    }
+
+    /// Distance \[m\] of `p` from the edge: positive inside.
+    pub fn margin(&self, p: [f64; 2]) -> f64 {
+        self.edges[..self.count]
+            .iter()
+            .map(|(n, d)| n[0] * p[0] + n[1] * p[1] - d)
+            .fold(f64::INFINITY, f64::min)
+    }
+}
+
 /// Distance \[m\] of `p` from the edge of the convex hull of two soles: positive inside.
 pub fn double_support_margin(a: (&Sole, &Pose), b: (&Sole, &Pose), p: [f64; 2]) -> f64 {
-    let (ca, cb) = (a.0.corners(a.1), b.0.corners(b.1));
-    let corner = |i: usize| if i < 4 { ca[i] } else { cb[i - 4] };
-    let mut margin = f64::INFINITY;
-    // An edge of the hull is a pair of corners with all others to its left.
-    for i in 0..8 {
-        for j in 0..8 {
-            let (u, v) = (corner(i), corner(j));
-            let (dx, dy) = (v[0] - u[0], v[1] - u[1]);
-            let length = dx.hypot(dy);
-            if length < 1e-9 {
-                continue;
-            }
-            let left_of = |q: [f64; 2]| (dx * (q[1] - u[1]) - dy * (q[0] - u[0])) / length;
-            if (0..8).all(|k| left_of(corner(k)) > -1e-9) {
-                margin = margin.min(left_of(p));
-            }
-        }
-    }
-    margin
+    Hull::of(a, b).margin(p)
 }

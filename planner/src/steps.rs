@@ -48,6 +48,19 @@ impl Parameters {
     }
 }
 
+/// Heights of a step \[m\], over the planning frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Heights {
+    /// Of the ground under the stance foot.
+    pub foothold: f64,
+    /// Of the ground the swing foot comes from.
+    pub takeoff: f64,
+    /// Of the ground the swing foot lands on.
+    pub landing: f64,
+    /// How far the swing foot is lifted over the higher one of its footholds.
+    pub lift: f64,
+}
+
 /// One step of a sequence. Times in s from the start of the plan; poses in its planning frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Stride {
@@ -71,6 +84,8 @@ pub struct Stride {
     pub takeoff: Pose,
     /// Where the swing foot lands.
     pub landing: Pose,
+    /// Heights of these three, and of the swing.
+    pub heights: Heights,
 }
 
 impl Stride {
@@ -86,6 +101,7 @@ impl Stride {
         foothold: Pose::new(0.0, 0.0, 0.0),
         takeoff: Pose::new(0.0, 0.0, 0.0),
         landing: Pose::new(0.0, 0.0, 0.0),
+        heights: Heights { foothold: 0.0, takeoff: 0.0, landing: 0.0, lift: 0.0 },
     };
 }
 

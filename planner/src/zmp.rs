@@ -7,16 +7,70 @@
 //! Constraints  p_k in the shrunk rectangle of the foot that carries alone next to t_k (4.40)
 //! ```
 //! At a phase boundary the polygons of both phases hold; their intersection is the single-support one (errata 2.10).
-//! Projected Gauss-Seidel, both components together: the Hessian block is isotropic, so the Euclidean projection
-//! finds the optimum.
+//! Solved directly (`active_set`). Projected Gauss-Seidel is what the thesis does, the reserve if the direct way should
+//! not settle, and solves the periodic chain: both components together, because the Hessian block is isotropic and the
+//! Euclidean projection finds the optimum.
 
 use crate::pose::Pose;
 use crate::sole::Sole;
+use crate::verdict::Verdict;
 
 /// Most phase boundaries of one chain.
-pub const MAX_NODES: usize = 20;
-const SWEEPS: usize = 300;
+pub const MAX_NODES: usize = 48;
+/// Most sweeps.
+pub const SWEEPS: usize = 2000;
 const TOLERANCE: f64 = 1e-9;
+/// Over-relaxation of chains of more than this many boundaries (errata 2.10).
+const RELAXATION: (usize, f64) = (12, 1.6);
+
+/// A rectangle that holds a point: a shrunk sole on the ground.
+#[derive(Clone, Copy, Debug)]
+pub struct Hold {
+    /// \[m\] Middle.
+    pub center: [f64; 2],
+    /// Its longitudinal axis.
+    pub axis: [f64; 2],
+    /// \[m\] Half length and half width.
+    pub half: [f64; 2],
+}
+
+impl Hold {
+    /// The rectangle of `sole` at the pose `at`.
+    pub fn new(sole: &Sole, at: &Pose) -> Self {
+        let (s, c) = at.heading.sin_cos();
+        Self { center: sole.middle(at), axis: [c, s], half: sole.half }
+    }
+
+    /// A point seen from the middle, along the axes.
+    pub fn local(&self, p: [f64; 2]) -> [f64; 2] {
+        self.along([p[0] - self.center[0], p[1] - self.center[1]])
+    }
+
+    /// Components of a vector along the axes.
+    pub fn along(&self, v: [f64; 2]) -> [f64; 2] {
+        let [c, s] = self.axis;
+        [c * v[0] + s * v[1], c * v[1] - s * v[0]]
+    }
+
+    /// The inverse of [`Hold::local`].
+    pub fn point(&self, q: [f64; 2]) -> [f64; 2] {
+        let [c, s] = self.axis;
+        [self.center[0] + c * q[0] - s * q[1], self.center[1] + s * q[0] + c * q[1]]
+    }
+
+    /// The point of the rectangle that is nearest to `p`.
+    pub fn nearest(&self, p: [f64; 2]) -> [f64; 2] {
+        let q = self.local(p);
+        let inside = [0, 1].map(|d| q[d].clamp(-self.half[d], self.half[d]));
+        if inside == q { p } else { self.point(inside) }
+    }
+
+    /// Distance \[m\] of `p` from the edge: positive inside.
+    pub fn margin(&self, p: [f64; 2]) -> f64 {
+        let q = self.local(p);
+        (self.half[0] - q[0].abs()).min(self.half[1] - q[1].abs())
+    }
+}
 
 /// One phase boundary.
 #[derive(Clone, Copy, Debug)]
@@ -25,14 +79,15 @@ pub struct Node {
     pub time: f64,
     /// \[m\]
     pub p: [f64; 2],
-    /// The shrunk sole that holds the point; none: the point is given.
-    pub hold: Option<(Sole, Pose)>,
+    /// What holds the point; none: the point is given.
+    pub hold: Option<Hold>,
 }
 
 /// Phase boundaries in the order of time.
 #[derive(Clone, Copy, Debug)]
 pub struct Chain {
     len: usize,
+    full: bool,
     nodes: [Node; MAX_NODES],
 }
 
@@ -45,12 +100,12 @@ impl Default for Chain {
 impl Chain {
     /// No boundaries yet.
     pub const fn new() -> Self {
-        Self { len: 0, nodes: [Node { time: 0.0, p: [0.0; 2], hold: None }; MAX_NODES] }
+        Self { len: 0, full: false, nodes: [Node { time: 0.0, p: [0.0; 2], hold: None }; MAX_NODES] }
     }
 
     /// Removes all boundaries.
     pub fn clear(&mut self) {
-        self.len = 0;
+        (self.len, self.full) = (0, false);
     }
 
     /// Appends a given point.
@@ -60,11 +115,13 @@ impl Chain {
 
     /// Appends a point that a sole holds.
     pub fn hold(&mut self, time: f64, sole: &Sole, at: &Pose) {
-        self.push(Node { time, p: sole.middle(at), hold: Some((*sole, *at)) });
+        let hold = Hold::new(sole, at);
+        self.push(Node { time, p: hold.center, hold: Some(hold) });
     }
 
     fn push(&mut self, node: Node) {
-        if self.len < MAX_NODES {
+        self.full |= self.len == MAX_NODES;
+        if !self.full {
             self.nodes[self.len] = node;
             self.len += 1;
         }
@@ -75,57 +132,97 @@ impl Chain {
         &self.nodes[..self.len]
     }
 
-    /// Solves (4.42) between given ends.
-    pub fn solve(&mut self) {
-        for _ in 0..SWEEPS {
-            if self.sweep() <= TOLERANCE {
-                break;
+    pub(crate) fn nodes_mut(&mut self) -> &mut [Node] {
+        &mut self.nodes[..self.len]
+    }
+
+    /// What is wrong with the problem before it is solved.
+    fn posed(&self) -> Verdict {
+        let nodes = self.nodes();
+        if self.full {
+            return Verdict::TooLong;
+        }
+        for (k, n) in nodes.iter().enumerate() {
+            let numbers = [n.time, n.p[0], n.p[1]];
+            if !numbers.iter().chain(n.hold.iter().flat_map(|h| &h.half)).all(|x| x.is_finite()) {
+                return Verdict::NotFinite;
             }
+            if n.hold.is_some_and(|h| h.half[0] < 0.0 || h.half[1] < 0.0) {
+                return Verdict::NoSupport;
+            }
+            if k > 0 && n.time <= nodes[k - 1].time {
+                return Verdict::Degenerate;
+            }
+        }
+        if nodes.len() < 2 { Verdict::Degenerate } else { Verdict::Sound }
+    }
+
+    /// Solves (4.42) between given ends.
+    pub fn solve(&mut self) -> Verdict {
+        match self.posed() {
+            Verdict::Sound if self.solve_directly() => Verdict::Sound,
+            Verdict::Sound => self.relax(SWEEPS),
+            wrong => wrong,
         }
     }
 
-    /// One sweep of [`Chain::solve`]; how far \[m\] a point moved at most.
-    pub fn sweep(&mut self) -> f64 {
+    /// Solves (4.42) by at most so many sweeps of projected Gauss-Seidel.
+    pub fn relax(&mut self, sweeps: usize) -> Verdict {
+        let wrong = self.posed();
+        let omega = if self.len > RELAXATION.0 { RELAXATION.1 } else { 1.0 };
+        if wrong != Verdict::Sound || (0..sweeps).any(|_| self.sweep(omega) <= TOLERANCE) {
+            return wrong;
+        }
+        Verdict::Unsettled
+    }
+
+    /// One sweep of [`Chain::relax`]; how far \[m\] a point moved at most.
+    pub fn sweep(&mut self, omega: f64) -> f64 {
         let mut change = 0.0f64;
         for k in 1..self.len.saturating_sub(1) {
             let (before, after) = (self.nodes[k - 1], self.nodes[k + 1]);
-            change = change.max(self.nodes[k].relax((before.time, before.p), (after.time, after.p)));
+            change = change.max(self.nodes[k].relax((before.time, before.p), (after.time, after.p), omega));
         }
         change
     }
 
     /// Solves (4.42) for a chain whose last point is the first one moved by the rigid motion that takes the pose
     /// `from` to `to` (gap 12).
-    pub fn solve_periodic(&mut self, from: &Pose, to: &Pose) {
+    pub fn solve_periodic(&mut self, from: &Pose, to: &Pose) -> Verdict {
+        let wrong = self.posed();
         let n = self.len;
-        if n < 3 {
-            return;
+        if wrong != Verdict::Sound || n < 3 {
+            return wrong.and(Verdict::Degenerate);
         }
+        let (there, back) = (Motion::new(from, to), Motion::new(to, from));
         let period = self.nodes[n - 1].time - self.nodes[0].time;
         for _ in 0..SWEEPS {
             let last = self.nodes[n - 2];
-            let before = (last.time - period, from.point(to.local(last.p)));
+            let before = (last.time - period, back.of(last.p));
             let after = self.nodes[1];
-            let mut change = self.nodes[0].relax(before, (after.time, after.p));
-            self.nodes[n - 1].p = to.point(from.local(self.nodes[0].p));
-            for k in 1..n - 1 {
-                let (before, after) = (self.nodes[k - 1], self.nodes[k + 1]);
-                change = change.max(self.nodes[k].relax((before.time, before.p), (after.time, after.p)));
-            }
+            let mut change = self.nodes[0].relax(before, (after.time, after.p), 1.0);
+            self.nodes[n - 1].p = there.of(self.nodes[0].p);
+            change = change.max(self.sweep(1.0));
             if change <= TOLERANCE {
-                break;
+                return Verdict::Sound;
             }
         }
+        Verdict::Unsettled
     }
 
     /// The reference at `t`: linear between boundaries.
     pub fn at(&self, t: f64) -> [f64; 2] {
-        let i = self.nodes().iter().position(|n| t < n.time).unwrap_or(self.len);
-        if i == 0 {
-            return self.nodes[0].p;
+        self.after(t, &mut 0)
+    }
+
+    /// The reference at ascending times: `next` is the boundary from which on it looks, 0 at the beginning.
+    pub fn after(&self, t: f64, next: &mut usize) -> [f64; 2] {
+        while *next < self.len && t >= self.nodes[*next].time {
+            *next += 1;
         }
-        if i == self.len {
-            return self.nodes[i - 1].p;
+        let i = *next;
+        if i == 0 || i == self.len {
+            return self.nodes[i.saturating_sub(1)].p;
         }
         let (a, b) = (&self.nodes[i - 1], &self.nodes[i]);
         let s = (t - a.time) / (b.time - a.time);
@@ -135,14 +232,38 @@ impl Chain {
 
 impl Node {
     /// One Gauss-Seidel update; returns how far the point moved.
-    fn relax(&mut self, before: (f64, [f64; 2]), after: (f64, [f64; 2])) -> f64 {
-        let Some((sole, at)) = &self.hold else { return 0.0 };
-        let (a, b) = (1.0 / (self.time - before.0), 1.0 / (after.0 - self.time));
-        let q = [0, 1].map(|d| (a * before.1[d] + b * after.1[d]) / (a + b));
-        let q = sole.nearest(at, q);
-        let moved = (q[0] - self.p[0]).hypot(q[1] - self.p[1]);
+    fn relax(&mut self, before: (f64, [f64; 2]), after: (f64, [f64; 2]), omega: f64) -> f64 {
+        let Some(hold) = &self.hold else { return 0.0 };
+        let (a, b) = (self.time - before.0, after.0 - self.time);
+        let s = a / (a + b);
+        let q = [0, 1].map(|d| {
+            let q = before.1[d] + s * (after.1[d] - before.1[d]);
+            self.p[d] + omega * (q - self.p[d])
+        });
+        let q = hold.nearest(q);
+        let moved = (q[0] - self.p[0]).abs().max((q[1] - self.p[1]).abs());
         self.p = q;
         moved
+    }
+}
+
+/// The rigid motion that takes one pose to another.
+struct Motion {
+    turn: [f64; 2],
+    shift: [f64; 2],
+}
+
+impl Motion {
+    fn new(from: &Pose, to: &Pose) -> Self {
+        let (s, c) = (to.heading - from.heading).sin_cos();
+        let still = Self { turn: [c, s], shift: [0.0; 2] };
+        let moved = still.of([from.x, from.y]);
+        Self { shift: [to.x - moved[0], to.y - moved[1]], ..still }
+    }
+
+    fn of(&self, p: [f64; 2]) -> [f64; 2] {
+        let [c, s] = self.turn;
+        [c * p[0] - s * p[1] + self.shift[0], s * p[0] + c * p[1] + self.shift[1]]
     }
 }
 
@@ -158,9 +279,15 @@ pub struct Shape {
 impl Shape {
     /// Value at `t`.
     pub fn at(&self, t: f64) -> f64 {
-        let up = (t - self.rise.0) / (self.rise.1 - self.rise.0);
-        let down = (self.fall.1 - t) / (self.fall.1 - self.fall.0);
-        up.min(down).clamp(0.0, 1.0)
+        if t <= self.rise.0 || t >= self.fall.1 {
+            0.0
+        } else if t < self.rise.1 {
+            (t - self.rise.0) / (self.rise.1 - self.rise.0)
+        } else if t > self.fall.0 {
+            (self.fall.1 - t) / (self.fall.1 - self.fall.0)
+        } else {
+            1.0
+        }
     }
 
     /// Its four corners \[s\].

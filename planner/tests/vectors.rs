@@ -223,12 +223,13 @@ fn zmp_reference_is_optimal() {
         chain.solve();
         let nodes = chain.nodes();
         for k in 1..nodes.len() - 1 {
-            let (sole, at) = nodes[k].hold.expect("held");
+            let hold = nodes[k].hold.expect("held");
             let p = nodes[k].p;
-            assert!(sole.margin(&at, p) > -1e-9);
+            assert!(hold.margin(p) > -1e-9);
             let h = [nodes[k].time - nodes[k - 1].time, nodes[k + 1].time - nodes[k].time];
             let g = [0, 1].map(|d| (p[d] - nodes[k - 1].p[d]) / h[0] + (p[d] - nodes[k + 1].p[d]) / h[1]);
-            for corner in sole.corners(&at) {
+            for corner in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]] {
+                let corner = hold.point([0, 1].map(|d| corner[d] * hold.half[d]));
                 let into = g[0] * (corner[0] - p[0]) + g[1] * (corner[1] - p[1]);
                 assert!(into > -1e-6, "the objective falls towards a corner: {into}");
             }

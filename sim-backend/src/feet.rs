@@ -18,6 +18,7 @@ use multibody::{Data, Frame, Model};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
 
 /// Contact elements of both feet.
+#[derive(Clone)]
 pub struct Feet {
     law: Law,
     settings: Settings,
@@ -30,6 +31,7 @@ pub struct Feet {
 }
 
 /// A link that carries contact elements.
+#[derive(Clone)]
 struct Segment {
     frame: Frame,
     foot: usize,
@@ -39,6 +41,7 @@ struct Segment {
 }
 
 /// What is glued to a link.
+#[derive(Clone)]
 enum Elements {
     /// Independent nodes at these places, link axes.
     Points(Vec<Vector3<f64>>),
@@ -46,6 +49,7 @@ enum Elements {
     Pads(Vec<Block>),
 }
 
+#[derive(Clone)]
 struct Block {
     pad: Pad,
     memory: Memory,
@@ -243,7 +247,8 @@ fn points(
         let (arm, d) = (pose.rotation * place, Vector3::new(d[0], d[1], d[2]));
         let w = twist.linear + twist.angular.cross(&arm);
         let hit = below.hit((pose.translation.vector + arm + d).into());
-        let (force, speed) = if hit.surface == Surface::Ground {
+        let level = hit.surface == Surface::Ground && hit.normal[2] == 1.0;
+        let (force, speed) = if level {
             let answer = point::solve(law, d.into(), w.into(), hit.gap);
             (Vector3::from(answer.force), Vector3::from(answer.rate))
         } else {

@@ -5,21 +5,24 @@
 //! a shaft either sticks (w+ = 0, friction inside of its cone) or turns (friction C against the direction), found by
 //! trying, as for the contact points; that is the proximal point of (2.44), (2.45) with each state solved exactly.
 
-use drives::{Elasticity, NoLoadTorque, Sliding};
+use drives::{Cascade, Elasticity, Law, NoLoadTorque, Side, Sliding};
 use multibody::{Data, Model};
 
-use crate::train::{CURRENT_BANDWIDTH, Fault, Given, POSITION_GAIN, Shaft, Train, Why};
+use crate::local_control::Output;
+use crate::train::{Fault, Given, Shaft, Train, Why};
 
 /// How many times the shaft's inertia per step a sticking shaft resists.
 const STICKING: f64 = 1e7;
 /// Rounds after which the states of friction are taken as they are.
 const ROUNDS: usize = 12;
 
-/// A torque over one step: `t - b w`, w the speed at its end.
+/// A torque over one step: `t - b w - link v`, w the speed at its end, v that of the link behind an elastic gear, as the
+/// motor would turn with it.
 #[derive(Clone, Copy, Default)]
 struct Line {
     t: f64,
     b: f64,
+    link: f64,
 }
 
 /// What dry friction does during a step.
@@ -41,8 +44,9 @@ pub(crate) struct Step {
     coulomb: f64,
     viscous: f64,
     slip: Slip,
-    /// Speed at the end \[rad/s\].
+    /// Speed at the end, and v \[rad/s\].
     end: f64,
+    link: f64,
     /// Torque on a rotor behind an elastic gear \[N m\], and what of it turns the rotor along with its stator.
     torque: f64,
     along: f64,
@@ -129,8 +133,8 @@ impl Train {
     /// Moves currents and rotors to the end of the step, after [`Train::solve`].
     pub fn end(&self, h: f64, current: &mut [f64], rotor: (&mut [f64], &mut [f64])) {
         for (k, s) in self.shafts.iter().enumerate() {
-            let Line { t, b } = s.step.motor;
-            current[k] = (t - b * s.step.end) / s.drive.motor.torque_constant;
+            let Line { t, b, link } = s.step.motor;
+            current[k] = (t - b * s.step.end - link * s.step.link) / s.drive.motor.torque_constant;
             if let Some((e, _)) = s.elastic {
                 rotor.1[e] = s.step.end / s.gear.ratio[0];
                 rotor.0[e] += h * rotor.1[e];
@@ -166,31 +170,43 @@ impl Shaft {
         let at_voltage = |voltage: f64| {
             let a = 1.0 / (1.0 + h / motor.time_constant());
             let per = h / motor.inductance * a * constant;
-            Line { t: constant * a * current + per * voltage, b: per * constant }
+            Line { t: constant * a * current + per * voltage, b: per * constant, link: 0.0 }
         };
         if !powered {
             return at_voltage(0.0);
         }
         let voltage = self.voltage(current);
+        let Law::Cascade(cascade) = self.drive.control.law else { return at_voltage(voltage) };
         if voltage.abs() >= self.drive.voltage_limit {
             return at_voltage(voltage);
         }
-        let a = 1.0 / (1.0 + h * (CURRENT_BANDWIDTH + 1.0 / motor.time_constant()));
-        let (limit, ahead) = (self.drive.current_limit, 1.0 + h * POSITION_GAIN);
-        let wanted = self.speed_gain * self.lag;
-        if wanted.abs() >= limit {
-            return Line { t: constant * (a * current + (1.0 - a) * wanted.clamp(-limit, limit)), b: 0.0 };
+        let a = 1.0 / (1.0 + h * (cascade.current_bandwidth + 1.0 / motor.time_constant()));
+        let held = self.sampler.output() != Output::Follow;
+        if held || (self.speed_gain * self.lag).abs() >= self.drive.current_limit {
+            let t = constant * (a * current + (1.0 - a) * self.wanted_current());
+            return Line { t, ..Line::default() };
         }
         let share = constant * (1.0 - a) * self.speed_gain;
-        Line { t: constant * a * current + share * (self.lag + self.speed), b: share * ahead }
+        let [link, b] = self.seen_at_the_end(h, &cascade).map(|seen| share * seen);
+        Line { t: constant * a * current + share * self.wanted, b, link }
+    }
+
+    /// What the lag of the end of a step loses to the speeds of link and rotor: K_x h of a side that gives the angle, 1 of
+    /// one that gives the speed.
+    fn seen_at_the_end(&self, h: f64, cascade: &Cascade) -> [f64; 2] {
+        let mut seen = [0.0; 2];
+        let mut add = |side: Side, x: f64| seen[if self.elastic.is_some() { side as usize } else { 1 }] += x;
+        add(cascade.feedback.position(), h * cascade.position_gain);
+        add(cascade.feedback.speed(), 1.0);
+        seen
     }
 
     /// Motor and friction together.
     fn shaft(&self, h: f64) -> Line {
-        let Step { motor: Line { t, b }, coulomb, viscous, slip, .. } = self.step;
+        let Step { motor: Line { t, b, link }, coulomb, viscous, slip, .. } = self.step;
         match slip {
-            Slip::Turns(s) => Line { t: t - s * coulomb, b: b + viscous },
-            Slip::Sticks => Line { t, b: b + STICKING * self.inertia / h },
+            Slip::Turns(s) => Line { t: t - s * coulomb, b: b + viscous, link },
+            Slip::Sticks => Line { t, b: b + STICKING * self.inertia / h, link },
         }
     }
 
@@ -201,7 +217,8 @@ impl Shaft {
         let twist = given.joint.0[self.joints[0]] - given.rotor.0[*e];
         let (free, share) = self.rotor(h, given, *e, spring, shaft);
         let stiff = spring.tangent(twist) * h;
-        (Line { t: stiff * free - spring.torque(twist), b: stiff * (1.0 - share) }, [1.0, 0.0, 0.0])
+        let (t, b) = (stiff * free - spring.torque(twist), stiff * (1.0 - share));
+        (Line { t, b, link: 0.0 }, [1.0, 0.0, 0.0])
     }
 
     /// Rotor behind an elastic gear: th'+ = A + B q'+.
@@ -213,7 +230,7 @@ impl Shaft {
         let total = inertia + h * n * n * shaft.b + stiff;
         let driving = n * (shaft.t - self.step.along) + spring.torque(twist);
         let free = inertia * given.rotor.1[e] + h * driving;
-        (free / total, stiff / total)
+        (free / total, (stiff - h * n * n * shaft.link) / total)
     }
 
     /// Speed of the shaft at the end of the step for joint accelerations `a`.
@@ -227,6 +244,7 @@ impl Shaft {
                 let (free, share) = self.rotor(h, given, *e, spring, self.shaft(h));
                 let joint = given.joint.1[self.joints[0]] + h * a[self.joints[0]];
                 let end = self.gear.ratio[0] * (free + share * joint);
+                self.step.link = self.gear.ratio[0] * joint;
                 self.step.torque = self.drive.rotor_inertia * (end - self.speed) / h + self.step.along;
                 end
             }

@@ -11,6 +11,7 @@ use crate::stiff::{GaveUp, Limits, Stiff};
 const TOLERANCE: f64 = 1e-6;
 
 /// A method, and room for one step of a state of fixed length.
+#[derive(Clone)]
 pub struct Stepper {
     integrator: Integrator,
     k: [Vec<f64>; 4],

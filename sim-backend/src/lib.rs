@@ -7,7 +7,7 @@
 //! | joint references | [`drive`] |
 //! | equations of motion, types 1 to 5 of the thesis | [`plant`] |
 //! | their states | [`layout`] |
-//! | their drives, and these in an implicit step | [`train`], [`implicit`] |
+//! | their drives, with their controllers, and both in an implicit step | [`train`], `local_control.rs`, [`implicit`] |
 //! | their contact, and what they stand on | [`feet`], [`terrain`] |
 //! | time steps; the adaptive ones | [`integrate`], [`stiff`] |
 //! | what the sensors make of it | [`sensors`] |
@@ -18,6 +18,7 @@ pub mod feet;
 pub mod implicit;
 pub mod integrate;
 pub mod layout;
+mod local_control;
 pub mod plant;
 pub mod power;
 mod robot;

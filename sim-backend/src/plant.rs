@@ -15,7 +15,7 @@ use std::error::Error;
 use config::Robot;
 use environment::Environment;
 use messages::Wrench;
-use multibody::{Data, Frame, Limbs, Model, Rotor};
+use multibody::{Data, Frame, Limbs, Model};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use crate::drive::{Drive, Motion};
@@ -23,9 +23,10 @@ use crate::feet::Feet;
 use crate::implicit::Step;
 use crate::layout::Layout;
 use crate::sensors::carried;
-use crate::train::{Fault, Given, Train};
+use crate::train::{Fault, Given, Train, rotors};
 
 /// The equations of motion of one robot.
+#[derive(Clone)]
 pub struct Plant {
     model: Model,
     data: Data,
@@ -42,6 +43,7 @@ pub struct Plant {
 }
 
 /// What an evaluation leaves behind.
+#[derive(Clone)]
 struct Scratch {
     q: Vec<f64>,
     v: Vec<f64>,
@@ -174,6 +176,18 @@ impl Plant {
         let (q, v) = (&x[l.pose()][7..], &x[l.speed()][6..]);
         for (j, m) in out.iter_mut().enumerate() {
             *m = Motion { angle: q[j], speed: v[j], acceleration: self.scratch.acceleration[6 + j] };
+        }
+    }
+
+    /// The sampled controllers measure, at the begin of a cycle \[s\] in state `x`, and compute what they hold until the next.
+    pub fn sample(&mut self, cycle: f64, x: &[f64], drives: &[Drive], outside: &Outside) {
+        let l = self.layout;
+        if l.joints > 0 && self.train.as_ref().is_some_and(Train::is_sampled) {
+            self.load(0.0, x, drives);
+            let Self { data, scratch, train: Some(train), .. } = self else { return };
+            let given = given(&l, x, &scratch.reference, outside.powered);
+            train.load(&given, data);
+            train.sample(cycle, &given);
         }
     }
 
@@ -430,18 +444,6 @@ impl Scratch {
             steps: Vec::with_capacity(model.n()),
         }
     }
-}
-
-/// The rotors of a robot's drives, in their order.
-fn rotors(robot: &Robot, elastic: bool) -> Vec<Rotor> {
-    let rotor = |d: &config::robot::Drive| Rotor {
-        name: d.name.clone(),
-        link: d.stator.clone(),
-        axis: Vector3::from(d.axis),
-        inertia: d.rotor_inertia,
-        joints: if elastic && d.elasticity.is_some() { Vec::new() } else { d.joints.clone() },
-    };
-    robot.drives.iter().map(rotor).collect()
 }
 
 /// Generalized force of ground and push (2.40).

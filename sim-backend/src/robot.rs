@@ -20,6 +20,7 @@ use crate::terrain;
 const FALLEN_TILT: f64 = std::f64::consts::FRAC_PI_4;
 
 /// A robot in simulation.
+#[derive(Clone)]
 pub struct SimBackend {
     robot: Robot,
     scene: Scene,
@@ -37,6 +38,8 @@ pub struct SimBackend {
     sensor_frames: [Frame; 2],
     sensor_set: SensorSet,
     power: PowerLine,
+    /// \[rad\] By how much the encoders of each joint read too much.
+    offset: Vec<f64>,
     targets: JointTargets,
     /// Tick of the newest targets followed.
     followed: u64,
@@ -63,7 +66,8 @@ impl SimBackend {
             );
         }
         let pose = &robot.poses[&scene.start_pose];
-        let mut plant = Plant::new(robot, terrain::environment(scene)?, scene.depth, pose)?;
+        let real = really(robot, scene);
+        let mut plant = Plant::new(&real, terrain::environment(scene)?, scene.depth, pose)?;
         let state = plant.standing(pose);
         let sensor = |i: usize| plant.model().frame(&robot.feet[i].sensor_link, robot.feet[i].sensor);
         let sensor_frames = [sensor(0)?, sensor(1)?];
@@ -82,6 +86,7 @@ impl SimBackend {
             plant,
             state,
             power: PowerLine::default(),
+            offset: offsets(robot, scene),
             targets: JointTargets::default(),
             followed: 0,
             cycles: 0,
@@ -117,6 +122,16 @@ impl SimBackend {
         &self.state
     }
 
+    /// The same, for studies that disturb it between two cycles.
+    pub fn integrated_mut(&mut self) -> &mut [f64] {
+        &mut self.state
+    }
+
+    /// Where each of its numbers is.
+    pub fn layout(&self) -> &crate::layout::Layout {
+        self.plant.layout()
+    }
+
     /// Simulated time \[s\].
     pub fn time(&self) -> f64 {
         self.cycles as f64 * self.scene.cycle
@@ -132,6 +147,7 @@ impl SimBackend {
         if !self.fallen {
             outside.powered = self.begin_cycle(frames, powered);
             self.last_good.copy_from_slice(&self.state);
+            self.plant.sample(dt, &self.state, &self.drives, &outside);
             let h = dt / f64::from(self.scene.substeps);
             for i in 0..self.scene.substeps {
                 let Self { plant, stepper, state, drives, .. } = self;
@@ -169,7 +185,10 @@ impl SimBackend {
             self.drives[j] = match (driven, fresh) {
                 (false, _) if self.plant.layout().joints > 0 => Drive::resting(self.motions[j].angle),
                 (false, _) => Drive::brake(joint, from, dt),
-                (true, true) => Drive::follow(from, self.targets.angle[j], self.targets.speed[j], dt),
+                (true, true) => {
+                    let angle = self.targets.angle[j] - self.offset[j];
+                    Drive::follow(from, angle, self.targets.speed[j], dt)
+                }
                 // No new frame: the local controllers carry on at the last speed.
                 (true, false) => Drive::follow(from, from.angle + from.speed * dt, from.speed, dt),
             };
@@ -246,6 +265,11 @@ impl SimBackend {
         }
         (seen.motor_angle, seen.motor_speed) = (seen.joint_angle, seen.joint_speed);
         self.plant.motors(x, &mut seen.motor_angle, &mut seen.motor_speed, &mut seen.motor_current);
+        truth.motor_angle = seen.motor_angle;
+        for (j, offset) in self.offset.iter().enumerate().filter(|(_, offset)| **offset != 0.0) {
+            seen.joint_angle[j] += offset;
+            seen.motor_angle[j] += offset;
+        }
         for i in 0..2 {
             let pose = self.plant.frame_pose(&self.sensor_frames[i]);
             let force = Vector3::from(s.foot_wrench[i].force);
@@ -289,6 +313,23 @@ impl SimBackend {
         truth.fallen = u64::from(self.fallen);
         report.invalid == 0
     }
+}
+
+/// The robot as it is, where that is not what its software believes.
+fn really(robot: &Robot, scene: &Scene) -> Robot {
+    let (mut robot, factor) = (robot.clone(), scene.unknown.contact_stiffness);
+    robot.contact.normal_stiffness *= factor;
+    robot.contact.tangential_stiffness *= factor;
+    if let Some(pads) = &mut robot.contact.pads {
+        pads.modulus *= factor;
+    }
+    robot
+}
+
+/// \[rad\] By how much the encoders of each joint read too much.
+fn offsets(robot: &Robot, scene: &Scene) -> Vec<f64> {
+    let offset = |joint: &config::robot::Joint| scene.unknown.joint_offset.of(&joint.name).unwrap_or(0.0);
+    robot.joints.iter().map(offset).collect()
 }
 
 fn stepper(scene: &Scene, states: usize) -> Stepper {

@@ -6,13 +6,13 @@ use config::Scene;
 use config::terrain::{Shape, TerrainObject, TerrainPose};
 use environment::{Environment, Mesh, Object, Pose, Schedule};
 
-/// Flat ground with the objects of a scene.
+/// Flat ground, tilted if the scene says so, with the objects of a scene.
 ///
 /// # Errors
 /// A mesh cannot be read.
 pub fn environment(scene: &Scene) -> Result<Environment, Box<dyn Error>> {
     let objects = scene.objects.iter().map(object).collect::<Result<Vec<_>, _>>()?;
-    Ok(Environment::new(objects))
+    Ok(Environment::new(objects).tilted(scene.unknown.ground_tilt))
 }
 
 fn object(o: &TerrainObject) -> Result<Object, Box<dyn Error>> {

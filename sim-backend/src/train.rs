@@ -1,39 +1,30 @@
 //! Drive trains with their local controllers: from joint targets to torques, by motor, gear and friction (thesis 2.4).
 //!
-//! Every motor is controlled on its own side by a cascade of position, speed and current, as Lola's servo drives are
-//! (thesis 5.5.2, App. G), here without the delay of sampling:
-//!
-//! ```text
-//! w_d = c (q'_d + K_p (q_d - q)),   I_d = K_v (w_d - w),   U = R I_d + k_M w + L w_c (I_d - I)
-//! ```
+//! How each motor is controlled, and by what it sees of its joints, is data of the drive: `local_control`.
 //!
 //! | symbol | name | unit |
 //! |---|---|---|
 //! | c | speed of the motor by the speeds of its joints, d phi / d q | 1 |
 //! | w | speed of the rotor relative to its housing, c q' or N th' | rad/s |
-//! | K_p, K_v, w_c | gains of position, speed and current | 1/s, A s/rad, 1/s |
+//! | K_v | gain of the speed loop of a cascade | A s/rad |
 //! | U, I, R, L, k_M | voltage, current, resistance, inductance, constant of the motor (2.57) | V, A, Ohm, H, N m/A |
 //! | T_f | friction torque on the motor shaft (2.61), (2.68) | N m |
 //! | T | torque of the elastic gear on its output side (2.69) | N m |
 
 use config::Robot;
 use config::robot::Drive as Description;
-use drives::{Elasticity, Gear, NoLoadTorque, OutOfDomain, Transmission};
-use multibody::{Damper, Data, Model, ModelError};
+use drives::{Elasticity, Gear, Law, NoLoadTorque, OutOfDomain, Sampling, Transmission};
+use multibody::{Damper, Data, Model, ModelError, Rotor};
 
 use crate::drive::Motion;
 use crate::implicit::Step;
+use crate::local_control::Sampler;
 
-/// \[1/s\] Gain K_p of the position loop.
-pub(crate) const POSITION_GAIN: f64 = 50.0;
-/// \[rad/s\] Bandwidth of the speed loop with the inertia of a hanging robot.
-const SPEED_BANDWIDTH: f64 = 600.0;
-/// \[rad/s\] Bandwidth w_c of the current loop.
-pub(crate) const CURRENT_BANDWIDTH: f64 = 3000.0;
 /// \[rad/s\] Speed of a rotor over which explicit methods see dry friction change its sign.
 pub(crate) const SLOW: f64 = 1.0;
 
 /// All drives of a robot.
+#[derive(Clone)]
 pub struct Train {
     pub(crate) shafts: Vec<Shaft>,
     elastic: usize,
@@ -63,6 +54,7 @@ pub enum Why {
 }
 
 /// One motor with its gear.
+#[derive(Clone)]
 pub(crate) struct Shaft {
     pub(crate) drive: Description,
     /// Place among the motors.
@@ -78,8 +70,11 @@ pub(crate) struct Shaft {
     pub(crate) gear: Gear,
     /// Speed w \[rad/s\].
     pub(crate) speed: f64,
-    /// w_d - w with the position and speed of now \[rad/s\].
+    /// What the position loop of a cascade asks of the speed, and how far that is from the speed seen \[rad/s\].
+    pub(crate) wanted: f64,
     pub(crate) lag: f64,
+    /// What a sampled law holds.
+    pub(crate) sampler: Sampler,
     /// Of an implicit step, see there.
     pub(crate) step: Step,
 }
@@ -120,7 +115,19 @@ impl Train {
         self.shafts.len()
     }
 
-    /// Gains K_v of the speed loops, one per motor \[A s/rad\].
+    /// The sampled controllers measure at the state of [`Train::load`] and compute what they hold for a cycle \[s\].
+    pub fn sample(&mut self, cycle: f64, given: &Given<'_>) {
+        for s in &mut self.shafts {
+            s.sample(cycle, given);
+        }
+    }
+
+    /// Whether a controller is sampled.
+    pub fn is_sampled(&self) -> bool {
+        self.shafts.iter().any(|s| s.drive.control.sampling != Sampling::Continuous)
+    }
+
+    /// Gains K_v of the speed loops, one per motor; 0 without one \[A s/rad\].
     pub fn speed_gains(&self) -> impl Iterator<Item = f64> + '_ {
         self.shafts.iter().map(|s| s.speed_gain)
     }
@@ -235,7 +242,9 @@ impl Shaft {
             speed_gain: 0.0,
             gear: drive.transmission.at([0.0; 3], [0.0; 3]).unwrap_or_default(),
             speed: 0.0,
+            wanted: 0.0,
             lag: 0.0,
+            sampler: Sampler::new(&drive.control),
             step: Step::default(),
             drive: drive.clone(),
         }
@@ -244,37 +253,6 @@ impl Shaft {
     /// Whether the ratio changes with the joints.
     fn is_linkage(&self) -> bool {
         !matches!(self.drive.transmission, Transmission::Harmonic { .. })
-    }
-
-    /// Speed, and how far it is from the wanted one, with the gear as it is.
-    fn load(&mut self, given: &Given<'_>) {
-        let (angle, speed) = match self.elastic {
-            None => given.joint,
-            Some(_) => given.rotor,
-        };
-        let (mut turns, mut wanted) = (0.0, 0.0);
-        for i in 0..self.coupled {
-            let (c, j) = (self.gear.ratio[i], self.joints[i]);
-            let at = self.elastic.as_ref().map_or(j, |(e, _)| *e);
-            let r = &given.reference[j];
-            turns += c * speed[at];
-            wanted += c * (r.speed + POSITION_GAIN * (r.angle - angle[at]));
-        }
-        (self.speed, self.lag) = (turns, wanted - turns);
-    }
-
-    /// Current the speed loop asks for \[A\].
-    fn wanted_current(&self) -> f64 {
-        let limit = self.drive.current_limit;
-        (self.speed_gain * self.lag).clamp(-limit, limit)
-    }
-
-    /// Voltage the current loop sets \[V\].
-    pub(crate) fn voltage(&self, current: f64) -> f64 {
-        let (motor, wanted) = (&self.drive.motor, self.wanted_current());
-        let voltage =
-            motor.voltage(wanted, self.speed) + motor.inductance * CURRENT_BANDWIDTH * (wanted - current);
-        voltage.clamp(-self.drive.voltage_limit, self.drive.voltage_limit)
     }
 
     /// Torque of the brake \[N m\]: what the motor could hold.
@@ -297,6 +275,18 @@ impl Shaft {
             }
         }
     }
+}
+
+/// The rotors of a robot's drives, in their order.
+pub(crate) fn rotors(robot: &Robot, elastic: bool) -> Vec<Rotor> {
+    let rotor = |d: &Description| Rotor {
+        name: d.name.clone(),
+        link: d.stator.clone(),
+        axis: nalgebra::Vector3::from(d.axis),
+        inertia: d.rotor_inertia,
+        joints: if elastic && d.elasticity.is_some() { Vec::new() } else { d.joints.clone() },
+    };
+    robot.drives.iter().map(rotor).collect()
 }
 
 /// Sets the gains of the speed loops for the inertia that each motor feels of the robot hanging in a pose.
@@ -325,6 +315,8 @@ fn tune(shafts: &mut [Shaft], model: &Model, hanging: &[f64]) {
         if s.elastic.is_some() {
             s.inertia += s.drive.rotor_inertia; // not in the mass matrix
         }
-        s.speed_gain = SPEED_BANDWIDTH * s.inertia / s.drive.motor.torque_constant;
+        if let Law::Cascade(cascade) = s.drive.control.law {
+            s.speed_gain = cascade.speed_bandwidth * s.inertia / s.drive.motor.torque_constant;
+        }
     }
 }

@@ -78,3 +78,52 @@ fn a_robot_with_a_wrong_link_name_is_refused() {
     let error = SimBackend::new(&setup.robot, &setup.scene).err().expect("refused").to_string();
     assert!(error.contains("right_foott"), "{error}");
 }
+
+/// Ground, soles and calibration that the software does not know of (`[unknown]`), each against its closed form.
+#[test]
+fn on_tilted_ground_the_robot_stands_by_friction_and_slides_beyond_it() {
+    let mut setup = setup();
+    setup.robot.contact.friction = 0.1;
+    for (tilt, slides) in [(0.03_f64, false), (0.15, true)] {
+        setup.scene.unknown.ground_tilt = [0.0, tilt];
+        let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+        let (truth, _) = hold(&mut sim, &setup, if slides { 1000 } else { 8000 }, u64::MAX);
+        let sum = |k: usize| truth.foot_wrench.iter().map(|w| w.force[k]).sum::<f64>();
+        let (normal, along) =
+            (sum(0) * tilt.sin() + sum(2) * tilt.cos(), sum(0) * tilt.cos() - sum(2) * tilt.sin());
+        let way = truth.position[0];
+        if slides {
+            // Down the hill, and friction holds back with mu times the normal force.
+            assert!(way > 0.1 && (along / normal + 0.1).abs() < 1e-3, "{way} m, {along} N of {normal} N");
+        } else {
+            assert!((sum(2) - 60.885 * 9.81).abs() < 0.5, "{} N, {way} m, {}", sum(2), truth.fallen);
+            assert!((along / normal + tilt.tan()).abs() < 1e-3, "{along} N of {normal} N, {way} m");
+            assert!(truth.fallen == 0 && way.abs() < 0.1, "{way} m");
+        }
+    }
+}
+
+#[test]
+fn softer_soles_are_pressed_in_as_much_more() {
+    let mut setup = setup();
+    let mut height = |factor: f64| {
+        setup.scene.unknown.contact_stiffness = factor;
+        hold(&mut SimBackend::new(&setup.robot, &setup.scene).unwrap(), &setup, 2000, u64::MAX).0.feet[0][2]
+    };
+    let (nominal, soft) = (height(1.0), height(0.5));
+    // Not quite: the robot leans a little, the more the softer it stands, and the sole frames are not below its middle.
+    assert!((soft / nominal - 2.0).abs() < 0.15, "{nominal} m, {soft} m");
+}
+
+#[test]
+fn a_joint_with_a_wrong_zero_stands_beside_where_its_encoder_says() {
+    let mut setup = setup();
+    let joint = setup.robot.joint("right_knee_flexion").unwrap();
+    let own = vec![("right_knee_flexion".to_string(), 0.01)];
+    setup.scene.unknown.joint_offset = config::sensors::PerJoint { all: None, own };
+    let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+    let (truth, sensors) = hold(&mut sim, &setup, 500, u64::MAX);
+    let wanted = setup.robot.poses["stand"][joint];
+    assert!((sensors.joint_angle[joint] - wanted).abs() < 1e-9, "the drive works with its encoder");
+    assert!((truth.joint_angle[joint] - wanted + 0.01).abs() < 1e-9, "{}", truth.joint_angle[joint]);
+}

@@ -37,10 +37,12 @@ pub struct Cycle {
 }
 
 /// The processes of a scene, each a library's step.
+#[derive(Clone)]
 pub struct Chain {
     dt: f64,
     walk: Timeline,
     system: Timeline,
+    head: Timeline,
     due: Vec<Command>,
     planner: Planner,
     controller: Controller,
@@ -61,13 +63,16 @@ impl Chain {
     pub fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
         let Setup { scene, robot, gait, system, .. } = &setup.clone().with_method(None)?;
         let mut sim = SimBackend::new(robot, scene)?;
+        let mut planner = Planner::of(gait, robot);
+        planner.see(planner::vision::known(setup)?);
         let answer = *sim.step(None, None).0;
         Ok(Self {
             dt: scene.cycle,
             walk: Timeline::new(scene, &[Domain::Walk]),
             system: Timeline::new(scene, &[Domain::System]),
+            head: Timeline::new(scene, &[Domain::Head]),
             due: Vec::with_capacity(64),
-            planner: Planner::new(gait, [robot.feet[0].support, robot.feet[1].support]),
+            planner,
             controller: Controller::new(robot, gait, scene.cycle)?,
             joint_loop: JointLoop::new(robot, system, scene.cycle),
             watchdog: Watchdog::new(system.watchdog_missed),
@@ -96,6 +101,16 @@ impl Chain {
         &self.sim
     }
 
+    /// Simulated robot and stabilizer, for studies that disturb them between two cycles.
+    pub fn parts(&mut self) -> (&mut SimBackend, &mut Controller) {
+        (&mut self.sim, &mut self.controller)
+    }
+
+    /// \[s\] Bus cycle.
+    pub fn cycle(&self) -> f64 {
+        self.dt
+    }
+
     /// One bus cycle.
     pub fn step(&mut self) -> &Cycle {
         self.tick += 1;
@@ -115,10 +130,13 @@ impl Chain {
         }
         c.events.extend(output.events.iter().map(|&(code, detail)| (Process::Planner, code, detail)));
 
+        take_due(&mut self.head, tick, &mut self.due);
+        let said = self.due.iter().filter_map(|command| self.controller.command(command));
+        c.events.extend(said.map(|(code, detail)| (Process::Controller, code, detail)));
         let (targets, state) = self.controller.step(&c.sensors, (self.plan.id > 0).then_some(&*self.plan));
         (c.joint_targets, c.controller_state) = (*targets, *state);
-        c.events
-            .extend(self.controller.take_event().map(|(code, detail)| (Process::Controller, code, detail)));
+        let told = std::iter::from_fn(|| self.controller.take_event());
+        c.events.extend(told.map(|(code, detail)| (Process::Controller, code, detail)));
 
         let (frames, reset) = self.joint_loop.send(Some(&c.joint_targets), None);
         take_due(&mut self.system, tick, &mut self.due);

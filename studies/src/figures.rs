@@ -1,7 +1,21 @@
 //! The figures a walk is judged by, gathered cycle by cycle.
 
-use messages::{ControllerState, GaitState, LEFT, RIGHT, SimState};
+mod landing;
+mod way;
+
+use std::collections::BTreeMap;
+
+use config::Setup;
+use messages::{ControllerState, GaitState, MAX_JOINTS, SimState};
 use serde::Serialize;
+
+use landing::Landing;
+use way::Way;
+
+/// \[m/s^2\]
+const GRAVITY: f64 = 9.81;
+/// Parts of the names of the joints that carry most while walking (thesis 8.1.1).
+const LOADED: [&str; 2] = ["hip_flexion", "knee_flexion"];
 
 /// What `gangwerk sim SCENE --json` prints.
 #[derive(Clone, Debug, Serialize)]
@@ -24,14 +38,36 @@ pub struct Figures {
     pub mean_speed_m_s: f64,
     /// Steps taken.
     pub steps: u64,
+    /// \[m\] Mean length of the periodic steps.
+    pub step_length_m: f64,
+    /// \[s\] Their mean duration.
+    pub step_duration_s: f64,
+    /// \[rad\] Angle through which the torso turned per step from the first to the last periodic one.
+    pub step_turn_rad: f64,
+    /// Steps from standing up to the first one as long as the periodic ones (within 3 %), and from the last such one on until
+    /// the robot stands again.
+    pub steps_to_speed_and_rest: [u64; 2],
     /// \[rad\] Largest inclination error (phi_x, phi_y) while a plan runs.
     pub inclination_error_max_rad: [f64; 2],
     /// \[rad\] Its root mean square.
     pub inclination_error_rms_rad: [f64; 2],
     /// \[rad\] Largest joint tracking error.
     pub joint_tracking_error_max_rad: f64,
+    /// \[rad\] The same of hip flexion and knees.
+    pub hip_knee_tracking_error_max_rad: f64,
+    /// \[rad\] The same on the motors' side of elastic gears.
+    pub hip_knee_motor_side_error_max_rad: f64,
+    /// \[rad\] The same by joint, links.
+    pub tracking_error_by_joint_rad: BTreeMap<String, f64>,
+    /// \[rad\] The same by joint, motors.
+    pub motor_side_error_by_joint_rad: BTreeMap<String, f64>,
     /// \[N\] Largest normal force of one foot.
     pub peak_normal_force_n: f64,
+    /// \[1\] Largest normal force in the first 0.1 s after a landing over the largest desired one of that stance, of the
+    /// landing for which this is most: up to 1, the foot is not struck harder than it is to carry.
+    pub landing_peak_ratio: f64,
+    /// \[1\] By how many weights of the robot the normal force exceeds the desired one at most in those 0.1 s.
+    pub landing_excess_weights: f64,
     /// \[m\] Least distance of the measured zero-moment point to the edge of the support polygon.
     pub zmp_margin_min_m: f64,
     /// \[m, m, rad\] Torso at the end: x, y, heading.
@@ -49,17 +85,17 @@ pub struct Figures {
 pub struct Gatherer {
     fell: bool,
     time: f64,
-    steps: u64,
     error_max: [f64; 2],
     error_square: [f64; 2],
     cycles: f64,
-    tracking: f64,
+    /// \[rad\] Largest tracking errors of links and motors.
+    tracking: [[f64; MAX_JOINTS]; 2],
+    /// \[rad\] Links less motors when the last cycle ended, which is when the next one measures.
+    twist: [f64; MAX_JOINTS],
     force: f64,
+    landing: [Landing; 2],
     margin: Option<f64>,
-    /// Stance foot of the last cycle.
-    stance: Option<usize>,
-    /// When and where the torso was each time the right foot took over while walking.
-    strides: Vec<(f64, [f64; 2])>,
+    way: Way,
     end_pose: [f64; 3],
 }
 
@@ -74,6 +110,8 @@ impl Gatherer {
         for w in &sim.foot_wrench {
             self.force = self.force.max(w.force[2]);
         }
+        let twist = std::array::from_fn(|j| sim.joint_angle[j] - sim.motor_angle[j]);
+        let twist = std::mem::replace(&mut self.twist, twist);
         if state.plan_id == 0 {
             return;
         }
@@ -83,61 +121,36 @@ impl Gatherer {
             self.error_max[i] = self.error_max[i].max(e.abs());
             self.error_square[i] += e * e;
         }
-        self.tracking = state.tracking_error.iter().fold(self.tracking, |m, e| m.max(e.abs()));
+        for (j, (link, twist)) in state.tracking_error.iter().zip(twist).enumerate() {
+            for (side, error) in [*link, link + twist].into_iter().enumerate() {
+                self.tracking[side][j] = self.tracking[side][j].max(error.abs());
+            }
+        }
+        if matches!(GaitState::from(state.gait), GaitState::Walking | GaitState::Stopping) {
+            for i in 0..2 {
+                self.landing[i].add(sim.time, sim.foot_wrench[i].force[2], state.wrench_desired[i].force[2]);
+            }
+        }
         if state.zmp_margin.is_finite() {
             self.margin = Some(self.margin.map_or(state.zmp_margin, |m| m.min(state.zmp_margin)));
         }
-        self.count_step(sim, state);
-    }
-
-    /// A step begins when the planned load has moved to one foot alone.
-    fn count_step(&mut self, sim: &SimState, state: &ControllerState) {
-        let stance = match state.load_left {
-            l if l >= 1.0 => LEFT,
-            l if l <= 0.0 => RIGHT,
-            _ => return,
-        };
-        let gait = GaitState::from(state.gait);
-        if self.stance == Some(stance)
-            || !matches!(gait, GaitState::Starting | GaitState::Walking | GaitState::Stopping)
-        {
-            return;
-        }
-        self.stance = Some(stance);
-        self.steps += 1;
-        // Every second step: the torso sways from side to side, and the sway is no way made.
-        if gait == GaitState::Walking && stance == RIGHT {
-            self.strides.push((sim.time, [sim.position[0], sim.position[1]]));
-        }
-    }
-
-    /// (time, distance) from the first to the last periodic step: the longest run of strides that are alike, each
-    /// within 1 % of the duration and 3 % of the length of the one before.
-    fn periodic(&self) -> (f64, f64) {
-        let stride = |pair: &[(f64, [f64; 2])]| {
-            let ((t0, a), (t1, b)) = (pair[0], pair[1]);
-            (t1 - t0, (b[0] - a[0]).hypot(b[1] - a[1]))
-        };
-        let alike = |a: (f64, f64), b: (f64, f64)| {
-            (a.0 - b.0).abs() <= 0.01 * a.0 && (a.1 - b.1).abs() <= 0.03 * a.1.max(0.1)
-        };
-        let (mut best, mut run, mut last) = ((0.0, 0.0), (0.0, 0.0), None);
-        for now in self.strides.windows(2).map(stride) {
-            run = match last {
-                Some(before) if alike(before, now) => (run.0 + now.0, run.1 + now.1),
-                _ => now,
-            };
-            if run.0 > best.0 {
-                best = run;
-            }
-            last = Some(now);
-        }
-        best
+        self.way.add(sim, state, heading);
     }
 
     /// The figures so far.
-    pub fn figures(&self, scene: &config::Scene, cpu_s: f64, log: Option<String>) -> Figures {
-        let (span, distance) = self.periodic();
+    pub fn figures(&self, setup: &Setup, cpu_s: f64, log: Option<String>) -> Figures {
+        let Setup { scene, robot, .. } = setup;
+        let periodic = self.way.periodic();
+        let per_step = |x: f64| x / (2.0 * periodic.strides).max(1.0);
+        let by_joint = |errors: [f64; MAX_JOINTS]| -> BTreeMap<String, f64> {
+            robot.joints.iter().map(|j| j.name.clone()).zip(errors).collect()
+        };
+        let [link, motor] = self.tracking.map(by_joint);
+        let loaded = |errors: &BTreeMap<String, f64>| {
+            let of = errors.iter().filter(|(name, _)| LOADED.iter().any(|part| name.contains(part)));
+            of.map(|(_, e)| *e).fold(0.0, f64::max)
+        };
+        let worst = |value: fn(&Landing) -> f64| self.landing.iter().map(value).fold(0.0, f64::max);
         let n = self.cycles.max(1.0);
         Figures {
             scene: scene.name.clone(),
@@ -146,13 +159,23 @@ impl Gatherer {
             depth_reason: None,
             fell: self.fell,
             duration_s: self.time,
-            distance_m: distance,
-            mean_speed_m_s: if span > 0.0 { distance / span } else { 0.0 },
-            steps: self.steps,
+            distance_m: periodic.distance,
+            mean_speed_m_s: if periodic.span > 0.0 { periodic.distance / periodic.span } else { 0.0 },
+            steps: self.way.steps(),
+            step_length_m: per_step(periodic.distance),
+            step_duration_s: per_step(periodic.span),
+            step_turn_rad: per_step(periodic.turn),
+            steps_to_speed_and_rest: self.way.to_speed_and_rest(per_step(periodic.distance)),
             inclination_error_max_rad: self.error_max,
             inclination_error_rms_rad: self.error_square.map(|s| (s / n).sqrt()),
-            joint_tracking_error_max_rad: self.tracking,
+            joint_tracking_error_max_rad: self.tracking[0].iter().copied().fold(0.0, f64::max),
+            hip_knee_tracking_error_max_rad: loaded(&link),
+            hip_knee_motor_side_error_max_rad: loaded(&motor),
+            tracking_error_by_joint_rad: link,
+            motor_side_error_by_joint_rad: motor,
             peak_normal_force_n: self.force,
+            landing_peak_ratio: worst(Landing::ratio),
+            landing_excess_weights: worst(Landing::excess) / (robot.total_mass * GRAVITY),
             zmp_margin_min_m: self.margin.unwrap_or(f64::NAN),
             end_pose: self.end_pose,
             cpu_s,
@@ -172,8 +195,23 @@ pub fn table(f: &Figures) -> String {
         ("walking speed", format!("{:.3} m/s = {:.2} km/h", f.mean_speed_m_s, 3.6 * f.mean_speed_m_s)),
         ("inclination error, max", milli(f.inclination_error_max_rad)),
         ("inclination error, rms", milli(f.inclination_error_rms_rad)),
+        ("periodic step", format!("{:.3} m, {:.3} s", f.step_length_m, f.step_duration_s)),
         ("joint tracking error, max", format!("{:.2e} rad", f.joint_tracking_error_max_rad)),
+        (
+            "of hip flexion and knees",
+            format!(
+                "{:.2e} rad; motor side {:.2e} rad",
+                f.hip_knee_tracking_error_max_rad, f.hip_knee_motor_side_error_max_rad
+            ),
+        ),
         ("normal force of a foot, max", format!("{:.0} N", f.peak_normal_force_n)),
+        (
+            "landing, max",
+            format!(
+                "{:.2} of the stance's desired force, {:.2} weights over it",
+                f.landing_peak_ratio, f.landing_excess_weights
+            ),
+        ),
         ("ZMP to edge of support, min", format!("{:.1} mm", 1e3 * f.zmp_margin_min_m)),
         (
             "end pose",

@@ -179,14 +179,19 @@ fn compare(root: &Path, case: &Case, depth: u8, out: &Path) -> Result<Comparison
     })
 }
 
-/// The scene of a case, without an end before all has been seen. Motors take shorter and semi-implicit steps.
-fn periodic(root: &Path, case: &Case, depth: u8) -> Result<Setup, Error> {
-    let mut setup = Setup::load(root, case.scene)?;
+/// Simulates a scene of type 1 with models of type `depth`.
+pub(crate) fn deepen(setup: &mut Setup, depth: u8) {
     if depth > 1 {
         setup.scene.depth = depth;
         setup.scene.integrator = Integrator::SemiImplicit;
         setup.scene.substeps = (setup.scene.cycle / MOTOR_STEP).round() as u32;
     }
+}
+
+/// The scene of a case, without an end before all has been seen. Motors take shorter and semi-implicit steps.
+fn periodic(root: &Path, case: &Case, depth: u8) -> Result<Setup, Error> {
+    let mut setup = Setup::load(root, case.scene)?;
+    deepen(&mut setup, depth);
     setup.scene.duration = SETTLED + SPAN;
     setup.scene.commands.retain(|(time, _)| *time < SETTLED);
     for (_, command) in &mut setup.scene.commands {

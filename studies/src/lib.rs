@@ -5,21 +5,28 @@
 //! | [`accuracy`] | which method is cheapest for a given accuracy? |
 //! | [`depth`] | which is cheapest for what this scene asks? |
 //! | [`push`] | which impulse does the walking robot survive? |
+//! | [`stability`] | how near to falling is a walk, how fast does it forget, what does it survive? |
 //! | [`limits`] | where do methods fail, and is it told? |
 //! | [`speed`], [`simulation_speed`] | how fast is each part, and how accurate is it at that speed? |
+//! | [`arm_swing`] | what do swinging arms take from the soles? |
 //! | [`figures_of_thesis`] | are the figures of the thesis found again? |
+//! | [`scorecard`] | does everything walk that is to walk, and how well beside what others reached? |
 //! | [`cycles`] | how well did the processes of a run keep real time? |
 //!
 //! They work on [`chain`], all steps in one process, and judge by [`figures`]; [`second`] replays a part of it.
 
 pub mod accuracy;
+pub mod arm_swing;
 pub mod chain;
 pub mod cycles;
 pub mod depth;
 pub mod figures;
 pub mod figures_of_thesis;
 pub mod limits;
+mod parallel;
 pub mod push;
+pub mod scorecard;
 pub mod second;
 pub mod simulation_speed;
 pub mod speed;
+pub mod stability;

@@ -4,14 +4,14 @@
 //! it. The way it walks repeats with every stride of two steps, so the instants are spread over one stride.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use config::Setup;
 use messages::command::PushCommand;
 use messages::{EventCode, GaitState, LEFT, RIGHT};
 use serde::Serialize;
 
-use crate::chain::Chain;
+use crate::chain::{Chain, Cycle};
+use crate::parallel;
 
 /// \[s\] Length of a push.
 const DURATION: f64 = 0.1;
@@ -72,9 +72,11 @@ pub fn run(config: &Path, only: Option<&str>, instants: usize) -> Result<Report,
         let robot = &setup.robot;
         let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
         report.mass_kg = multibody::Model::from_urdf(&robot.urdf, &robot.torso, &order)?.mass();
-        let ticks = instants_of_a_stride(&setup, instants)?;
-        let impulses = bisect_all(&setup, &ticks);
-        for ((direction, _), impulse_n_s) in DIRECTIONS.iter().zip(impulses.chunks(ticks.len())) {
+        let starts = at_instants(&setup, instants)?;
+        let impulses = parallel::map(DIRECTIONS.len() * instants, |k| {
+            largest(&starts[k % instants], DIRECTIONS[k / instants].1, 1.0)
+        });
+        for ((direction, _), impulse_n_s) in DIRECTIONS.iter().zip(impulses.chunks(instants)) {
             let always = impulse_n_s.iter().copied().fold(f64::INFINITY, f64::min);
             report.rows.push(Row {
                 scene: scene.into(),
@@ -88,8 +90,22 @@ pub fn run(config: &Path, only: Option<&str>, instants: usize) -> Result<Report,
     Ok(report)
 }
 
-/// Ticks spread evenly over the first stride after [`SETTLED`].
-fn instants_of_a_stride(setup: &Setup, instants: usize) -> Result<Vec<u64>, Box<dyn std::error::Error>> {
+/// The walk of a scene at instants spread evenly over the first stride after [`SETTLED`].
+pub(crate) fn at_instants(setup: &Setup, instants: usize) -> Result<Vec<Chain>, Box<dyn std::error::Error>> {
+    let (begin, end) = stride(setup, SETTLED)?;
+    let (mut chain, mut tick, mut found) = (Chain::new(setup)?, 0, Vec::new());
+    for k in 0..instants as u64 {
+        while tick < begin + (end - begin) * k / instants as u64 {
+            chain.step();
+            tick += 1;
+        }
+        found.push(chain.clone());
+    }
+    Ok(found)
+}
+
+/// Ticks in which the first stride after `settled` \[s\] and the one after it begin.
+pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<(u64, u64), Box<dyn std::error::Error>> {
     let mut chain = Chain::new(setup)?;
     let (mut stance, mut begins) = (LEFT, Vec::new());
     for tick in 1..=(setup.scene.duration / setup.scene.cycle) as u64 {
@@ -105,65 +121,46 @@ fn instants_of_a_stride(setup: &Setup, instants: usize) -> Result<Vec<u64>, Box<
         } else {
             stance
         };
-        if carries == RIGHT && stance == LEFT && gait == GaitState::Walking && c.sim_state.time >= SETTLED {
+        if carries == RIGHT && stance == LEFT && gait == GaitState::Walking && c.sim_state.time >= settled {
             begins.push(tick);
         }
         stance = carries;
         if let [begin, end] = begins[..] {
-            let at = |k: usize| begin + (end - begin) * k as u64 / instants as u64;
-            return Ok((0..instants).map(at).collect());
+            return Ok((begin, end));
         }
     }
-    Err(format!("scene {}: no whole stride of walking after {SETTLED} s", setup.scene.name).into())
+    Err(format!("scene {}: no whole stride of walking after {settled} s", setup.scene.name).into())
 }
 
-/// All directions at all instants, on all cores.
-fn bisect_all(setup: &Setup, ticks: &[u64]) -> Vec<f64> {
-    let cases: Vec<([f64; 2], u64)> =
-        DIRECTIONS.iter().flat_map(|&(_, d)| ticks.iter().map(move |&tick| (d, tick))).collect();
-    let next = AtomicUsize::new(0);
-    let mut found = vec![0.0; cases.len()];
-    let workers = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        let work = || {
-            let mut mine = Vec::new();
-            loop {
-                let k = next.fetch_add(1, Ordering::Relaxed);
-                let Some(&(direction, tick)) = cases.get(k) else { return mine };
-                mine.push((k, bisect(|impulse| survives(setup, direction, tick, impulse))));
-            }
-        };
-        let threads: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        for (k, impulse) in threads.into_iter().flat_map(|t| t.join().unwrap_or_default()) {
-            found[k] = impulse;
-        }
-    });
-    found
+/// Largest impulse \[N s\] in a direction that is known to be survived; brackets are `coarse` times as wide as [`RESOLUTION`].
+pub(crate) fn largest(start: &Chain, direction: [f64; 2], coarse: f64) -> f64 {
+    bisect(MOST, RESOLUTION * coarse, |impulse| survives(start, direction, impulse))
 }
 
-/// Largest impulse \[N s\] known to be survived when the bracket is narrow enough.
-fn bisect(survives: impl Fn(f64) -> bool) -> f64 {
-    let (mut low, mut high) = (0.0, MOST);
-    while high - low > RESOLUTION {
+/// Largest value from 0 to `most` that is known to be survived when the bracket is as narrow as `resolution`.
+pub(crate) fn bisect(most: f64, resolution: f64, survives: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (0.0, most);
+    while high - low > resolution {
         let middle = 0.5 * (low + high);
         if survives(middle) { low = middle } else { high = middle }
     }
     low
 }
 
-/// Whether the robot goes on after a push at `tick`.
-fn survives(setup: &Setup, direction: [f64; 2], tick: u64, impulse: f64) -> bool {
-    let Ok(mut chain) = Chain::new(setup) else { return false };
-    for _ in 0..tick {
-        chain.step();
-    }
+/// Whether the robot goes on after a push now.
+fn survives(start: &Chain, direction: [f64; 2], impulse: f64) -> bool {
+    let mut chain = start.clone();
     let [x, y] = direction.map(|d| d * impulse / DURATION);
     chain.push(&PushCommand { force: [x, y, 0.0], duration: DURATION });
-    let ended = |code| {
+    (0..((DURATION + AFTER) / chain.cycle()) as u64).all(|_| !ended(chain.step()))
+}
+
+/// Whether the robot fell in this cycle, or a process stopped it.
+pub(crate) fn ended(cycle: &Cycle) -> bool {
+    let ends = |code| {
         matches!(code, EventCode::Fallen | EventCode::Lifted | EventCode::SafeStop | EventCode::PowerOff)
     };
-    (0..((DURATION + AFTER) / setup.scene.cycle) as u64)
-        .all(|_| !chain.step().events.iter().any(|&(_, code, _)| ended(code)))
+    cycle.sim_state.fallen == 1 || cycle.events.iter().any(|&(_, code, _)| ends(code))
 }
 
 /// The report as lines for people.
@@ -189,9 +186,9 @@ mod tests {
 
     #[test]
     fn bisection_finds_the_edge_from_below() {
-        let found = bisect(|x| x < 17.3);
+        let found = bisect(MOST, RESOLUTION, |x| x < 17.3);
         assert!(found < 17.3 && found > 17.3 - RESOLUTION, "{found}");
-        assert_eq!(bisect(|_| false), 0.0);
+        assert_eq!(bisect(MOST, RESOLUTION, |_| false), 0.0);
     }
 
     /// What is said to be survived is, and twice as much is not.
@@ -199,7 +196,19 @@ mod tests {
     fn a_small_push_is_survived_and_a_huge_one_is_not() {
         let mut setup = Setup::load(&config::root(None), "push").unwrap();
         setup.scene.pushes.clear();
-        assert!(survives(&setup, [0.0, 1.0], 8000, 1.0));
-        assert!(!survives(&setup, [0.0, 1.0], 8000, MOST));
+        let start = &at_instants(&setup, 1).unwrap()[0];
+        assert!(survives(start, [0.0, 1.0], 1.0));
+        assert!(!survives(start, [0.0, 1.0], MOST));
+    }
+
+    /// A copied walk goes on like the one it was copied from, bit for bit.
+    #[test]
+    fn a_copy_of_a_walk_goes_on_like_it() {
+        let setup = Setup::load(&config::root(None), "walk_1kmh").unwrap();
+        let mut chain = Chain::new(&setup).unwrap();
+        (0..5000).for_each(|_| _ = chain.step());
+        let mut copy = chain.clone();
+        (0..1500).for_each(|_| _ = (chain.step(), copy.step()));
+        assert_eq!(chain.robot().integrated(), copy.robot().integrated());
     }
 }

@@ -11,7 +11,7 @@ use std::path::Path;
 use config::{Gait, Setup, Timeline};
 use controller::Controller;
 use messages::command::Domain;
-use messages::{Command, ControllerState, GaitState, JointTargets, LEFT, Plan, RIGHT, Sensors};
+use messages::{Command, ControllerState, GaitState, JointTargets, Plan, Sensors};
 use planner::Planner;
 use realtime::clock::processor_time;
 use serde::Serialize;
@@ -30,7 +30,7 @@ pub struct Report {
     /// Whole chain in one process.
     pub chain: Vec<WholeChain>,
     /// Planner and stabilizer.
-    pub cycle: Cycle,
+    pub cycles: Vec<Cycle>,
     /// Plans.
     pub plans: Vec<Plans>,
 }
@@ -47,6 +47,8 @@ pub struct WholeChain {
 /// Processor time of control cycles over a walk.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cycle {
+    /// What was walked.
+    pub walk: String,
     /// Cycles with a plan.
     pub cycles: usize,
     /// Whether the replayed joint targets were those of the chain, bit for bit.
@@ -86,12 +88,15 @@ pub fn run(config: &Path) -> Result<Report, Box<dyn Error>> {
     for times in [0.75, 1.0, 1.5, 2.0, 3.0] {
         plans.push(plan_times(&walk, &recording, times * spacing));
     }
-    Ok(Report {
-        simulation,
-        chain: vec![whole_chain(&stand)?, whole_chain(&walk)?],
-        cycle: cycle_times(&walk, &recording)?,
-        plans,
-    })
+    let fast = Setup::load(config, "walk_2kmh")?;
+    let mut all = Setup::load(config, "gaze")?;
+    all.gait.arm_swing = Some(1.0);
+    all.scene.name += ", arms swinging";
+    let mut cycles = vec![cycle_times(&walk, &recording)?];
+    for setup in [fast, all] {
+        cycles.push(cycle_times(&setup, &Recording::new(&setup)?)?);
+    }
+    Ok(Report { simulation, chain: vec![whole_chain(&stand)?, whole_chain(&walk)?], cycles, plans })
 }
 
 // ---------------------------------------------------------------------------------------------------- whole chain
@@ -140,8 +145,7 @@ impl Recording {
         gait: &Gait,
         mut seen: impl FnMut(usize, &mut dyn FnMut(&mut Plan) -> bool),
     ) {
-        let feet = &setup.robot.feet;
-        let mut planner = Planner::new(gait, [feet[RIGHT].support, feet[LEFT].support]);
+        let mut planner = Planner::of(gait, &setup.robot);
         let mut timeline = Timeline::new(&setup.scene, &[Domain::Walk]);
         let mut due: Vec<Command> = Vec::with_capacity(16);
         for i in 0..self.sensors.len() {
@@ -162,7 +166,11 @@ fn cycle_times(setup: &Setup, recording: &Recording) -> Result<Cycle, Box<dyn Er
     let mut plan = Box::new(Plan::default());
     let (mut planning, mut stabilizing, mut both) = (Vec::new(), Vec::new(), Vec::new());
     let mut same_targets = true;
+    let mut head = Timeline::new(&setup.scene, &[Domain::Head]);
     recording.replay(setup, &setup.gait, |i, planner| {
+        while let Some(command) = head.due(recording.sensors[i].header.tick) {
+            controller.command(&command);
+        }
         let begun = processor_time();
         planner(&mut plan);
         let planned = processor_time();
@@ -176,6 +184,7 @@ fn cycle_times(setup: &Setup, recording: &Recording) -> Result<Cycle, Box<dyn Er
         }
     });
     Ok(Cycle {
+        walk: setup.scene.name.clone(),
         cycles: both.len(),
         same_targets,
         both_us: spread(both),
@@ -257,17 +266,15 @@ pub fn table(r: &Report) -> String {
         text += &format!("\n{:20}{:26.0} x", c.scene, c.real_time_factor);
     }
     let three = |[median, p99, max]: [f64; 3]| format!("{median:9.2}{p99:9.2}{max:9.2}");
-    text += &format!(
-        "\n\nControl cycle, processor time [us]   median      p99      max     ({} cycles of walk_1kmh, replay {})",
-        r.cycle.cycles,
-        if r.cycle.same_targets { "bit for bit the chain's" } else { "DIFFERS from the chain" }
-    );
-    for (what, times) in [
-        ("planner + stabilizer", r.cycle.both_us),
-        ("stabilizer", r.cycle.stabilizer_us),
-        ("planner", r.cycle.planner_us),
-    ] {
-        text += &format!("\n{what:34}{}", three(times));
+    text += "\n\nControl cycle, processor time [us]   median      p99      max";
+    for c in &r.cycles {
+        let same = if c.same_targets { "bit for bit the chain's" } else { "DIFFERS from the chain" };
+        text += &format!("\n{}: {} cycles, replay {same}", c.walk, c.cycles);
+        for (what, times) in
+            [("planner + stabilizer", c.both_us), ("stabilizer", c.stabilizer_us), ("planner", c.planner_us)]
+        {
+            text += &format!("\n  {what:32}{}", three(times));
+        }
     }
     text += "\n\nA new walking plan: spacing, points       median      p99      max [us]   error of its zero-moment point";
     for p in &r.plans {

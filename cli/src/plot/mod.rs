@@ -5,6 +5,7 @@
 mod forces;
 mod inclination;
 mod paths;
+mod redundant;
 mod strip;
 #[cfg(test)]
 mod synthetic;
@@ -28,11 +29,12 @@ pub struct Pictures {
 type Draw = fn(&Walk) -> Result<Figure, String>;
 
 /// File names, and who draws them.
-const PICTURES: [(&str, Draw); 6] = [
+const PICTURES: [(&str, Draw); 7] = [
     ("inclination.png", inclination::draw),
     ("zmp.png", zmp::draw),
     ("foot_forces.png", forces::draw),
     ("joint_tracking.png", tracking::draw),
+    ("redundant_joints.png", redundant::draw),
     ("paths.png", paths::draw),
     ("stick_figures.png", strip::draw),
 ];

@@ -111,7 +111,7 @@ pub(super) fn write(path: &Path, links: bool) {
         sensor_link: format!("{side}_foot"),
         sensor: [0.0; 3],
     };
-    let joints = ["hip_flexion", "knee_flexion", "ankle_flexion"];
+    let joints = ["hip_flexion", "knee_flexion", "ankle_flexion", "toe_flexion"];
     let robot = RobotInfo {
         name: "sticks".into(),
         joints: ["right", "left"].iter().flat_map(|s| joints.map(|j| format!("{s}_{j}"))).collect(),
@@ -161,8 +161,9 @@ fn records(header: Header, t: f64) -> (Sensors, ControllerState, SimState) {
         controller.wrench_desired[foot] = Wrench { force: [0.0, 0.0, desired], moment: [0.0; 3] };
         sensors.foot_wrench[foot].force[2] = desired * (1.0 + 12.0 * wobble(foot as f64));
     }
-    for joint in 0..6 {
+    for joint in 0..8 {
         controller.tracking_error[joint] = 0.3 * wobble(joint as f64);
+        sensors.joint_angle[joint] = 20.0 * wobble(joint as f64);
     }
     let state = SimState {
         header,

@@ -2,7 +2,7 @@
 
 use drawing::Point;
 use messages::topics::{CONTROLLER_STATE, SENSORS};
-use messages::{ControllerState, Sensors};
+use messages::{ControllerState, Joints, MAX_JOINTS, Sensors};
 use recording::polygon::{convex_hull, sole_corners};
 use recording::{End, FrameTree, Log, RobotInfo};
 use std::collections::HashMap;
@@ -33,6 +33,8 @@ pub(super) struct Cycle {
     pub(super) state: ControllerState,
     /// \[N\] Measured vertical forces: right, left; NaN if the sensor record is missing.
     pub(super) force_z: [f64; 2],
+    /// \[rad\] Measured joint angles; NaN if the sensor record is missing.
+    pub(super) angle: Joints,
 }
 
 /// Where a foot stood.
@@ -45,10 +47,10 @@ pub(super) struct Footprint {
 impl Walk {
     pub(super) fn load(path: &Path) -> Result<Self, String> {
         let log = Log::open(path).map_err(|e| e.to_string())?;
-        let mut forces = HashMap::new();
+        let mut sensed = HashMap::new();
         let end = log
             .each_record(&SENSORS, |s: &Sensors| {
-                forces.insert(s.header.tick, s.foot_wrench.map(|w| w.force[2]));
+                sensed.insert(s.header.tick, (s.foot_wrench.map(|w| w.force[2]), s.joint_angle));
             })
             .map_err(|e| e.to_string())?;
         let states = log.records::<ControllerState>(&CONTROLLER_STATE).map_err(|e| e.to_string())?;
@@ -59,10 +61,10 @@ impl Walk {
         let cycles: Vec<Cycle> = states
             .into_iter()
             .filter(|state| state.plan_id > 0)
-            .map(|state| Cycle {
-                time: seconds(state.header.stamp_ns, start_ns),
-                force_z: forces.get(&state.header.tick).copied().unwrap_or([f64::NAN; 2]),
-                state,
+            .map(|state| {
+                let sensed = sensed.get(&state.header.tick).copied();
+                let (force_z, angle) = sensed.unwrap_or(([f64::NAN; 2], [f64::NAN; MAX_JOINTS]));
+                Cycle { time: seconds(state.header.stamp_ns, start_ns), force_z, angle, state }
             })
             .collect();
         let duration =

@@ -77,6 +77,11 @@ impl<const D: usize, const N: usize> Path<D, N> {
         true
     }
 
+    /// A reader for ascending times, which does not look for its piece each time.
+    pub fn cursor(&self) -> Cursor<'_, D, N> {
+        Cursor { path: self, piece: None, still: false }
+    }
+
     /// Value and derivatives at `t` \[s\].
     pub fn sample(&self, t: f64) -> Sample<D> {
         let n = self.pieces as usize;
@@ -86,35 +91,73 @@ impl<const D: usize, const N: usize> Path<D, N> {
         // Few pieces and mostly the first ones: a scan beats a bisection.
         let i = self.ends[..n].iter().position(|&end| t < end).unwrap_or(n - 1);
         let begin = if i == 0 { self.start } else { self.ends[i - 1] };
-        let beyond = t >= self.ends[n - 1];
-        let tau = t.min(self.ends[n - 1]) - begin;
+        let mut s = self.at(i, t.min(self.ends[n - 1]) - begin);
+        if t >= self.ends[n - 1] {
+            s = Sample::rest(s.position);
+        }
+        s
+    }
+
+    /// Piece `i` after `tau` \[s\].
+    fn at(&self, i: usize, tau: f64) -> Sample<D> {
         let mut s = Sample::rest([0.0; D]);
         for d in 0..D {
             let c = &self.coefficients[i][d];
             s.position[d] = c[0] + tau * (c[1] + tau * (c[2] + tau * (c[3] + tau * (c[4] + tau * c[5]))));
-            if !beyond {
-                s.velocity[d] =
-                    c[1] + tau * (2.0 * c[2] + tau * (3.0 * c[3] + tau * (4.0 * c[4] + tau * 5.0 * c[5])));
-                s.acceleration[d] = 2.0 * c[2] + tau * (6.0 * c[3] + tau * (12.0 * c[4] + tau * 20.0 * c[5]));
-            }
+            s.velocity[d] =
+                c[1] + tau * (2.0 * c[2] + tau * (3.0 * c[3] + tau * (4.0 * c[4] + tau * 5.0 * c[5])));
+            s.acceleration[d] = 2.0 * c[2] + tau * (6.0 * c[3] + tau * (12.0 * c[4] + tau * 20.0 * c[5]));
         }
         s
     }
 }
 
+/// Reads a path at ascending times: the same values as [`Path::sample`].
+#[derive(Clone, Debug)]
+pub struct Cursor<'a, const D: usize, const N: usize> {
+    path: &'a Path<D, N>,
+    piece: Option<usize>,
+    /// The piece does not move.
+    still: bool,
+}
+
+impl<const D: usize, const N: usize> Cursor<'_, D, N> {
+    /// Value and derivatives at `t` \[s\], which must not lie before the last one asked for.
+    pub fn sample(&mut self, t: f64) -> Sample<D> {
+        let path = self.path;
+        let n = path.pieces as usize;
+        if n == 0 || !(t >= path.start) || t >= path.ends[n - 1] {
+            return path.sample(t);
+        }
+        let mut i = self.piece.unwrap_or(0);
+        while t >= path.ends[i] {
+            i += 1;
+        }
+        if self.piece != Some(i) {
+            self.piece = Some(i);
+            self.still = path.coefficients[i].iter().all(|c| c[1..] == [0.0; 5]);
+        }
+        if self.still {
+            return Sample::rest(path.coefficients[i].map(|c| c[0]));
+        }
+        path.at(i, t - if i == 0 { path.start } else { path.ends[i - 1] })
+    }
+}
+
 /// Coefficients of the quintic through (position, velocity, acceleration) at both ends of an interval of
 /// length `h` \[s\] (errata 2.5).
-pub(crate) fn quintic((p0, v0, a0): (f64, f64, f64), (p1, v1, a1): (f64, f64, f64), h: f64) -> [f64; 6] {
+pub fn quintic((p0, v0, a0): (f64, f64, f64), (p1, v1, a1): (f64, f64, f64), h: f64) -> [f64; 6] {
     let dp = p1 - p0 - v0 * h - a0 * h * h / 2.0;
     let dv = v1 - v0 - a0 * h;
     let da = a1 - a0;
-    let (h2, h3) = (h * h, h * h * h);
+    let (h2, by_h) = (h * h, 1.0 / h);
+    let by_h3 = by_h * by_h * by_h;
     [
         p0,
         v0,
         a0 / 2.0,
-        (10.0 * dp - 4.0 * dv * h + da * h2 / 2.0) / h3,
-        (-15.0 * dp + 7.0 * dv * h - da * h2) / (h3 * h),
-        (6.0 * dp - 3.0 * dv * h + da * h2 / 2.0) / (h3 * h2),
+        (10.0 * dp - 4.0 * dv * h + da * h2 / 2.0) * by_h3,
+        (-15.0 * dp + 7.0 * dv * h - da * h2) * by_h3 * by_h,
+        (6.0 * dp - 3.0 * dv * h + da * h2 / 2.0) * by_h3 * by_h * by_h,
     ]
 }

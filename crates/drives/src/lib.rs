@@ -5,6 +5,8 @@
 //!   [`Ankle`] slider-crank with belt (2.22)-(2.33); first and second derivatives; errors where a linkage has none.
 //! - [`Friction`]: of gears (2.61) and roller screws (2.65)-(2.68), with the load torque (2.63), (2.64).
 //! - [`Elasticity`]: of harmonic drives (2.69).
+//! - [`JointControl`]: laws of joint control (5.40), (5.43), (5.45), (5.49); [`elastic_joint`]: their stability
+//!   (5.41)-(5.52), continuous and sampled.
 //! - [`lookup`]: tables of a linkage with linear interpolation, as Lola's local controllers use.
 //! - [`fit`]: friction parameters from efficiencies (2.62); off-line, it allocates.
 //!
@@ -12,6 +14,8 @@
 //! rotor relative to its stator: angle, speed \[rad/s\] and torque count about the rotor's axis, not about the joint's.
 
 mod ankle;
+mod control;
+pub mod elastic_joint;
 mod elasticity;
 pub mod fit;
 mod friction;
@@ -23,6 +27,7 @@ mod transmission;
 mod turn;
 
 pub use ankle::{Ankle, AnkleGeometry};
+pub use control::{Cascade, Feedback, JointControl, Law, Sampled, Sampling, Side, VoltageLaw};
 pub use elasticity::Elasticity;
 pub use friction::{Friction, HarmonicFriction, NoLoadTorque, ScrewFriction, Sliding};
 pub use knee::{Knee, KneeGeometry};

@@ -12,7 +12,9 @@ fn main() -> std::io::Result<()> {
         "Three steps of 0.1 m, treads 0.3 m deep, a landing of 0.9 m, 1.2 m wide; x up the stairs from 0.";
     std::fs::write(folder.join("stairs.obj"), obj(stairs, &stairs_of(3, 0.1, 0.3, 0.9, 1.2)))?;
     let uneven = "Smooth hills up to 15 mm on 2 m x 1 m, x from 0; its rim lies in the ground.";
-    std::fs::write(folder.join("uneven.obj"), obj(uneven, &hills(40, 20, 0.05, 0.015, 7)))
+    std::fs::write(folder.join("uneven.obj"), obj(uneven, &hills(40, 20, 0.05, 0.015, 7)))?;
+    let holes = "A deck 20 mm high, 3.1 m x 1.2 m, x from 0, ramps of 0.3 m; holes of 0.1 m x 0.03 m down to the ground.";
+    std::fs::write(folder.join("holes.obj"), obj(holes, &deck(10, 15, 0.02)))
 }
 
 /// Steps along x from 0, extruded over y.
@@ -68,6 +70,56 @@ fn hills(nx: usize, ny: usize, cell: f64, height: f64, seed: u64) -> Solid {
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
+    close(vertices, triangles, nx, ny)
+}
+
+/// A deck with ramps at both ends and, between strips of 0.15 m, `rows` rows of `across` holes, each 0.1 m by 0.03 m.
+fn deck(rows: usize, across: usize, height: f64) -> Solid {
+    let mut xs = vec![0.0, 0.3];
+    for _ in 0..rows {
+        let last = xs[xs.len() - 1];
+        xs.extend([last + 0.15, last + 0.25]);
+    }
+    let last = xs[xs.len() - 1];
+    xs.push(last + 0.3);
+    let mut ys = vec![-0.04 * across as f64];
+    for _ in 0..across {
+        let last = ys[ys.len() - 1];
+        ys.extend([last + 0.03, last + 0.08]);
+    }
+    let (nx, ny) = (xs.len() - 1, ys.len() - 1);
+    let at = |i: usize, j: usize| i * (ny + 1) + j;
+    let mut vertices = Vec::new();
+    for (i, x) in xs.iter().enumerate() {
+        let z = if i == 0 || i == nx { 0.0 } else { height };
+        vertices.extend(ys.iter().map(|y| [*x, *y, z]));
+    }
+    let mut triangles = Vec::new();
+    for i in 0..nx {
+        for j in 0..ny {
+            let top = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            let hole = i % 2 == 0 && i > 0 && j % 2 == 0 && j > 0;
+            if !hole {
+                triangles.extend([[top[0], top[1], top[2]], [top[0], top[2], top[3]]]);
+                continue;
+            }
+            let first = vertices.len();
+            vertices.extend(top.map(|k| [vertices[k][0], vertices[k][1], 0.0]));
+            let low: [usize; 4] = std::array::from_fn(|k| first + k);
+            triangles.extend([[low[0], low[1], low[2]], [low[0], low[2], low[3]]]);
+            for k in 0..4 {
+                let l = (k + 1) % 4;
+                triangles.extend([[top[k], top[l], low[l]], [top[k], low[l], low[k]]]);
+            }
+        }
+    }
+    close(vertices, triangles, nx, ny)
+}
+
+/// Sides and bottom for a surface over a grid of `nx` times `ny` cells, whose points come first, row by row: 20 mm in
+/// the ground.
+fn close(mut vertices: Vec<[f64; 3]>, mut triangles: Vec<[usize; 3]>, nx: usize, ny: usize) -> Solid {
+    let at = |i: usize, j: usize| i * (ny + 1) + j;
     // The rim counter-clockwise seen from above, and below each of its points one of the slab.
     let rim: Vec<usize> = (0..nx)
         .map(|i| at(i, 0))
@@ -78,7 +130,8 @@ fn hills(nx: usize, ny: usize, cell: f64, height: f64, seed: u64) -> Solid {
     let first = vertices.len();
     vertices.extend(rim.iter().map(|k| [vertices[*k][0], vertices[*k][1], -0.02]).collect::<Vec<_>>());
     let middle = vertices.len();
-    vertices.push([nx as f64 * cell / 2.0, 0.0, -0.02]);
+    let [a, b] = [vertices[0], vertices[at(nx, ny)]];
+    vertices.push([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), -0.02]);
     for k in 0..rim.len() {
         let l = (k + 1) % rim.len();
         triangles.extend([[rim[k], first + k, first + l], [rim[k], first + l, rim[l]]]);

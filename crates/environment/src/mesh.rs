@@ -97,6 +97,11 @@ impl Mesh {
         &self.bounds
     }
 
+    /// \[m\] Corners of each triangle, counter-clockwise seen from outside.
+    pub fn faces(&self) -> impl Iterator<Item = [Vector3<f64>; 3]> {
+        self.triangles.iter().map(|t| t.corners)
+    }
+
     pub(crate) fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }

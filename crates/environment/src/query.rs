@@ -43,6 +43,8 @@ pub struct Environment {
     pub(crate) events: Vec<Event>,
     /// \[s\]
     pub(crate) time: f64,
+    /// \[1\] Normal of the ground, if it is tilted.
+    pub(crate) up: Option<[f64; 3]>,
 }
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
@@ -56,7 +58,14 @@ impl Environment {
     /// The plane z = 0 with `objects`, as they are at time 0.
     pub fn new(objects: Vec<Object>) -> Self {
         let events = Vec::with_capacity(2 * objects.len());
-        Self { objects, events, time: 0.0 }
+        Self { objects, events, time: 0.0, up: None }
+    }
+
+    /// The same with the ground turned about the origin: `roll` \[rad\] about x, then `pitch` about y.
+    pub fn tilted(mut self, [roll, pitch]: [f64; 2]) -> Self {
+        let up = [pitch.sin() * roll.cos(), -roll.sin(), pitch.cos() * roll.cos()];
+        self.up = (up != UP).then_some(up);
+        self
     }
 
     /// The objects, present or not.
@@ -75,8 +84,14 @@ impl Environment {
     /// Gap and normal at `p` \[m\] @world.
     #[inline]
     pub fn query(&self, p: [f64; 3]) -> Hit {
-        let ground = Hit { gap: p[2], normal: UP, surface: Surface::Ground };
-        if self.objects.is_empty() && p[2].is_finite() { ground } else { self.query_objects(p, ground) }
+        let ground = match self.up {
+            None => Hit { gap: p[2], normal: UP, surface: Surface::Ground },
+            Some(n) => {
+                let gap = p[0] * n[0] + p[1] * n[1] + p[2] * n[2];
+                Hit { gap, normal: n, surface: Surface::Ground }
+            }
+        };
+        if self.objects.is_empty() && ground.gap.is_finite() { ground } else { self.query_objects(p, ground) }
     }
 
     fn query_objects(&self, p: [f64; 3], ground: Hit) -> Hit {

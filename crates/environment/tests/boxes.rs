@@ -19,6 +19,23 @@ fn flat_ground_is_the_height() {
     assert_eq!(hit, Hit { gap: -0.001, normal: [0.0, 0.0, 1.0], surface: Surface::Ground });
 }
 
+/// Turned by pitch alone it falls along x; roll raises the left.
+#[test]
+fn tilted_ground_is_the_distance_to_its_plane() {
+    let slope = Environment::flat().tilted([0.0, 0.1]);
+    let hit = slope.query([2.0, 5.0, -2.0 * 0.1_f64.tan()]);
+    assert!(hit.gap.abs() < 1e-15 && hit.surface == Surface::Ground, "{hit:?}");
+    assert_eq!(hit.normal, [0.1_f64.sin(), 0.0, 0.1_f64.cos()]);
+    let hit = Environment::flat().tilted([0.2, 0.0]).query([7.0, 1.0, 0.2_f64.tan() + 0.01 / 0.2_f64.cos()]);
+    assert!((hit.gap - 0.01).abs() < 1e-15 && hit.normal[1] < 0.0, "{hit:?}");
+    assert_eq!(Environment::flat().tilted([0.0; 2]).query([1.0; 3]), Environment::flat().query([1.0; 3]));
+    // The board lies on the level ground; the slope comes out of it further up.
+    let mut board = board().tilted([0.0, -0.2]);
+    assert_eq!(board.query([0.19, 0.0, 0.06]).surface, Surface::Ground);
+    assert_eq!(board.query([0.0, 0.0, 0.021]).surface, Surface::Object(0));
+    assert!(board.advance(1.0, &[false], &[]).is_empty());
+}
+
 /// Signed distance to a box of half extent `h` at the origin.
 fn box_distance(p: [f64; 3], h: [f64; 3]) -> f64 {
     let q: [f64; 3] = std::array::from_fn(|i| p[i].abs() - h[i]);

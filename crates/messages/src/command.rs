@@ -115,6 +115,16 @@ pub enum Command {
     Push(PushCommand),
     /// `stabilize/parameter`: give a parameter of the stabilizer another value, from the next cycle on.
     Parameter(ParameterCommand),
+    /// `head/fixate`: look at a point from now on, whatever the robot does.
+    Fixate(FixateCommand),
+    /// `head/joints`: move the camera head to these angles.
+    HeadJoints(HeadJointsCommand),
+    /// `head/rest`: move the camera head to its comfortable angles.
+    HeadRest,
+    /// `walk/distance`: walk a distance, from standing to standing.
+    Distance(DistanceCommand),
+    /// `walk/platform`: climb onto a platform, or off it.
+    Platform(PlatformCommand),
 }
 
 /// Step parameters (thesis table 4.1).
@@ -148,6 +158,28 @@ pub struct VelocityCommand {
     pub turn: f64,
 }
 
+/// A distance to walk (thesis 4.3.4).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DistanceCommand {
+    /// \[m\] How far; backwards if negative.
+    pub distance: f64,
+    /// \[m/s\] Largest speed.
+    pub speed: f64,
+    /// \[m/s^2\] Largest acceleration, from step to step.
+    pub acceleration: f64,
+}
+
+/// A platform to climb onto or off (thesis 4.3.4).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlatformCommand {
+    /// \[m\] How far its edge lies ahead of the middle of the sole frames.
+    pub distance: f64,
+    /// \[m\] How much higher the ground is behind the edge; lower if negative.
+    pub height: f64,
+}
+
 /// A push at the torso's centre of gravity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -168,6 +200,26 @@ pub struct ParameterCommand {
     pub value: f64,
 }
 
+/// A point to look at.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FixateCommand {
+    /// \[m\] @I_0
+    pub point: [f64; 3],
+}
+
+/// Angles of the camera head.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HeadJointsCommand {
+    /// \[rad\] to the left
+    #[serde(default)]
+    pub pan: f64,
+    /// \[rad\] upwards
+    #[serde(default)]
+    pub tilt: f64,
+}
+
 impl Command {
     /// Domain and id of the message that carries this command.
     pub const fn address(&self) -> (Domain, u16) {
@@ -181,8 +233,13 @@ impl Command {
             Self::Stop => (Domain::Walk, 2),
             Self::Step(_) => (Domain::Walk, 3),
             Self::Velocity(_) => (Domain::Walk, 4),
+            Self::Distance(_) => (Domain::Walk, 5),
+            Self::Platform(_) => (Domain::Walk, 6),
             Self::Push(_) => (Domain::Sim, 0),
             Self::Parameter(_) => (Domain::Stabilize, 0),
+            Self::Fixate(_) => (Domain::Head, 0),
+            Self::HeadJoints(_) => (Domain::Head, 1),
+            Self::HeadRest => (Domain::Head, 2),
         }
     }
 
@@ -206,8 +263,13 @@ impl Command {
             Self::Stop => "walk/stop",
             Self::Step(_) => "walk/step",
             Self::Velocity(_) => "walk/velocity",
+            Self::Distance(_) => "walk/distance",
+            Self::Platform(_) => "walk/platform",
             Self::Push(_) => "sim/push",
             Self::Parameter(_) => "stabilize/parameter",
+            Self::Fixate(_) => "head/fixate",
+            Self::HeadJoints(_) => "head/joints",
+            Self::HeadRest => "head/rest",
         }
     }
 }

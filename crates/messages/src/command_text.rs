@@ -4,7 +4,10 @@
 //! accepted. Text is `field=number`, separated by blanks or commas, in any order; fields with a default may be left
 //! out. Nothing here runs in a control cycle: errors are text and allocate.
 
-use crate::command::{Command, ParameterCommand, PushCommand, StepCommand, VelocityCommand};
+use crate::command::{
+    Command, DistanceCommand, FixateCommand, HeadJointsCommand, ParameterCommand, PlatformCommand,
+    PushCommand, StepCommand, VelocityCommand,
+};
 
 /// One number of a command.
 #[derive(Clone, Copy, Debug)]
@@ -81,6 +84,25 @@ pub const COMMANDS: &[CommandInfo] = &[
         build: |v| Command::Velocity(VelocityCommand { forward: v[0], left: v[1], turn: v[2] }),
     },
     CommandInfo {
+        name: "walk/distance",
+        about: "walk this far, from standing to standing",
+        fields: &[
+            field("distance", "m", [-100.0, 100.0], None, "forward; backwards if negative"),
+            field("speed", "m/s", [0.01, 2.0], None, "largest speed"),
+            field("acceleration", "m/s^2", [0.01, 5.0], Some(0.3), "largest acceleration"),
+        ],
+        build: |v| Command::Distance(DistanceCommand { distance: v[0], speed: v[1], acceleration: v[2] }),
+    },
+    CommandInfo {
+        name: "walk/platform",
+        about: "climb onto a platform, or off it",
+        fields: &[
+            field("distance", "m", [0.0, 10.0], None, "from the middle of the sole frames to its edge"),
+            field("height", "m", [-0.5, 0.5], None, "of the ground behind the edge over the one before it"),
+        ],
+        build: |v| Command::Platform(PlatformCommand { distance: v[0], height: v[1] }),
+    },
+    CommandInfo {
         name: "sim/push",
         about: "push the simulated robot at its torso's centre of gravity",
         fields: &[
@@ -100,6 +122,26 @@ pub const COMMANDS: &[CommandInfo] = &[
         ],
         build: |v| Command::Parameter(ParameterCommand { number: v[0] as u32, value: v[1] }),
     },
+    CommandInfo {
+        name: "head/fixate",
+        about: "look at a point from now on, whatever the robot does",
+        fields: &[
+            field("x", "m", [-1e3, 1e3], None, "where the robot began: forward"),
+            field("y", "m", [-1e3, 1e3], None, "to the left"),
+            field("z", "m", [-1e2, 1e2], None, "over the ground"),
+        ],
+        build: |v| Command::Fixate(FixateCommand { point: [v[0], v[1], v[2]] }),
+    },
+    CommandInfo {
+        name: "head/joints",
+        about: "move the camera head to these angles",
+        fields: &[
+            field("pan", "rad", [-3.2, 3.2], Some(0.0), "to the left"),
+            field("tilt", "rad", [-1.6, 1.6], Some(0.0), "upwards"),
+        ],
+        build: |v| Command::HeadJoints(HeadJointsCommand { pan: v[0], tilt: v[1] }),
+    },
+    plain("head/rest", |_| Command::HeadRest, "move the camera head to its comfortable angles"),
 ];
 
 impl CommandInfo {
@@ -137,7 +179,11 @@ impl Command {
         match *self {
             Self::Step(s) => [s.length, s.side, s.turn, s.duration],
             Self::Velocity(v) => [v.forward, v.left, v.turn, 0.0],
+            Self::Distance(d) => [d.distance, d.speed, d.acceleration, 0.0],
+            Self::Platform(p) => [p.distance, p.height, 0.0, 0.0],
             Self::Parameter(p) => [f64::from(p.number), p.value, 0.0, 0.0],
+            Self::Fixate(FixateCommand { point: [x, y, z] }) => [x, y, z, 0.0],
+            Self::HeadJoints(h) => [h.pan, h.tilt, 0.0, 0.0],
             Self::Push(p) => [p.force[0], p.force[1], p.force[2], p.duration],
             _ => [0.0; MAX_FIELDS],
         }

@@ -6,7 +6,7 @@ record! {
     /// Desired and measured task space, errors and modified forces. Written by controller.
     ///
     /// "Measured" task-space values are direct kinematics of the measured joint angles and the IMU, in the planning
-    /// frame of the active plan, with the more loaded foot as the anchor. Arrays of feet: right, left.
+    /// frame of the active plan, anchored at the foot that is planned to carry more. Arrays of feet: right, left.
     record ControllerState {
         /// Tick of the sensor data used.
         header: Header,
@@ -16,6 +16,10 @@ record! {
         plan_time: f64,
         /// \[1\] A [`GaitState`](crate::GaitState).
         gait: u64,
+        /// \[1\] A [`Phase`](crate::Phase) of each foot.
+        phase: [u64; 2],
+        /// \[1\] Whether a foot presses on the ground, by its force sensor.
+        contact: [u64; 2],
         /// \[m, m, rad\] @I_0 Planning frame of the active plan.
         origin: [f64; 3],
         /// \[m\] Desired centre of gravity.

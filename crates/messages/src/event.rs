@@ -75,11 +75,31 @@ pub enum EventCode {
     /// The adaptive integrator met its bounds, as at dry friction; detail: the state that would not settle. The rest of the
     /// cycle was done in one semi-implicit step.
     IntegratorGaveUp = 33,
+    /// A command to the camera head was refused: the robot has none, or the angles or the point are none it can take;
+    /// detail: the message's id.
+    HeadRefused = 34,
+    /// The point to look at is out of reach: the head holds as near as it gets; detail: the joint at the end of its
+    /// range, or the number of joints if the point is too near to the cameras.
+    GazeHeld = 35,
+    /// The point to look at can be looked at again.
+    GazeResumed = 36,
+    /// The head jumps to where it is to look; detail: how long it will take \[us\].
+    Saccade = 37,
+    /// No plan from the next step on can be walked as commanded; the active one goes on to its end; detail: its id.
+    PlanKept = 38,
+    /// Something in the way is higher than the robot steps: it stops before it; detail: height \[mm\].
+    ObstacleTooHigh = 39,
+    /// Something in the way is longer than a step: the robot stops before it; detail: length \[mm\].
+    ObstacleTooLong = 40,
+    /// A step would end on something or touch it: the robot stops before it; detail: its height, or how far it would go \[mm\].
+    NoFoothold = 41,
+    /// A swing foot met the ground early; the next step begins at once. Detail: the plan's id.
+    EarlyContact = 42,
 }
 
 impl EventCode {
     /// All codes, in order of their numbers.
-    pub const ALL: [Self; 34] = [
+    pub const ALL: [Self; 43] = [
         Self::None,
         Self::Started,
         Self::Ended,
@@ -114,6 +134,15 @@ impl EventCode {
         Self::Diverged,
         Self::SensorClipped,
         Self::IntegratorGaveUp,
+        Self::HeadRefused,
+        Self::GazeHeld,
+        Self::GazeResumed,
+        Self::Saccade,
+        Self::PlanKept,
+        Self::ObstacleTooHigh,
+        Self::ObstacleTooLong,
+        Self::NoFoothold,
+        Self::EarlyContact,
     ];
 
     /// The code of a number from a record.

@@ -31,7 +31,7 @@ pub use cycle_stats::CycleStats;
 pub use event::{Event, EventCode};
 pub use joint_targets::{JointMode, JointTargets};
 pub use parameters::Parameters;
-pub use plan::{GaitState, Plan, Step};
+pub use plan::{GaitState, Phase, Plan, Step};
 pub use power::{Power, WatchdogReset};
 pub use record::{Field, Header, Read, Record, Visit, Wrench};
 pub use sensors::{Imu, Sensors};

@@ -34,6 +34,41 @@ impl From<u64> for GaitState {
     }
 }
 
+/// Where in its gait cycle a foot is (the inner states, thesis figure 4.4): five phases of stance, three of swing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u64)]
+pub enum Phase {
+    /// Carries, and no step is being made.
+    Standing = 0,
+    /// IC: has just touched the ground.
+    InitialContact = 1,
+    /// LR: takes over the load.
+    LoadingResponse = 2,
+    /// MS: carries alone, the other foot comes up from behind.
+    MidStance = 3,
+    /// TS: carries alone, the other foot passes to the front.
+    TerminalStance = 4,
+    /// PSW: hands the load over.
+    PreSwing = 5,
+    /// ISW: lifts off.
+    InitialSwing = 6,
+    /// MSW: passes the other foot.
+    MidSwing = 7,
+    /// TSW: comes down.
+    TerminalSwing = 8,
+}
+
+impl Phase {
+    /// Shares of a double support, of a single support and of a swing at which one phase gives way to the next:
+    /// a human's, with 2, 12, 31 and 50 % of the gait cycle for the phases of stance.
+    const SHARES: (f64, f64, f64) = (1.0 / 6.0, 0.5, 1.0 / 3.0);
+
+    /// Of a foot that is in the air.
+    pub fn swings(self) -> bool {
+        matches!(self, Self::InitialSwing | Self::MidSwing | Self::TerminalSwing)
+    }
+}
+
 record! {
     /// One step: a double support from the former to the new stance foot, then a single support (thesis 4.3).
     part Step {
@@ -67,6 +102,8 @@ record! {
         state: u64,
         /// \[m, m, rad\] @I_0 Planning frame I of this plan in the frame of the first one (odometry).
         origin: [f64; 3],
+        /// \[m\] @I_0 Height of that frame: the ground under the stance foot.
+        height: f64,
         /// \[1\] Number of entries of `steps` in use; 0 while standing.
         step_count: u64,
         /// The steps of the plan, the running one first.
@@ -75,18 +112,47 @@ record! {
         com: Path<3, 96>,
         /// \[rad\] Upper body: inclinations phi_x, phi_y (pi/2 is upright) and heading alpha (4.11)-(4.13).
         torso: Path<3, 16>,
-        /// \[m, rad\] Sole frame of each foot: x, y, z and heading.
+        /// \[m, rad\] Footprint of each foot, the sole frame of a flat foot: x, y, z and heading.
         feet: [Path<4, 32>; 2],
+        /// \[rad\] Pitch of each sole about an edge of its footprint: positive is toe down, about the front edge,
+        /// negative is toe up, about the rear edge. It passes zero at rest.
+        pitch: [Path<1, 24>; 2],
         /// \[rad\] Toe joints.
         toes: [Path<1, 16>; 2],
         /// \[m\] Zero-moment point (x, y) after modification (4.49).
         zmp: Polyline<2, 64>,
+        /// \[m\] Height of that point: on the stance sole, in double support between both soles.
+        zmp_height: Polyline<1, 24>,
         /// \[1\] Load factor rho of the left foot (4.62); the right one carries the rest.
         load_left: Path<1, 40>,
     }
 }
 
 impl Plan {
+    /// Where in its gait cycle `foot` is at plan time `t` \[s\], by the clock.
+    pub fn phase(&self, foot: usize, t: f64) -> Phase {
+        let steps = &self.steps[..(self.step_count as usize).min(self.steps.len())];
+        let Some(s) = steps.iter().find(|s| t < s.end) else { return Phase::Standing };
+        let (contact, middle, third) = Phase::SHARES;
+        let share = |from: f64, to: f64| (t - from) / (to - from);
+        let (doubled, single) = (share(s.begin, s.lift), share(s.lift, s.end));
+        match (foot as u64 == s.stance, t < s.lift) {
+            (true, true) if doubled < contact && self.begins_with_contact(s) => Phase::InitialContact,
+            (true, true) => Phase::LoadingResponse,
+            (true, false) if single < middle => Phase::MidStance,
+            (true, false) => Phase::TerminalStance,
+            (false, true) => Phase::PreSwing,
+            (false, false) if single < third => Phase::InitialSwing,
+            (false, false) if single < 2.0 * third => Phase::MidSwing,
+            (false, false) => Phase::TerminalSwing,
+        }
+    }
+
+    /// The first step out of standing begins with both feet on the ground.
+    fn begins_with_contact(&self, s: &Step) -> bool {
+        s.begin > 0.0 || self.state != GaitState::Starting as u64
+    }
+
     /// Length of the plan \[s\]: from here on the robot rests.
     pub fn end(&self) -> f64 {
         let steps = self.steps[..self.step_count as usize].last().map_or(0.0, |s| s.end);

@@ -254,7 +254,7 @@ impl<const D: usize, const N: usize> Field for Polyline<D, N> {
         format!("Polyline{D}")
     }
     fn describe(define: &mut dyn FnMut(&'static str, Vec<(String, &'static str)>)) {
-        let name = if D == 2 { "Polyline2" } else { "Polyline" };
+        let name = if D == 2 { "Polyline2" } else { "Polyline1" };
         define(
             name,
             vec![

@@ -19,6 +19,8 @@ record! {
         angular_velocity: [f64; 3],
         /// \[rad\] Joint angles.
         joint_angle: Joints,
+        /// \[rad\] Rotors behind elastic gears, divided by the gear ratio; elsewhere the joint angles.
+        motor_angle: Joints,
         /// \[m\] @world Centre of gravity.
         com: [f64; 3],
         /// \[N, N m\] @world Ground on each foot: force, and moment about the foot's sole frame; right, left.

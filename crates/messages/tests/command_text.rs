@@ -68,10 +68,19 @@ fn the_table_is_complete() {
             info.fields.iter().map(|f| format!("{}={}", f.name, 0.5 * (f.range[0] + f.range[1]))).collect();
         assert_eq!(Command::parse(info.name, &middle.join(" ")).unwrap().name(), info.name);
     }
-    assert_eq!(COMMANDS.len(), 11, "a new command needs its row");
+    assert_eq!(COMMANDS.len(), 16, "a new command needs its row");
     assert_eq!(Domain::try_from(8), Err(8));
     assert_eq!(Priority::try_from(3), Err(3));
     assert_eq!(Command::EmergencyStop.priority(), Priority::High);
+}
+
+#[test]
+fn commands_to_the_head() {
+    let command = Command::parse("head/fixate", "x=2 y=-0.5 z=1").unwrap();
+    assert_eq!(command, Command::Fixate(messages::command::FixateCommand { point: [2.0, -0.5, 1.0] }));
+    assert!(Command::parse("head/fixate", "x=2 y=nan z=1").unwrap_err().contains("not a finite number"));
+    assert!(Command::parse("head/fixate", "x=2 y=1").unwrap_err().contains("z is missing"));
+    assert!(Command::parse("head/joints", "pan=4").unwrap_err().contains("outside of [-3.2, 3.2]"));
 }
 
 #[test]

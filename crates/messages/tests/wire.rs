@@ -1,6 +1,9 @@
 //! Bytes of commands: golden vectors, an independent decoder, hostile bytes.
 
-use messages::command::{Command, ParameterCommand, PushCommand, StepCommand, VelocityCommand};
+use messages::command::{
+    Command, DistanceCommand, FixateCommand, HeadJointsCommand, ParameterCommand, PlatformCommand,
+    PushCommand, StepCommand, VelocityCommand,
+};
 use messages::wire::{MAX_BYTES, decode, encode};
 use proptest::prelude::*;
 
@@ -18,6 +21,11 @@ enum Peer {
     Velocity { forward: f64, left: f64, turn: f64 },
     Push { force: [f64; 3], duration: f64 },
     Parameter { number: u32, value: f64 },
+    Fixate { point: [f64; 3] },
+    HeadJoints { pan: f64, tilt: f64 },
+    HeadRest,
+    Distance { distance: f64, speed: f64, acceleration: f64 },
+    Platform { distance: f64, height: f64 },
 }
 
 impl From<Command> for Peer {
@@ -38,6 +46,13 @@ impl From<Command> for Peer {
             }
             Command::Push(PushCommand { force, duration }) => Self::Push { force, duration },
             Command::Parameter(ParameterCommand { number, value }) => Self::Parameter { number, value },
+            Command::Fixate(FixateCommand { point }) => Self::Fixate { point },
+            Command::HeadJoints(HeadJointsCommand { pan, tilt }) => Self::HeadJoints { pan, tilt },
+            Command::HeadRest => Self::HeadRest,
+            Command::Distance(DistanceCommand { distance, speed, acceleration }) => {
+                Self::Distance { distance, speed, acceleration }
+            }
+            Command::Platform(PlatformCommand { distance, height }) => Self::Platform { distance, height },
         }
     }
 }
@@ -53,9 +68,18 @@ fn any_command() -> impl Strategy<Value = Command> {
             Command::Stand,
             Command::Start,
             Command::Stop,
+            Command::HeadRest,
         ]),
         (any::<u32>(), f())
             .prop_map(|(number, value)| Command::Parameter(ParameterCommand { number, value })),
+        prop::array::uniform3(f()).prop_map(|point| Command::Fixate(FixateCommand { point })),
+        (f(), f()).prop_map(|(pan, tilt)| Command::HeadJoints(HeadJointsCommand { pan, tilt })),
+        (f(), f()).prop_map(|(distance, height)| Command::Platform(PlatformCommand { distance, height })),
+        (f(), f(), f()).prop_map(|(distance, speed, acceleration)| Command::Distance(DistanceCommand {
+            distance,
+            speed,
+            acceleration
+        })),
         (f(), f(), f(), f()).prop_map(|(length, side, turn, duration)| Command::Step(StepCommand {
             length,
             side,
@@ -121,7 +145,7 @@ fn every_cut_and_every_surplus_is_an_error() {
 
 #[test]
 fn unknown_commands_are_named_as_such() {
-    for n in [11u32, 255, 1 << 16, u32::MAX] {
+    for n in [16u32, 255, 1 << 16, u32::MAX] {
         let error = decode(&n.to_le_bytes()).unwrap_err().to_string();
         assert!(error.starts_with("not a command") && error.contains(&n.to_string()), "{error}");
     }

@@ -30,6 +30,18 @@ impl Model {
         (moments[0] * (1.0 / self.mass())).into()
     }
 
+    /// \[m\] Centre of gravity of all that a joint carries, in the world, and its derivative to the joint's coordinate.
+    /// Needs [`Model::cog`].
+    pub fn carried_cog(&self, data: &Data, joint: usize) -> (Vector3<f64>, Vector3<f64>) {
+        let k = joint + 1;
+        let (p, com) = (&data.places[k], data.moments[k] * (1.0 / self.carried[k]));
+        let rate = match self.bodies[k].kind {
+            Kind::Along(_) => p.e,
+            _ => p.e.cross(com - p.r),
+        };
+        (com.into(), rate.into())
+    }
+
     /// \[m/s\], \[m/s^2\] Velocity of the centre of gravity, and its acceleration when v' = 0 (J' v). Needs
     /// [`Model::forward_motion`].
     pub fn cog_motion(&self, data: &Data) -> (Vector3<f64>, Vector3<f64>) {

@@ -30,6 +30,8 @@ pub enum ModelError {
     JointType(String, String),
     /// The axis of a joint has no direction, or a number is not finite: (joint or link).
     Geometry(String),
+    /// A link or joint is not what it is to be used for: (name, what is wrong).
+    Unsuitable(String, String),
 }
 
 impl std::error::Error for ModelError {}
@@ -69,6 +71,9 @@ impl fmt::Display for ModelError {
                 "no chain of joints leads from the base to link `{l}`; take the root of the tree as base, and look for a loop"
             ),
             Self::Inertia(l, why) => write!(f, "inertia of link `{l}`: {why}; correct <inertial>"),
+            Self::Unsuitable(name, why) => {
+                write!(f, "`{name}` cannot be used: {why}; correct robot.toml or the URDF")
+            }
             Self::Rotor(r, why) => write!(f, "rotor `{r}`: {why}"),
             Self::JointType(j, t) => write!(
                 f,

@@ -21,6 +21,12 @@ pub fn sleep_until(time_ns: u64) {
     while clock_nanosleep_absolute(ClockId::Monotonic, &t).is_err_and(|e| e == rustix::io::Errno::INTR) {}
 }
 
+/// Processor time of this thread so far \[ns\].
+pub fn thread_time() -> u64 {
+    let t = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    t.tv_sec as u64 * SECOND + t.tv_nsec as u64
+}
+
 /// Processor time of this process so far \[ns\].
 pub fn processor_time() -> u64 {
     let t = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);

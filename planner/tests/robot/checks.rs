@@ -49,12 +49,12 @@ pub fn inside(polygon: &[[f64; 2]], p: [f64; 2]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-fn sole(i: usize, pose: [f64; 3]) -> Vec<[f64; 2]> {
+pub fn sole(i: usize, pose: [f64; 3]) -> Vec<[f64; 2]> {
     let [back, front, right, left] = SUPPORT[i];
     [[back, right], [front, right], [front, left], [back, left]].into_iter().map(|c| outer(pose, c)).collect()
 }
 
-fn foot(plan: &Plan, i: usize, t: f64) -> [f64; 3] {
+pub fn foot(plan: &Plan, i: usize, t: f64) -> [f64; 3] {
     let p = plan.feet[i].sample(t).position;
     [p[0], p[1], p[3]]
 }
@@ -77,17 +77,18 @@ pub fn instants(plan: &Plan, spacing: f64) -> impl Iterator<Item = f64> {
     (0..=n).map(move |k| k as f64 * spacing)
 }
 
-/// Zero-moment point of three masses that move as the plan says.
+/// Zero-moment point, at the height of the planned one, of three masses that move as the plan says.
 pub fn implied_zmp(plan: &Plan, gait: &Gait, t: f64) -> [f64; 2] {
     let m_l = gait.model.leg_mass;
     let m_b = 1.0 - 2.0 * m_l;
     let com = plan.com.sample(t);
     let legs = [0, 1].map(|i| plan.feet[i].sample(t));
+    let [ground] = plan.zmp_height.sample(t).0;
     let (mut force, mut moment) = (0.0, [0.0; 2]);
     let mut add = |m: f64, r: [f64; 3], a: [f64; 3]| {
         force += m * (a[2] + G);
         for d in 0..2 {
-            moment[d] += m * (r[d] * (a[2] + G) - r[2] * a[d]);
+            moment[d] += m * (r[d] * (a[2] + G) - (r[2] - ground) * a[d]);
         }
     };
     let three = |s: &Sample<4>| {
@@ -173,7 +174,12 @@ pub fn feet_gap(plan: &Plan) -> f64 {
 
 /// Largest difference of position, velocity and acceleration between two plans where the second one begins.
 pub fn seam(before: &Plan, after: &Plan) -> f64 {
-    let t = (after.start_tick - before.start_tick) as f64 * CYCLE;
+    seam_of(before, after, CYCLE)
+}
+
+/// The same with cycles of another length \[s\].
+pub fn seam_of(before: &Plan, after: &Plan, cycle: f64) -> f64 {
+    let t = (after.start_tick - before.start_tick) as f64 * cycle;
     let mut worst = 0.0f64;
     let mut compare = |a: f64, b: f64| worst = worst.max((a - b).abs());
     let planar = |frame: [f64; 3], p: &[f64], v: &[f64], a: &[f64]| {
@@ -187,7 +193,7 @@ pub fn seam(before: &Plan, after: &Plan) -> f64 {
             compare(a[k][d], b[k][d]);
         }
     }
-    compare(c0.position[2], c1.position[2]);
+    compare(before.height + c0.position[2], after.height + c1.position[2]);
     compare(c0.velocity[2], c1.velocity[2]);
     compare(c0.acceleration[2], c1.acceleration[2]);
     for i in 0..2 {
@@ -199,9 +205,20 @@ pub fn seam(before: &Plan, after: &Plan) -> f64 {
                 compare(a[k][d], b[k][d]);
             }
         }
-        compare(f0.position[2], f1.position[2]);
+        compare(before.height + f0.position[2], after.height + f1.position[2]);
         compare(f0.position[3] + before.origin[2], f1.position[3] + after.origin[2]);
         compare(f0.velocity[3], f1.velocity[3]);
+    }
+    for i in 0..2 {
+        let rolls = [
+            (&before.pitch[i].sample(t), &after.pitch[i].sample(0.0)),
+            (&before.toes[i].sample(t), &after.toes[i].sample(0.0)),
+        ];
+        for (a, b) in rolls {
+            compare(a.position[0], b.position[0]);
+            compare(a.velocity[0], b.velocity[0]);
+            compare(a.acceleration[0], b.acceleration[0]);
+        }
     }
     let (u0, u1) = (before.torso.sample(t), after.torso.sample(0.0));
     for d in 0..3 {
@@ -215,6 +232,8 @@ pub fn seam(before: &Plan, after: &Plan) -> f64 {
         (outer(before.origin, before.zmp.sample(t).0), outer(after.origin, after.zmp.sample(0.0).0));
     compare(p0[0], p1[0]);
     compare(p0[1], p1[1]);
+    let (h0, h1) = (before.zmp_height.sample(t).0, after.zmp_height.sample(0.0).0);
+    compare(before.height + h0[0], after.height + h1[0]);
     worst
 }
 

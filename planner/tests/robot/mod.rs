@@ -2,18 +2,24 @@
 #![allow(dead_code, unreachable_pub, missing_docs, reason = "each test uses its own part of it")]
 
 pub mod checks;
+pub mod feasible;
 
-use config::gait::{Control, Gait, Limits, Model, Step};
+use config::gait::{Control, Gait, Limits, Model, Obstacles, Step};
 use messages::{Command, ControllerState, EventCode, Plan, Record};
 use planner::Planner;
+use realtime::clock;
 
 /// One cycle \[s\].
 pub const CYCLE: f64 = 1e-3;
 /// Support rectangles of Lola's feet: the sole frame lies in the middle of the toe segment.
 pub const SUPPORT: [[f64; 4]; 2] = [[-0.26, 0.04, -0.05, 0.05]; 2];
 
+/// Ranges of Lola's toe joints.
+pub const TOES: [Option<[f64; 2]>; 2] = [Some([-0.7767, 0.1623]), Some([-0.1885, 0.7645])];
+
 pub fn gait() -> Gait {
     Gait {
+        arm_swing: None,
         step: Step {
             width: 0.21,
             width_min: 0.16,
@@ -40,6 +46,7 @@ pub fn gait() -> Gait {
             zmp_margin: 0.02,
             spacing: 0.08,
             stand_time: 2.0,
+            friction: 0.5,
         },
         limits: Limits {
             length: [-0.2, 0.66],
@@ -47,6 +54,14 @@ pub fn gait() -> Gait {
             turn: [-0.35, 0.35],
             duration: [0.65, 1.3],
         },
+        obstacles: Some(Obstacles {
+            distance: 0.04,
+            clearance: 0.03,
+            height: 0.16,
+            length: 0.52,
+            tilt: 0.4,
+            duration: 1.2,
+        }),
         control: Control {
             inclination_p: [0.0; 2],
             inclination_d: [0.0; 2],
@@ -62,8 +77,15 @@ pub fn gait() -> Gait {
             modification_rate: [0.0; 3],
             drift_gain: 0.0,
             null_space_gain: 0.0,
+            search: [0.0; 2],
+            inclination_compensation: 0.0,
+            planned_deformation: 0.0,
+            feedback: 1,
             force_filter: 0.0,
         },
+        toes: None,
+        forefoot_roll: None,
+        heel_strike: None,
     }
 }
 
@@ -95,35 +117,51 @@ impl Random {
 /// Planner and perfect controller.
 pub struct Robot {
     pub planner: Planner,
+    /// \[s\]
+    pub cycle: f64,
+    /// \[us\] What the planner took for its last cycle.
+    pub took: f64,
     pub tick: u64,
     pub state: ControllerState,
     pub active: Box<Plan>,
     pub next: Option<Box<Plan>>,
     pub plans: Vec<Box<Plan>>,
     pub events: Vec<(u64, EventCode, u64)>,
+    /// \[m\] Height over the planning frame below which a sole touches something; it goes no deeper.
+    pub ground: f64,
 }
 
 impl Robot {
     /// Hanging over the ground in a pose that is not the walking pose.
     pub fn new(gait: &Gait) -> Self {
+        Self::with_cycle(gait, CYCLE)
+    }
+
+    /// The same, with cycles of another length \[s\].
+    pub fn with_cycle(gait: &Gait, cycle: f64) -> Self {
         let mut state = ControllerState::empty();
         state.com = [-0.06, 0.01, 0.85];
         state.feet = [[0.0, -0.1, 0.0, 0.0], [0.01, 0.105, 0.0, 0.0]];
         Self {
-            planner: Planner::new(gait, SUPPORT),
+            planner: Planner::new(gait, SUPPORT).with_toes(TOES),
+            cycle,
+            took: 0.0,
             tick: 0,
             state,
             active: Box::new(Plan::empty()),
             next: None,
             plans: Vec::new(),
             events: Vec::new(),
+            ground: 0.0,
         }
     }
 
     /// One cycle.
     pub fn step(&mut self, commands: &[Command]) {
         self.tick += 1;
-        let out = self.planner.step(self.tick, CYCLE, Some(&self.state), commands);
+        let start = clock::now();
+        let out = self.planner.step(self.tick, self.cycle, Some(&self.state), commands);
+        self.took = (clock::now() - start) as f64 * 1e-3;
         let tick = self.tick;
         self.events.extend(out.events.iter().map(|e| (tick, e.0, e.1)));
         if let Some(plan) = out.plan {
@@ -150,16 +188,18 @@ impl Robot {
         self.state.origin = self.active.origin;
         self.state.com = self.active.com.sample(t).position;
         self.state.feet = [0, 1].map(|i| self.active.feet[i].sample(t).position);
+        self.state.phase = [0, 1].map(|i| self.active.phase(i, t) as u64);
+        self.state.contact = [0, 1].map(|i| u64::from(self.state.feet[i][2] < self.ground));
     }
 
     /// Time in the active plan \[s\].
     pub fn time(&self) -> f64 {
-        (self.tick - self.active.start_tick) as f64 * CYCLE
+        (self.tick - self.active.start_tick) as f64 * self.cycle
     }
 
     /// Runs for some time \[s\].
     pub fn run(&mut self, seconds: f64) {
-        for _ in 0..(seconds / CYCLE) as u64 {
+        for _ in 0..(seconds / self.cycle) as u64 {
             self.step(&[]);
         }
     }

@@ -3,6 +3,7 @@
 //! A chart is one question: what does a method cost, and how far is it from a reference that is exact or converged? Each
 //! part below adds charts; what all have in common is here. A new part is a module and a line in [`PARTS`].
 
+mod boundary;
 pub mod cost;
 mod flight;
 mod joint;

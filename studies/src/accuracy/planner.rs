@@ -8,7 +8,7 @@ use planner::pose::Pose;
 use planner::sole::Sole;
 use planner::zmp::Chain;
 
-use super::{Chart, Cost, Given, Point, cost};
+use super::{Chart, Cost, Given, Point, boundary, cost};
 use crate::speed::{Recording, plan_times};
 
 /// Distances of knots, by that of the gait.
@@ -20,13 +20,13 @@ const SWEEPS: [usize; 8] = [1, 2, 5, 10, 20, 50, 100, 300];
 /// Calls of which the time is taken at once.
 const CALLS: usize = 200;
 
-/// Both charts.
+/// All charts.
 ///
 /// # Errors
 /// A configuration is wrong, or the robot falls.
 pub fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
     let setup = Setup::load(given.config, "walk_1kmh")?;
-    Ok(vec![collocation(&setup)?, zmp(&setup)])
+    Ok(vec![collocation(&setup)?, boundary::chart(), zmp(&setup)])
 }
 
 /// A walking plan's error by the distance of its knots.
@@ -52,20 +52,20 @@ fn collocation(setup: &Setup) -> Result<Chart, Box<dyn Error>> {
     Ok(chart)
 }
 
-/// Error of projected Gauss-Seidel by its sweeps.
+/// Error of projected Gauss-Seidel by its sweeps, and of direct construction.
 fn zmp(setup: &Setup) -> Chart {
     let mut chart = Chart::new("zmp", "Sweeps for the zero-moment point's way", "distance from the optimum [m]")
         .over(Cost::PerCall)
         .about(
-            "Projected Gauss-Seidel on (4.42) over steps of 0.35 m from foot to foot, with ends in the middle of the feet; \
-             reference: swept until nothing moves.",
+            "Projected Gauss-Seidel on (4.42) and direct construction over steps of 0.35 m from foot to foot, with ends in \
+             the middle of the feet; reference: swept until nothing moves.",
         );
     let sole = Sole::new(setup.robot.feet[RIGHT].support).shrunk(0.01);
     for nodes in NODES {
         let begin = chain(&sole, nodes);
         let mut reference = begin;
         let mut most = 1_000_000;
-        while reference.sweep() > 0.0 && most > 0 {
+        while reference.sweep(1.0) > 0.0 && most > 0 {
             most -= 1;
         }
         for sweeps in SWEEPS {
@@ -74,23 +74,42 @@ fn zmp(setup: &Setup) -> Chart {
                 for _ in 0..CALLS {
                     found = begin;
                     for _ in 0..sweeps {
-                        found.sweep();
+                        found.sweep(1.0);
                     }
                 }
             });
-            let pairs = found.nodes().iter().zip(reference.nodes());
-            let error = pairs.map(|(a, b)| (a.p[0] - b.p[0]).hypot(a.p[1] - b.p[1])).fold(0.0, f64::max);
-            chart.add(Point {
-                scene: format!("{nodes} boundaries"),
-                method: "projected Gauss-Seidel".into(),
-                solver: Some(format!("{sweeps} sweeps")),
-                cpu_us: Some(1e6 * seconds / CALLS as f64),
-                error: error.max(f64::EPSILON), // of metres: nothing less can be drawn
-                ..Point::default()
-            });
+            add(
+                &mut chart,
+                "projected Gauss-Seidel",
+                format!("{sweeps} sweeps"),
+                seconds,
+                [&found, &reference],
+            );
         }
+        let mut found = begin;
+        let (settled, seconds) = cost::of(|| {
+            (0..CALLS).fold(true, |settled, _| {
+                found = begin;
+                settled & found.solve_directly()
+            })
+        });
+        let what = if settled { "settled" } else { "not settled" };
+        add(&mut chart, "direct construction", what.into(), seconds, [&found, &reference]);
     }
     chart
+}
+
+fn add(chart: &mut Chart, method: &str, solver: String, seconds: f64, [found, reference]: [&Chain; 2]) {
+    let pairs = found.nodes().iter().zip(reference.nodes());
+    let error = pairs.map(|(a, b)| (a.p[0] - b.p[0]).hypot(a.p[1] - b.p[1])).fold(0.0, f64::max);
+    chart.add(Point {
+        scene: format!("{} boundaries", found.nodes().len()),
+        method: method.into(),
+        solver: Some(solver),
+        cpu_us: Some(1e6 * seconds / CALLS as f64),
+        error: error.max(f64::EPSILON), // of metres: nothing less can be drawn
+        ..Point::default()
+    });
 }
 
 /// Steps straight on: each foot holds the point for two boundaries.
@@ -121,7 +140,7 @@ mod tests {
         let sole = Sole::new(setup.robot.feet[RIGHT].support).shrunk(0.01);
         let mut chain = chain(&sole, 8);
         for _ in 0..10_000 {
-            chain.sweep();
+            chain.sweep(1.0);
         }
         let nodes = chain.nodes().to_vec();
         let cost = |p: &[[f64; 2]]| -> f64 {
@@ -135,9 +154,9 @@ mod tests {
         let best: Vec<[f64; 2]> = nodes.iter().map(|n| n.p).collect();
         for k in 1..nodes.len() - 1 {
             for step in [[1e-5, 0.0], [-1e-5, 0.0], [0.0, 1e-5], [0.0, -1e-5]] {
-                let (sole, at) = nodes[k].hold.unwrap();
+                let hold = nodes[k].hold.unwrap();
                 let mut moved = best.clone();
-                moved[k] = sole.nearest(&at, [best[k][0] + step[0], best[k][1] + step[1]]);
+                moved[k] = hold.nearest([best[k][0] + step[0], best[k][1] + step[1]]);
                 assert!(cost(&moved) >= cost(&best) - 1e-13, "node {k}");
             }
         }

@@ -11,6 +11,7 @@
 //! | `touchdown` | orders of convergence at a contact (F7) |
 //! | `contact` | fixed points, nearly incompressible rubber, much friction, penetration (F8-F11) |
 //! | `drives` | load torques, elasticity, linkages at their dead points (F12-F15, F24) |
+//! | `joint` | gains of joint control (J1-J3), drawn by `joint_chart` |
 //! | `planning` | initial values instead of boundary values, collocation (F16, F20) |
 //! | `motion` | Euler angles, straight knees, energy over a minute (F22, F23) |
 //! | `geometry` | nearest points, edges (F25) |
@@ -20,6 +21,8 @@ mod contact;
 mod drives;
 mod geometry;
 mod held;
+mod joint;
+mod joint_chart;
 mod linear;
 mod motion;
 mod planning;
@@ -37,6 +40,8 @@ use environment::Environment;
 use serde::Serialize;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::Plant;
+
+pub use joint_chart::draw;
 
 /// One method at its limit.
 #[derive(Clone, Debug, Serialize)]
@@ -88,7 +93,7 @@ struct Bench {
 }
 
 /// The checks, in the order of the report.
-const CHECKS: [fn(&Bench) -> Findings; 27] = [
+const CHECKS: [fn(&Bench) -> Findings; 30] = [
     steps::free_layer,
     steps::mass_on_layer,
     steps::whole_robot,
@@ -111,6 +116,9 @@ const CHECKS: [fn(&Bench) -> Findings; 27] = [
     drives::elasticity,
     drives::ankle,
     drives::dead_point,
+    joint::continuous,
+    joint::sampled,
+    joint::friction,
     planning::collocation,
     motion::all,
     geometry::nearest,

@@ -1,0 +1,41 @@
+//! `[joint_control]`: how drives are controlled, of a robot, of one of its drives, or of all of them in a scene.
+
+use drives::{Cascade, Feedback, JointControl, Law, Sampled, Sampling, VoltageLaw};
+
+use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
+
+/// Stand-in while a file is wrong, and of robots without drives.
+pub(crate) const NONE: JointControl = JointControl {
+    law: Law::Voltage(VoltageLaw { position: f64::NAN, speed: f64::NAN }),
+    sampling: Sampling::Cycle(Sampled { delay: false, difference: false }),
+};
+
+pub(crate) fn build(table: &Section<'_, '_>) -> JointControl {
+    let law = match table.word("law", &["cascade", "voltage"]) {
+        0 => Law::Cascade(cascade(table)),
+        _ => Law::Voltage(VoltageLaw {
+            position: table.number("position", "V/rad", POSITIVE),
+            speed: table.number("speed", "V s/rad", NOT_NEGATIVE),
+        }),
+    };
+    let sampling = match table.word("sampling", &["continuous", "cycle"]) {
+        0 => Sampling::Continuous,
+        _ => Sampling::Cycle(Sampled {
+            delay: table.integer("delay", 0..=1) == 1,
+            difference: table.word("speed_from", &["state", "difference"]) == 1,
+        }),
+    };
+    if matches!(law, Law::Voltage(_)) && sampling == Sampling::Continuous {
+        table.problem("sampling", "the law \"voltage\" is computed once per cycle; it takes \"cycle\"");
+    }
+    JointControl { law, sampling }
+}
+
+fn cascade(table: &Section<'_, '_>) -> Cascade {
+    Cascade {
+        feedback: Feedback::ALL[table.word("feedback", &Feedback::WORDS)],
+        position_gain: table.number("position_gain", "1/s", POSITIVE),
+        speed_bandwidth: table.number("speed_bandwidth", "rad/s", POSITIVE),
+        current_bandwidth: table.number("current_bandwidth", "rad/s", POSITIVE),
+    }
+}

@@ -1,0 +1,135 @@
+//! What the plan wants of a foot against what its sensor feels: swing, early contact, stance, late contact.
+//!
+//! Contact that comes before its time stops the foot where it is: it presses lightly and is not pushed on. Contact
+//! that does not come at its time is searched for downwards, slowly and not far. What either has changed in height is
+//! kept while the foot carries and given up in the next swing (5.32).
+
+use config::gait::Control;
+
+/// What a foot is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Phase {
+    /// In the air as planned: position controlled.
+    #[default]
+    Swing,
+    /// Came down on something before its time: force controlled, its descent stopped.
+    Early,
+    /// Carries as planned: force controlled as far as it is felt to.
+    Stance,
+    /// Should carry and is felt not to: lowered.
+    Late,
+}
+
+/// What is known about a foot in a cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct Signs {
+    /// \[1\] Planned load factor now and at the end of the cycle.
+    pub load: [f64; 2],
+    /// \[m/s\] Planned vertical velocity of the sole.
+    pub rise: f64,
+    /// \[N\] Measured, filtered normal force.
+    pub force: f64,
+}
+
+/// Contact of one foot.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Contact {
+    /// Its phase.
+    pub phase: Phase,
+    /// \[1\] 0 without felt force, 1 from the upper force of `force_blend` on.
+    pub felt: f64,
+}
+
+impl Contact {
+    /// One cycle.
+    pub fn update(&mut self, control: &Control, signs: &Signs) {
+        let [low, high] = control.force_blend;
+        self.felt = ((signs.force - low) / (high - low)).clamp(0.0, 1.0);
+        let [now, end] = signs.load;
+        // What a swinging foot's inertia and the sensor's noise read is no contact.
+        let (felt, falling) = (self.felt > 0.0, signs.rise < 0.0);
+        let loading = end > now || now >= HALF;
+        self.phase = match self.phase {
+            Phase::Swing | Phase::Early if end <= 0.0 => {
+                let early = falling && (signs.force > high || self.phase == Phase::Early);
+                if early { Phase::Early } else { Phase::Swing }
+            }
+            _ if now <= 0.0 && end <= 0.0 => Phase::Swing,
+            _ if felt || !loading => Phase::Stance,
+            _ => Phase::Late,
+        };
+    }
+
+    /// \[1\] alpha_lambda: 1 force controlled, 0 position controlled.
+    pub fn force_share(&self) -> f64 {
+        match self.phase {
+            Phase::Swing | Phase::Late => 0.0,
+            Phase::Early => 1.0,
+            Phase::Stance => self.felt,
+        }
+    }
+}
+
+/// A foot that shall carry this share of the load is expected on the ground, whether its load rises or falls.
+const HALF: f64 = 0.5;
+
+/// Load factors of the feet that are felt: the other foot carries for one that finds no ground.
+pub fn felt_load(planned: [f64; 2], contacts: &[Contact; 2]) -> [f64; 2] {
+    let felt = [planned[0] * contacts[0].felt, planned[1] * contacts[1].felt];
+    let sum = felt[0] + felt[1];
+    if sum > 0.0 { felt.map(|f| f / sum) } else { planned }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(contact: &mut Contact, load: [f64; 2], rise: f64, force: f64) -> Phase {
+        contact.update(&crate::test_gains(), &Signs { load, rise, force });
+        contact.phase
+    }
+
+    #[test]
+    fn a_step_as_planned() {
+        let mut c = Contact::default();
+        assert_eq!(after(&mut c, [1.0; 2], 0.0, 600.0), Phase::Stance);
+        assert_eq!(after(&mut c, [0.01, 0.005], 0.0, 3.0), Phase::Stance, "leaves: nothing to search for");
+        assert_eq!(after(&mut c, [0.0; 2], 0.1, 30.0), Phase::Swing, "still touches, but rises");
+        assert_eq!(c.force_share(), 0.0);
+        assert_eq!(after(&mut c, [0.0; 2], -0.1, 0.0), Phase::Swing);
+        assert_eq!(after(&mut c, [0.0, 0.01], 0.0, 30.0), Phase::Stance);
+        assert!(c.force_share() > 0.0 && c.force_share() < 1.0);
+    }
+
+    #[test]
+    fn early_contact_lasts_until_the_foot_shall_carry() {
+        let mut c = Contact::default();
+        assert_eq!(after(&mut c, [0.0; 2], -0.1, 30.0), Phase::Swing, "inertia or noise");
+        assert_eq!(after(&mut c, [0.0; 2], -0.1, 60.0), Phase::Early);
+        assert_eq!(after(&mut c, [0.0; 2], -0.1, 0.0), Phase::Early, "a bounce");
+        assert_eq!(c.force_share(), 1.0);
+        assert_eq!(after(&mut c, [0.0, 0.01], 0.0, 0.0), Phase::Late, "and gone when it should carry");
+        assert_eq!(after(&mut c, [0.01, 0.02], 0.0, 30.0), Phase::Stance);
+    }
+
+    #[test]
+    fn ground_is_searched_for_while_load_shall_come_or_is_there() {
+        let mut c = Contact::default();
+        assert_eq!(after(&mut c, [0.1, 0.2], 0.0, 0.0), Phase::Late);
+        assert_eq!(after(&mut c, [1.0; 2], 0.0, 0.0), Phase::Late);
+        assert_eq!(after(&mut c, [1.0; 2], 0.0, 100.0), Phase::Stance);
+        assert_eq!(
+            after(&mut c, [0.4, 0.3], 0.0, 0.0),
+            Phase::Stance,
+            "load goes: the foot is about to lift"
+        );
+    }
+
+    #[test]
+    fn who_finds_no_ground_is_carried_for() {
+        let felt = |felt| Contact { phase: Phase::Stance, felt };
+        assert_eq!(felt_load([0.4, 0.6], &[felt(1.0), felt(0.0)]), [1.0, 0.0]);
+        assert_eq!(felt_load([0.4, 0.6], &[felt(1.0); 2]), [0.4, 0.6]);
+        assert_eq!(felt_load([0.4, 0.6], &[felt(0.0); 2]), [0.4, 0.6], "in the air the plan is all there is");
+    }
+}

@@ -1,0 +1,90 @@
+//! Which feet press on the ground, and what ends in a controlled stop: sensor data that are not finite, a fall, being
+//! lifted.
+
+use messages::{EventCode, Sensors};
+
+use crate::estimate::{Estimate, LOADED};
+use crate::following::Desired;
+
+/// \[N\] Normal force from which a foot counts as being in contact, above what a swinging foot's inertia reads; contact
+/// ends below [`LOADED`].
+const FIRM: f64 = 60.0;
+/// Inclination error \[rad\] from which the robot counts as falling: joints are brought to rest.
+const FALLING: f64 = 0.5;
+/// Cycles without load on either foot, while the plan wants load, after which the robot counts as lifted.
+const LIFTED_CYCLES: u32 = 200;
+/// Cycles in a row that are bridged with the last good sensor data if a value is not finite.
+const BAD_CYCLES: u32 = 20;
+
+/// Admits sensor data and decides when to stop.
+#[derive(Clone, Default)]
+pub(crate) struct Watch {
+    /// The last sensor data without a NaN, and how many with one came since.
+    good: Sensors,
+    bad: u32,
+    unloaded: u32,
+    stopped: bool,
+    contact: [bool; 2],
+}
+
+impl Watch {
+    /// The sensor data if they are finite, otherwise the last ones that were; an event where that begins.
+    pub(crate) fn admit(&mut self, sensors: &Sensors, joints: usize) -> (Sensors, Option<EventCode>) {
+        let (imu, wrench) = (&sensors.imu, &sensors.foot_wrench);
+        let finite =
+            sensors.joint_angle[..joints].iter().chain(&sensors.joint_speed[..joints]).all(|x| x.is_finite())
+                && imu.orientation.iter().chain(&imu.angular_velocity).all(|x| x.is_finite())
+                && wrench.iter().all(|w| w.force.iter().chain(&w.moment).all(|x| x.is_finite()));
+        if finite {
+            self.good = *sensors;
+            self.bad = 0;
+            for (contact, w) in self.contact.iter_mut().zip(wrench) {
+                *contact = w.force[2] > if *contact { LOADED } else { FIRM };
+            }
+        } else {
+            self.bad = self.bad.saturating_add(1);
+            self.good.header = sensors.header;
+        }
+        (self.good, (self.bad == 1).then_some(EventCode::SensorNotFinite))
+    }
+
+    /// Whether each foot presses on the ground.
+    pub(crate) fn contact(&self) -> [bool; 2] {
+        self.contact
+    }
+
+    /// Begins anew, as with a supply that was switched on.
+    pub(crate) fn restart(&mut self) {
+        self.stopped = false;
+        self.unloaded = 0;
+    }
+
+    /// Whether the joints shall come to rest.
+    pub(crate) fn stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// Stops for good if something is wrong; says why in that cycle.
+    pub(crate) fn check(
+        &mut self,
+        sensors: &Sensors,
+        now: &Desired,
+        estimate: &Estimate,
+    ) -> Option<EventCode> {
+        let tilt = (0..2).map(|i| (now.torso.position[i] - estimate.angles[i]).abs()).fold(0.0, f64::max);
+        let load = sensors.foot_wrench[0].force[2].max(sensors.foot_wrench[1].force[2]);
+        self.unloaded = if load < LOADED { self.unloaded + 1 } else { 0 };
+        let why = if self.bad > BAD_CYCLES {
+            Some(EventCode::SensorNotFinite)
+        } else if !(tilt < FALLING) {
+            Some(EventCode::Fallen)
+        } else if self.unloaded > LIFTED_CYCLES {
+            Some(EventCode::Lifted)
+        } else {
+            None
+        };
+        let why = why.filter(|_| !self.stopped);
+        self.stopped |= why.is_some();
+        why
+    }
+}

@@ -1,0 +1,87 @@
+//! Nothing allocates after the controller is made, camera head and arms included.
+#![allow(
+    unsafe_code,
+    reason = "a counting allocator can only be written with GlobalAlloc, which is unsafe to implement"
+)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use config::{Gait, Robot, root};
+use controller::Controller;
+use curves::{Path, Sample};
+use messages::command::{FixateCommand, HeadJointsCommand};
+use messages::{Command, EventCode, GaitState, Plan, Sensors};
+
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: every call goes unchanged to the system's allocator; counting touches a plain thread-local number.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.set(COUNT.get() + 1);
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        // SAFETY: the block came from `System.alloc` with this layout.
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn a_cycle_works_in_the_memory_made_at_the_start() {
+    let robot = Robot::load(&root(None).join("robots/lola")).unwrap();
+    let mut gait = Gait::load(&root(None).join("gaits/lola.toml")).unwrap();
+    gait.arm_swing = Some(1.0);
+    let mut controller = Controller::new(&robot, &gait, 1e-3).unwrap();
+    let mut sensors = Sensors { power: 1, ..Sensors::default() };
+    sensors.imu.orientation = [0.0, 0.0, 0.0, 1.0];
+    sensors.joint_angle[..robot.joints.len()].copy_from_slice(&robot.poses["stand"]);
+    for wrench in &mut sensors.foot_wrench {
+        wrench.force[2] = 298.6;
+    }
+    let state = *controller.step(&sensors, None).1;
+    let mut plan =
+        Box::new(Plan { id: 1, start_tick: 2, state: GaitState::Standing as u64, ..Plan::default() });
+    let to = std::array::from_fn(|d| state.com[d] + [0.02, 0.03, -0.06][d]);
+    plan.com = Path::resting(0.0, state.com);
+    assert!(plan.com.push(&Sample::rest(state.com), &Sample::rest(to), 1.5));
+    plan.torso = Path::resting(0.0, [std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2, 0.0]);
+    plan.feet = state.feet.map(|f| Path::resting(0.0, f));
+    plan.zmp.push(0.0, [state.com[0], state.com[1]]);
+    plan.load_left = Path::resting(0.0, [0.5]);
+
+    let before = COUNT.get();
+    let (mut saccades, mut refused, mut held) = (0, 0, 0);
+    for k in 1..2400u64 {
+        let command = match k {
+            300 => Some(Command::Fixate(FixateCommand { point: [2.0, 1.0, 1.0] })),
+            800 => Some(Command::Fixate(FixateCommand { point: [-2.0, 0.1, 9.0] })),
+            1200 => Some(Command::HeadJoints(HeadJointsCommand { pan: 9.0, tilt: 0.0 })),
+            2000 => Some(Command::HeadRest),
+            _ => None,
+        };
+        refused += usize::from(command.and_then(|c| controller.command(&c)).is_some());
+        sensors.header.tick += 1;
+        let targets = controller.step(&sensors, Some(&plan)).0;
+        (sensors.joint_angle, sensors.joint_speed) = (targets.angle, targets.speed);
+        while let Some((code, _)) = controller.take_event() {
+            saccades += usize::from(code == EventCode::Saccade);
+            held += usize::from(code == EventCode::GazeHeld);
+        }
+    }
+    let allocations = COUNT.get() - before;
+    assert_eq!(allocations, 0);
+    assert_eq!((saccades, refused, held), (3, 1, 1), "all that was to be looked at happened");
+
+    drop(Box::new(std::hint::black_box(1)));
+    assert!(COUNT.get() > before, "the counter counts");
+}

@@ -1,0 +1,128 @@
+//! Laws of joint position control (thesis 5.5), written for the motor's shaft.
+//!
+//! | symbol | name | unit |
+//! |---|---|---|
+//! | q_d, q'_d | where a joint is to be, and how fast | rad, rad/s |
+//! | w_d, w, e | speed wanted and seen, error of the angle; of the shaft | rad/s, rad |
+//! | C, D | gains of the voltage law | V/rad, V s/rad |
+//! | K_p, K_d | gains of PD control: torque by angle and by speed | N m/rad, N m s/rad |
+//! | K_x, w_v, w_c | gains of a cascade: position, bandwidths of speed and current | 1/s, rad/s, rad/s |
+//!
+//! A cascade of position and speed is PD control of the torque with K_d = w_v J and K_p = K_x K_d, J the inertia that its
+//! speed loop is tuned for. What it feeds back makes it (5.43), (5.45) or (5.49).
+
+use crate::Motor;
+
+/// How one drive is controlled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointControl {
+    /// The law.
+    pub law: Law,
+    /// When it is computed.
+    pub sampling: Sampling,
+}
+
+/// A law of joint control.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law {
+    /// Position, speed and current, one inside of the other: Lola's servo drives (thesis 5.5.2).
+    Cascade(Cascade),
+    /// Angle of the motor to voltage: Johnnie, who has no current sensors (thesis 5.5.1).
+    Voltage(VoltageLaw),
+}
+
+/// Gains of a cascade, and what it feeds back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cascade {
+    /// Sides of the gear that are measured.
+    pub feedback: Feedback,
+    /// \[1/s\] K_x.
+    pub position_gain: f64,
+    /// \[rad/s\] w_v, with the inertia of a hanging robot.
+    pub speed_bandwidth: f64,
+    /// \[rad/s\] w_c.
+    pub current_bandwidth: f64,
+}
+
+/// Which side of the gear angle and speed are measured on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feedback {
+    /// Both on the link's side (5.43).
+    Link,
+    /// Both on the motor's side (5.45).
+    Motor,
+    /// Angle on the link's, speed on the motor's (5.49).
+    LinkMotor,
+}
+
+/// A side of a gear; of a rigid gear both see the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Joint.
+    Link,
+    /// Rotor.
+    Motor,
+}
+
+/// (5.40).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VoltageLaw {
+    /// \[V/rad\] C, on the angle of the motor.
+    pub position: f64,
+    /// \[V s/rad\] D.
+    pub speed: f64,
+}
+
+/// When a law is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sampling {
+    /// So often that nobody sees the steps: the drive's own processor.
+    Continuous,
+    /// Once per bus cycle, and held until the next.
+    Cycle(Sampled),
+}
+
+/// A law computed once per cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sampled {
+    /// Whether what was computed acts one cycle later.
+    pub delay: bool,
+    /// Whether speeds are differences of the angles of two cycles.
+    pub difference: bool,
+}
+
+impl Feedback {
+    /// All of them, in the order of [`Feedback::WORDS`].
+    pub const ALL: [Self; 3] = [Self::Link, Self::Motor, Self::LinkMotor];
+    /// Their names in configuration files.
+    pub const WORDS: [&str; 3] = ["link", "motor", "link_motor"];
+
+    /// Where the angle is measured.
+    pub fn position(self) -> Side {
+        if self == Self::Motor { Side::Motor } else { Side::Link }
+    }
+
+    /// Where the speed is measured.
+    pub fn speed(self) -> Side {
+        if self == Self::Link { Side::Link } else { Side::Motor }
+    }
+}
+
+impl Cascade {
+    /// \[rad/s\] Speed that the position loop asks of the shaft: w_d + K_x e.
+    pub fn speed_wanted(&self, error: f64, wanted: f64) -> f64 {
+        wanted + self.position_gain * error
+    }
+
+    /// \[V\] Voltage that the current loop sets: R I_d + k_M w + L w_c (I_d - I).
+    pub fn voltage(&self, motor: &Motor, wanted: f64, current: f64, speed: f64) -> f64 {
+        motor.voltage(wanted, speed) + motor.inductance * self.current_bandwidth * (wanted - current)
+    }
+}
+
+impl VoltageLaw {
+    /// \[V\] C e + D (w_d - w) + k_M w_d.
+    pub fn voltage(&self, motor: &Motor, error: f64, wanted: f64, speed: f64) -> f64 {
+        self.position * error + self.speed * (wanted - speed) + motor.torque_constant * wanted // (5.40)
+    }
+}

@@ -1,0 +1,234 @@
+//! Obstacles as unordered triangles, and what of them lies in the way of a foot (thesis 4.3.3).
+//!
+//! A triangle is cut with half spaces, one after the other; what is left is a convex polygon. Nothing left: it does not
+//! reach into their intersection. That is exact for a box, and needs no case for edges or corners.
+
+use crate::pose::{Pose, rotate};
+
+/// A point or direction \[m\].
+type Point = [f64; 3];
+/// Most corners of a triangle cut by six half spaces.
+const MAX_CORNERS: usize = 10;
+
+/// Everything that is known to lie on the ground.
+#[derive(Clone, Debug, Default)]
+pub struct Obstacles {
+    /// Corners \[m\] @I_0 and the number of the obstacle.
+    triangles: Vec<([Point; 3], usize)>,
+    count: usize,
+}
+
+/// What of an obstacle lies in a strip along the x axis of a frame: its bounding box there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// \[m\] Its least x.
+    pub begin: f64,
+    /// \[m\] Its greatest x.
+    pub end: f64,
+    /// \[m\] Its greatest height in I_0.
+    pub top: f64,
+}
+
+/// A box that stands upright: a foot.
+#[derive(Clone, Copy, Debug)]
+pub struct Upright {
+    /// Where it is, in I_0.
+    pub at: Pose,
+    /// \[m\] Back, front, right, left, as [`crate::sole::Sole::new`] takes them.
+    pub sides: [f64; 4],
+    /// \[m\] Its lower and its upper side, in I_0.
+    pub height: [f64; 2],
+}
+
+impl Obstacles {
+    /// Adds one obstacle, triangles \[m\] @I_0. Those with a number that is not finite are left out.
+    pub fn add(&mut self, triangles: impl IntoIterator<Item = [Point; 3]>) {
+        let finite = |t: &[Point; 3]| t.iter().flatten().all(|x| x.is_finite());
+        let number = self.count;
+        self.triangles.extend(triangles.into_iter().filter(finite).map(|t| (t, number)));
+        self.count += 1;
+    }
+
+    /// Nothing there?
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// What of each obstacle lies between y = `strip[0]` and `strip[1]` of the frame `at`.
+    pub fn extents(&self, at: Pose, strip: [f64; 2]) -> impl Iterator<Item = Extent> {
+        (0..self.count).filter_map(move |k| {
+            let own = self.triangles.iter().filter(move |(_, number)| *number == k);
+            own.filter_map(|(corners, _)| {
+                let mut piece = Polygon::seen_from(&at, corners);
+                piece.cut([0.0, 1.0, 0.0], strip[1]);
+                piece.cut([0.0, -1.0, 0.0], -strip[0]);
+                piece.extent()
+            })
+            .reduce(|a, b| Extent {
+                begin: a.begin.min(b.begin),
+                end: a.end.max(b.end),
+                top: a.top.max(b.top),
+            })
+        })
+    }
+
+    /// Does a triangle reach into the box?
+    pub fn hit(&self, foot: &Upright) -> bool {
+        let ([back, front, right, left], [low, high]) = (foot.sides, foot.height);
+        self.triangles.iter().any(|(corners, _)| {
+            let mut piece = Polygon::seen_from(&foot.at, corners);
+            piece.cut([1.0, 0.0, 0.0], front);
+            piece.cut([-1.0, 0.0, 0.0], -back);
+            piece.cut([0.0, 1.0, 0.0], left);
+            piece.cut([0.0, -1.0, 0.0], -right);
+            piece.cut([0.0, 0.0, 1.0], high);
+            piece.cut([0.0, 0.0, -1.0], -low);
+            piece.len > 0
+        })
+    }
+}
+
+/// A convex polygon in space.
+struct Polygon {
+    len: usize,
+    corners: [Point; MAX_CORNERS],
+}
+
+impl Polygon {
+    fn seen_from(frame: &Pose, triangle: &[Point; 3]) -> Self {
+        let mut corners = [[0.0; 3]; MAX_CORNERS];
+        for (to, from) in corners.iter_mut().zip(triangle) {
+            let [x, y] = rotate(-frame.heading, [from[0] - frame.x, from[1] - frame.y]);
+            *to = [x, y, from[2]];
+        }
+        Self { len: 3, corners }
+    }
+
+    /// Keeps what lies in normal . p <= offset (Sutherland and Hodgman).
+    fn cut(&mut self, normal: Point, offset: f64) {
+        let above = |p: &Point| (0..3).map(|d| normal[d] * p[d]).sum::<f64>() - offset;
+        let (old, n) = (self.corners, self.len);
+        self.len = 0;
+        for i in 0..n {
+            let (a, b) = (old[i], old[(i + 1) % n]);
+            let (ga, gb) = (above(&a), above(&b));
+            if ga <= 0.0 {
+                self.push(a);
+            }
+            if (ga < 0.0 && gb > 0.0) || (ga > 0.0 && gb < 0.0) {
+                let s = ga / (ga - gb);
+                self.push([0, 1, 2].map(|d| a[d] + s * (b[d] - a[d])));
+            }
+        }
+    }
+
+    fn push(&mut self, p: Point) {
+        if self.len < MAX_CORNERS {
+            self.corners[self.len] = p;
+            self.len += 1;
+        }
+    }
+
+    fn extent(&self) -> Option<Extent> {
+        let of = |p: &Point| Extent { begin: p[0], end: p[0], top: p[2] };
+        self.corners[..self.len].iter().map(of).reduce(|a, b| Extent {
+            begin: a.begin.min(b.begin),
+            end: a.end.max(b.end),
+            top: a.top.max(b.top),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of 1 m at the height 0.1 m, turned by 45 degrees: corners on the axes.
+    fn diamond() -> Obstacles {
+        let r = std::f64::consts::FRAC_1_SQRT_2;
+        let (a, b, c, d) = ([r, 0.0, 0.1], [0.0, r, 0.1], [-r, 0.0, 0.1], [0.0, -r, 0.1]);
+        let mut obstacles = Obstacles::default();
+        obstacles.add([[a, b, c], [c, d, a]]);
+        obstacles
+    }
+
+    #[test]
+    fn extent_in_a_strip_is_that_of_the_cut_diamond() {
+        let r = std::f64::consts::FRAC_1_SQRT_2;
+        let all: Vec<_> = diamond().extents(Pose::default(), [0.5, 1.0]).collect();
+        assert_eq!(all.len(), 1);
+        assert!((all[0].end - (r - 0.5)).abs() < 1e-12 && (all[0].begin + (r - 0.5)).abs() < 1e-12);
+        assert_eq!(all[0].top, 0.1);
+        assert_eq!(diamond().extents(Pose::default(), [0.8, 1.0]).count(), 0);
+        // Seen from a frame turned by 45 degrees it is an upright square.
+        let turned = Pose::new(2.0, 0.0, std::f64::consts::FRAC_PI_4);
+        let e = diamond().extents(turned, [-9.0, 9.0]).next().unwrap();
+        assert!((e.end - e.begin - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn boxes_hit_exactly_what_they_reach() {
+        let r = std::f64::consts::FRAC_1_SQRT_2;
+        let foot = |x: f64, y: f64, heading: f64, height: [f64; 2]| Upright {
+            at: Pose::new(x, y, heading),
+            sides: [-0.2, 0.1, -0.05, 0.05],
+            height,
+        };
+        assert!(diamond().hit(&foot(0.0, 0.0, 0.3, [0.0, 0.2])), "the square passes through it");
+        assert!(!diamond().hit(&foot(0.0, 0.0, 0.3, [0.11, 0.2])), "above");
+        assert!(!diamond().hit(&foot(0.0, 0.0, 0.3, [0.0, 0.09])), "below");
+        assert!(diamond().hit(&foot(-r - 0.09, 0.0, 0.0, [0.0, 0.2])), "toe over the corner");
+        assert!(!diamond().hit(&foot(-r - 0.11, 0.0, 0.0, [0.0, 0.2])), "toe before the corner");
+        // Beside an edge: bounding boxes overlap, the bodies do not.
+        assert!(!diamond().hit(&foot(0.5, 0.5, 0.0, [0.0, 0.2])));
+    }
+
+    /// Random boxes against the same question asked of many points of the triangle.
+    #[test]
+    fn agrees_with_sampled_triangles() {
+        let mut seed = 7u64;
+        let mut random = |lo: f64, hi: f64| {
+            seed ^= seed << 13;
+            seed ^= seed >> 7;
+            seed ^= seed << 17;
+            lo + (hi - lo) * (seed >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let mut hits = 0;
+        for _ in 0..500 {
+            let t: [Point; 3] = std::array::from_fn(|_| std::array::from_fn(|_| random(-0.5, 0.5)));
+            let mut obstacles = Obstacles::default();
+            obstacles.add([t]);
+            let at = Pose::new(random(-0.3, 0.3), random(-0.3, 0.3), random(-3.0, 3.0));
+            let foot = Upright { at, sides: [-0.2, 0.1, -0.05, 0.1], height: [-0.1, 0.2] };
+            let inside = (0..=60)
+                .flat_map(|i| (0..=60 - i).map(move |j| (i as f64 / 60.0, j as f64 / 60.0)))
+                .any(|(u, v)| {
+                    let p: Point =
+                        std::array::from_fn(|d| t[0][d] + u * (t[1][d] - t[0][d]) + v * (t[2][d] - t[0][d]));
+                    let [x, y] = at.local([p[0], p[1]]);
+                    let within = |x: f64, lo: f64, hi: f64| x > lo && x < hi;
+                    within(x, -0.2, 0.1) && within(y, -0.05, 0.1) && within(p[2], -0.1, 0.2)
+                });
+            assert!(!inside || obstacles.hit(&foot));
+            // The other way round with a box a little larger than the spacing of the points would miss.
+            let larger = Upright { sides: [-0.22, 0.12, -0.07, 0.12], height: [-0.12, 0.22], ..foot };
+            let hit = obstacles.hit(&foot);
+            assert!(!hit || obstacles.hit(&larger));
+            hits += u32::from(hit);
+            if hit {
+                let near = (0..=60)
+                    .flat_map(|i| (0..=60 - i).map(move |j| (i as f64 / 60.0, j as f64 / 60.0)))
+                    .any(|(u, v)| {
+                        let p: Point = std::array::from_fn(|d| {
+                            t[0][d] + u * (t[1][d] - t[0][d]) + v * (t[2][d] - t[0][d])
+                        });
+                        let [x, y] = at.local([p[0], p[1]]);
+                        let within = |x: f64, lo: f64, hi: f64| x > lo - 0.02 && x < hi + 0.02;
+                        within(x, -0.2, 0.1) && within(y, -0.05, 0.1) && within(p[2], -0.1, 0.2)
+                    });
+                assert!(near, "a hit, and no point of the triangle is near");
+            }
+        }
+        assert!(hits > 50, "{hits}");
+    }
+}

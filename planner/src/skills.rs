@@ -1,0 +1,333 @@
+//! Skills: tasks longer than a step cycle (thesis 4.3.4). One is active; the next one may wait for its end.
+//!
+//! A skill has two hooks in step sequence planning: [`Skill::before`] the standard planner sets lengths of steps,
+//! [`Skill::after`] it changes its result.
+//!
+//! | symbol | name | unit |
+//! |---|---|---|
+//! | r | way that is left to the stance foot | m |
+//! | l_i | lengths of the coming steps, their sum r | m |
+//! | N | number of them | 1 |
+
+use crate::commands;
+use crate::pose::Pose;
+use crate::sole::Sole;
+use crate::steps::{Parameters, Stride};
+use crate::walk::Origin;
+use config::Gait;
+use messages::EventCode;
+use messages::command::{DistanceCommand, PlatformCommand, VelocityCommand};
+
+/// \[m\] What is no way any more.
+const NOTHING: f64 = 1e-6;
+/// Most steps that are prescribed: with them and the last one a plan has knots enough.
+const MOST: usize = 4;
+/// Steps of a plan that are walked before there is another one.
+const HEAD: usize = 2;
+/// Most steps that are looked ahead to the end of a way.
+const LOOK: usize = 24;
+
+/// Lengths of the coming steps that a skill prescribes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Script {
+    lengths: [f64; MOST],
+    len: usize,
+    /// After them the feet are closed.
+    pub complete: bool,
+    /// \[m\] No foothold lies farther ahead of the stance foot, if the steps are others than these.
+    pub wall: f64,
+}
+
+impl Script {
+    /// Nothing prescribed.
+    pub const NONE: Self = Self { lengths: [0.0; MOST], len: 0, complete: false, wall: f64::INFINITY };
+
+    /// \[m\] Length of step `n`, if it is prescribed.
+    pub fn length(&self, n: usize) -> Option<f64> {
+        self.lengths[..self.len].get(n).copied()
+    }
+
+    /// Do the feet close with step `n`?
+    pub fn closes(&self, n: usize) -> bool {
+        self.complete && n >= self.len
+    }
+
+    /// Number of steps until the feet close, if that is in sight.
+    pub fn left(&self) -> Option<usize> {
+        self.complete.then_some(self.len)
+    }
+
+    fn push(&mut self, length: f64) {
+        self.lengths[self.len] = length;
+        self.len += 1;
+    }
+}
+
+/// A way along the x axis of a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// Between the feet where it begins, in I_0.
+    begin: Pose,
+    /// \[m\] How far, forward or backward.
+    length: f64,
+    /// What a step does at most.
+    cruise: Parameters,
+    /// \[m\] Change of length from step to step.
+    change: f64,
+}
+
+/// What is being done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Skill {
+    /// Normal walking: nothing is modified.
+    Walk,
+    /// Fixed distance, from standing to standing.
+    Distance(Way),
+    /// Onto a platform or off it: the way to its edge, how far behind the last foothold before it the next one lies
+    /// \[m\], height in I_0 of the ground before it and behind it \[m\], the edge itself on the way \[m\].
+    Platform {
+        /// To the last foothold before the edge.
+        way: Way,
+        /// \[m\] Length of the step over the edge.
+        over: f64,
+        /// \[m\] Where the edge is on the way.
+        edge: f64,
+        /// \[m\] Heights in I_0 of the ground before and behind it.
+        ground: [f64; 2],
+    },
+}
+
+/// What is to be done next, from standing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Task {
+    /// See [`Skill::Distance`].
+    Distance(DistanceCommand),
+    /// See [`Skill::Platform`].
+    Platform(PlatformCommand),
+}
+
+impl Task {
+    /// Why the robot cannot do it: code and detail of an event.
+    ///
+    /// # Errors
+    /// Out of the limits of the gait; a platform too high, too far for one step or too near.
+    pub fn check(&self, gait: &Gait, sole: &Sole) -> Result<(), (EventCode, u64)> {
+        let no = |code, x: f64| Err((code, (x.abs() * 1e3).round() as u64));
+        match self {
+            Self::Distance(d) => match cruise(d, gait) {
+                Some(_) if d.distance.is_finite() && d.acceleration > 0.0 => Ok(()),
+                _ => no(EventCode::NoFoothold, d.distance),
+            },
+            Self::Platform(p) => {
+                let Some(rules) = &gait.obstacles else { return no(EventCode::ObstacleTooHigh, p.height) };
+                let toes = sole.center[0] + sole.half[0] + rules.distance;
+                let over = 2.0 * (sole.half[0] + rules.distance);
+                if !(p.height.abs() <= rules.height) {
+                    no(EventCode::ObstacleTooHigh, p.height)
+                } else if over > rules.length {
+                    no(EventCode::ObstacleTooLong, over)
+                } else if !(p.distance >= toes && p.distance.is_finite()) {
+                    no(EventCode::NoFoothold, p.distance)
+                } else {
+                    Ok(())
+                }
+            }
+        }
+    }
+
+    /// The skill that does it, from where the robot stands; `None` if it cannot.
+    pub fn begin(&self, from: &Origin, gait: &Gait, sole: &Sole) -> Option<Skill> {
+        self.check(gait, sole).ok()?;
+        let [r, l] = from.feet;
+        let middle = Pose::new(0.5 * (r.x + l.x), 0.5 * (r.y + l.y), 0.5 * (r.heading + l.heading));
+        let begin = from.frame.compose(&middle);
+        match self {
+            Self::Distance(d) => {
+                let cruise = cruise(d, gait)?;
+                let change = gait.step.change[0].min(d.acceleration * cruise.duration * cruise.duration);
+                Some(Skill::Distance(Way { begin, length: d.distance, cruise, change }))
+            }
+            Self::Platform(p) => {
+                let rules = gait.obstacles.as_ref()?;
+                let length = p.distance - rules.distance - sole.center[0] - sole.half[0];
+                let cruise =
+                    Parameters { length: gait.step.first_length, ..Parameters::on_the_spot(rules.duration) };
+                Some(Skill::Platform {
+                    way: Way { begin, length, cruise, change: gait.step.change[0] },
+                    over: 2.0 * (sole.half[0] + rules.distance),
+                    edge: p.distance,
+                    ground: [from.height, from.height + p.height],
+                })
+            }
+        }
+    }
+}
+
+/// One active skill, and what comes next.
+#[derive(Clone, Copy, Debug)]
+pub struct Tasks {
+    /// The active one.
+    pub active: Skill,
+    /// What begins when the robot stands.
+    pub next: Option<Task>,
+    /// The active one is given up: the robot stops.
+    pub aborted: bool,
+}
+
+impl Default for Tasks {
+    fn default() -> Self {
+        Self { active: Skill::Walk, next: None, aborted: false }
+    }
+}
+
+impl Tasks {
+    /// The next skill begins, normal walking if there is none; `false` if it cannot.
+    pub fn begin(&mut self, from: &Origin, gait: &Gait, sole: &Sole) -> bool {
+        let next = self.next.take();
+        let skill = next.map(|task| task.begin(from, gait, sole));
+        (self.active, self.aborted) = (skill.flatten().unwrap_or(Skill::Walk), false);
+        skill != Some(None)
+    }
+
+    /// The operator stops: nothing comes next, and what is being done is not done to its end.
+    pub fn stop(&mut self) {
+        (self.next, self.aborted) = (None, true);
+    }
+
+    /// The operator walks from now on; `false` while that would leave the robot half on a platform.
+    pub fn walk(&mut self, standing: bool) -> bool {
+        let free = standing || !matches!(self.active, Skill::Platform { .. });
+        if free {
+            *self = Self::default();
+        }
+        free
+    }
+
+    /// [`Skill::before`] of the active one.
+    pub fn before(&self, from: &Origin, starting: bool, first: f64, wish: &mut Parameters) -> Script {
+        let mut as_commanded = *wish;
+        let wish = if self.aborted { &mut as_commanded } else { wish };
+        let script = self.active.before(from, starting, first, wish);
+        if self.aborted { Script { wall: script.wall, ..Script::NONE } } else { script }
+    }
+}
+
+/// Steps with which the distance is walked.
+fn cruise(d: &DistanceCommand, gait: &Gait) -> Option<Parameters> {
+    let forward = d.speed.copysign(d.distance);
+    commands::from_velocity(&VelocityCommand { forward, left: 0.0, turn: 0.0 }, gait).flatten()
+}
+
+impl Way {
+    /// \[m\] r
+    fn left(&self, from: &Origin) -> f64 {
+        self.length - self.begin.relative(&from.frame).x
+    }
+}
+
+impl Skill {
+    /// Before the standard planner: what the steps shall be, and the lengths of the next ones. `first` \[m\] is the
+    /// longest step out of standing and into it.
+    pub fn before(&self, from: &Origin, starting: bool, first: f64, wish: &mut Parameters) -> Script {
+        let (way, over) = match self {
+            Self::Walk => return Script::NONE,
+            Self::Distance(way) => (way, None),
+            Self::Platform { way, over, .. } => (way, Some(*over)),
+        };
+        *wish = way.cruise;
+        let r = way.left(from);
+        let sign = way.cruise.length.signum();
+        let previous = if starting { (first - way.change).max(0.0) } else { from.previous.length * sign };
+        let mut script = Script::NONE;
+        script.complete = true;
+        if r * sign > NOTHING {
+            lengths(r * sign, previous, way, (first, MOST - usize::from(over.is_some())), &mut script);
+            script.lengths[..script.len].iter_mut().for_each(|l| *l *= sign);
+        }
+        if let Some(over) = over {
+            script.wall = if r > -NOTHING { r.max(0.0) } else { f64::INFINITY };
+            if r > -NOTHING && script.complete {
+                script.push(over);
+            }
+        }
+        script
+    }
+
+    /// After the standard planner: heights of the footholds.
+    pub fn after(&self, from: &Origin, strides: &mut [Stride]) {
+        let Self::Platform { way, edge, ground, .. } = self else { return };
+        let mut before = None;
+        for s in strides {
+            if let Some((foothold, takeoff)) = before {
+                (s.heights.foothold, s.heights.takeoff) = (foothold, takeoff);
+            }
+            let at = way.begin.relative(&from.frame.compose(&s.landing)).x;
+            s.heights.landing = ground[usize::from(at > *edge)] - from.height;
+            before = Some((s.heights.landing, s.heights.foothold));
+        }
+    }
+}
+
+/// The fewest steps from `previous` \[m\] to the end of a way of `r` \[m\], each at most as long as it may be: no longer
+/// than those of the cruise, no more than a change away from the one before, and the last one short enough to stop.
+/// Scaled to end exactly there. Without an end in sight, those of the cruise. At most `most_steps` are prescribed.
+fn lengths(r: f64, previous: f64, way: &Way, (first, most_steps): (f64, usize), script: &mut Script) {
+    let most = way.cruise.length.abs();
+    let step = |i: usize, n: usize| {
+        let up = previous + i as f64 * way.change;
+        let down = first + (n - i) as f64 * way.change;
+        most.min(up).min(down)
+    };
+    let sum = |n: usize| (1..=n).map(|i| step(i, n)).sum::<f64>();
+    let end = (1..=LOOK).find(|&n| sum(n) >= r);
+    let n = end.unwrap_or(LOOK);
+    let scale = end.map_or(1.0, |n| r / sum(n));
+    script.complete = end.is_some_and(|n| n <= most_steps);
+    for i in 1..=if script.complete { n } else { HEAD } {
+        script.push(scale * step(i, n));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn way(length: f64, most: f64, change: f64) -> Way {
+        let cruise = Parameters { length: most, ..Parameters::on_the_spot(1.0) };
+        Way { begin: Pose::default(), length, cruise, change }
+    }
+
+    /// All the way, step by step, as the planner asks.
+    fn walk(r: f64, most: f64, change: f64, first: f64) -> Vec<f64> {
+        let (mut left, mut previous, mut all) = (r, (first - change).max(0.0), Vec::new());
+        while left > NOTHING {
+            let mut script = Script::NONE;
+            lengths(left, previous, &way(r, most, change), (first, MOST), &mut script);
+            let l = script.lengths[0];
+            all.push(l);
+            (left, previous) = (left - l, l);
+            assert!(all.len() < 500);
+        }
+        all
+    }
+
+    #[test]
+    fn a_way_ends_exactly_and_changes_gently() {
+        for k in 1..300 {
+            let r = 0.02 * k as f64;
+            let all = walk(r, 0.5, 0.12, 0.3);
+            assert!((all.iter().sum::<f64>() - r).abs() < 1e-9);
+            assert!(all[0] <= 0.3 + 1e-12 && all[all.len() - 1] <= 0.3 + 1e-12, "{all:?}");
+            assert!(all.windows(2).all(|p| (p[1] - p[0]).abs() <= 0.12 + 1e-9), "{all:?}");
+            assert!(all.iter().all(|l| *l <= 0.5 + 1e-12 && *l > 0.0), "{all:?}");
+        }
+    }
+
+    /// The closed form: steps of l, of which n are needed, are all r / n long.
+    #[test]
+    fn steps_without_ramps_are_equal() {
+        let all = walk(2.0, 0.3, 1.0, 0.3);
+        assert_eq!(all.len(), 7);
+        assert!(all.iter().all(|l| (l - 2.0 / 7.0).abs() < 1e-12), "{all:?}");
+    }
+}

@@ -1,0 +1,33 @@
+//! What is wrong with a plan, if anything: every solver says it, the planner acts on it.
+
+/// The first thing that is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Solved, and it can be walked.
+    Sound,
+    /// The zero-moment point leaves the support polygon.
+    LeavesSupport,
+    /// A foot would have to hold more moment than its sole can.
+    OverloadsSole,
+    /// The ground would have to pull, or the body to fall faster than freely: `z.. <= -g`.
+    Falling,
+    /// More friction is needed than there is.
+    Slips,
+    /// A support polygon is empty.
+    NoSupport,
+    /// Phases do not follow one another: no length, wrong order, or too long for the distance of the knots.
+    Degenerate,
+    /// More phases or knots than there is room for.
+    TooLong,
+    /// Sweeps ran out before the optimum.
+    Unsettled,
+    /// An input is not a number, or something overflowed.
+    NotFinite,
+}
+
+impl Verdict {
+    /// This, unless it is sound; then `next`.
+    pub fn and(self, next: Self) -> Self {
+        if self == Self::Sound { next } else { self }
+    }
+}

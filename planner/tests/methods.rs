@@ -1,0 +1,367 @@
+//! Methods against one another, and where they fail: closed form and collocation, direct construction and sweeps.
+
+use planner::analytic::{Analytic, MAX_POINTS};
+use planner::collocation::{Collocation, Ends, MAX_KNOTS, State};
+use planner::pose::Pose;
+use planner::sole::{Hull, Sole};
+use planner::verdict::Verdict;
+use planner::zmp::{Chain, MAX_NODES};
+
+const G: f64 = 9.81;
+const HEIGHT: f64 = 0.9;
+
+fn close(a: f64, b: f64, tolerance: f64) {
+    assert!((a - b).abs() <= tolerance, "{a} instead of {b}");
+}
+
+/// Numbers in [0, 1) that are the same in every run.
+fn dice(mut seed: u64) -> impl FnMut() -> f64 {
+    move || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Steps straight on, `steps` of them, from one foot to the next: the zero-moment point's way.
+fn walk(steps: usize, step: f64) -> Chain {
+    let sole = Sole { center: [0.0; 2], half: [0.1, 0.03] };
+    let mut chain = Chain::new();
+    let foot = |k: usize| Pose::new(step * k as f64, if k.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0);
+    chain.fix(0.0, [0.0, -0.1]);
+    for k in 1..=steps {
+        let begin = 0.8 * (k - 1) as f64;
+        chain.hold(begin + 0.16, &sole, &foot(k));
+        if k < steps {
+            chain.hold(begin + 0.8, &sole, &foot(k));
+        }
+    }
+    let end = foot(steps);
+    chain.fix(0.8 * steps as f64, [end.x, end.y]);
+    assert_eq!(chain.solve(), Verdict::Sound);
+    chain
+}
+
+/// A state from which the walk can begin.
+const BEGIN: State = State { r: [0.01, -0.05], v: [0.2, 0.15] };
+
+#[test]
+fn closed_form_of_errata_2_6() {
+    let mut a = Analytic::new(HEIGHT);
+    let times = [0.0, 0.1, 0.2, 0.8, 1.0, 1.6];
+    let y = [0.0, 0.0, 0.08, 0.08, -0.08, -0.08];
+    // The second axis has the numbers of the errata, the first one their double.
+    let points = times.into_iter().zip(y.map(|y| [2.0 * y, y]));
+    assert_eq!(a.set(points, 1), Verdict::Sound);
+    let begin = State { r: [0.02, 0.01], v: [-0.04, -0.02] };
+    assert_eq!(a.solve(&begin, [0.0; 2]), Verdict::Sound);
+    let free = a.points().nth(1).expect("six points").1;
+    let s = a.sample(0.5);
+    let [a0, b0] = a.piece(0);
+    for (k, of) in [2.0, 1.0].into_iter().enumerate() {
+        close(free[k], of * -0.156265565435, 1e-12 * of);
+        close(s.position[k], of * 0.042106936327, 1e-12 * of);
+        close(s.velocity[k], of * -0.00584284513789, 1e-12 * of);
+        close(a0[k], of * 0.331974869599, 1e-12 * of);
+        close(b0[k], of * -0.228628462389, 1e-12 * of);
+    }
+}
+
+/// The closed form obeys the pendulum, joins with two derivatives and meets its three conditions, 20 steps long.
+#[test]
+fn closed_form_is_a_solution() {
+    let reference = walk(20, 0.4);
+    let mut a = Analytic::new(HEIGHT);
+    assert_eq!(a.follow(&reference), Verdict::Sound);
+    let goal = [8.0, -0.02];
+    assert_eq!(a.solve(&BEGIN, goal), Verdict::Sound);
+    let points: Vec<_> = a.points().collect();
+    let (first, last) = (a.sample(0.0), a.sample(points[points.len() - 1].0));
+    for d in 0..2 {
+        close(first.position[d], BEGIN.r[d], 1e-12);
+        close(first.velocity[d], BEGIN.v[d], 1e-12);
+        close(last.position[d], goal[d], 1e-12);
+    }
+    for pair in points.windows(2) {
+        let at = |t: f64| {
+            let s = (t - pair[0].0) / (pair[1].0 - pair[0].0);
+            [0, 1].map(|d| pair[0].1[d] + s * (pair[1].1[d] - pair[0].1[d]))
+        };
+        for k in 0..=4 {
+            // The end of a piece is looked at just before the next one begins.
+            let t = pair[0].0 + (0.25 * f64::from(k)).min(1.0 - 1e-12) * (pair[1].0 - pair[0].0);
+            let (s, p) = (a.sample(t), at(t));
+            for d in 0..2 {
+                close(s.acceleration[d], G / HEIGHT * (s.position[d] - p[d]), 1e-10);
+            }
+        }
+        let (before, after) = (a.sample(pair[1].0 - 1e-9), a.sample(pair[1].0));
+        for d in 0..2 {
+            close(before.position[d], after.position[d], 1e-8);
+            close(before.velocity[d], after.velocity[d], 1e-7);
+            close(before.acceleration[d], after.acceleration[d], 1e-6);
+        }
+    }
+}
+
+/// Largest distance between collocation with knots `spacing` apart and the closed form, on the same problem.
+fn distance(steps: usize, spacing: f64) -> f64 {
+    let reference = walk(steps, 0.4);
+    let mut a = Analytic::new(HEIGHT);
+    let goal = [0.4 * steps as f64, -0.02];
+    assert_eq!(a.follow(&reference).and(a.solve(&BEGIN, goal)), Verdict::Sound);
+    let marks: Vec<f64> = a.points().map(|p| p.0).collect();
+    let mut c = Box::new(Collocation::new());
+    let mut knots = vec![0.0];
+    for w in marks.windows(2) {
+        let n = ((w[1] - w[0]) / spacing - 1e-9).ceil().max(1.0) as usize;
+        knots.extend((1..=n).map(|k| w[0] + (w[1] - w[0]) * k as f64 / n as f64));
+    }
+    let om2 = G / HEIGHT;
+    let hat = |t: f64| (1.0 - (t - marks[1]).abs() / (marks[1] - marks[0])).max(0.0);
+    let forces = |t: f64| {
+        let p = reference.at(t);
+        [-om2 * p[0], -om2 * p[1], -om2 * hat(t), 0.0]
+    };
+    c.n = knots.len();
+    for (i, &t) in knots.iter().enumerate() {
+        (c.t[i], c.om2[i], c.f[i]) = (t, om2, forces(t));
+        if let Some(next) = knots.get(i + 1) {
+            c.half[i] = forces(0.5 * (t + next));
+        }
+    }
+    assert_eq!(c.solve(), Verdict::Sound);
+    let slope = c.slope(0);
+    let gamma = [0, 1].map(|d| {
+        let rest = BEGIN.v[d] - slope[d] - slope[4] * BEGIN.r[d] - slope[5] * goal[d];
+        rest / slope[2]
+    });
+    let ends = Ends { begin: BEGIN.r, end: goal, gamma: [gamma, [0.0; 2]] };
+    let mut worst = 0.0f64;
+    for (i, &t) in knots.iter().enumerate() {
+        let [r, v, _] = c.motion(i, &ends);
+        let s = a.sample(t);
+        for d in 0..2 {
+            worst = worst.max((r[d] - s.position[d]).abs()).max(0.1 * (v[d] - s.velocity[d]).abs());
+        }
+    }
+    worst
+}
+
+#[test]
+fn closed_form_and_collocation_agree() {
+    for steps in [3, 4] {
+        let e = [0.04, 0.02].map(|h| distance(steps, h));
+        assert!(e[1] < 2e-6 && e[0] / e[1] > 10.0, "{steps} steps: {e:?}"); // fourth order: 16
+    }
+    assert!(distance(20, 0.1) < 2e-3);
+}
+
+/// e^{w t} overflows after 215 s at this height (errata on (4.44)); here nothing grows.
+#[test]
+fn no_horizon_is_too_long() {
+    let mut a = Analytic::new(HEIGHT);
+    let naive = (G / HEIGHT).sqrt() * 300.0;
+    assert!(naive.exp().is_infinite());
+    for (begin, length) in [(0.0, 300.0), (1e6, 300.0), (0.0, 1e5)] {
+        let points = [0.0, 0.05, 0.1, length].map(|t| (begin + t, [0.1, 0.02]));
+        assert_eq!(a.set(points, 1).and(a.solve(&BEGIN, [0.3, -0.1])), Verdict::Sound);
+        let (first, last) = (a.sample(begin), a.sample(begin + length));
+        for d in 0..2 {
+            close(first.position[d], BEGIN.r[d], 1e-9);
+            close(first.velocity[d], BEGIN.v[d], 1e-8);
+            close(last.position[d], [0.3, -0.1][d], 1e-9);
+            close(a.sample(begin + 0.5 * length).position[d], [0.1, 0.02][d], 1e-9);
+        }
+    }
+}
+
+#[test]
+fn closed_form_tells_what_is_wrong() {
+    let mut a = Analytic::new(HEIGHT);
+    let p = |t: f64| (t, [0.0; 2]);
+    assert_eq!(a.set([p(0.0), p(0.1), p(0.1), p(0.4)], 1), Verdict::Degenerate);
+    assert_eq!(a.set([p(0.0), p(0.1)], 1), Verdict::Degenerate);
+    assert_eq!(a.solve(&BEGIN, [0.0; 2]), Verdict::Degenerate);
+    assert_eq!(a.set((0..=MAX_POINTS).map(|k| p(k as f64)), 1), Verdict::TooLong);
+    assert_eq!(a.set([p(0.0), (0.1, [f64::NAN; 2]), p(0.2), p(0.4)], 1), Verdict::Sound);
+    assert_eq!(a.solve(&BEGIN, [0.0; 2]), Verdict::NotFinite);
+    assert_eq!(a.follow(&Chain::new()), Verdict::Degenerate);
+    assert_eq!(a.set([p(f64::NAN), p(0.1), p(0.2)], 1), Verdict::Degenerate);
+}
+
+/// Chains of turned rectangles of random size.
+fn random_chain(random: &mut impl FnMut() -> f64, feet: usize) -> Chain {
+    let mut chain = Chain::new();
+    let (mut t, mut x) = (0.0, 0.0);
+    chain.fix(t, [random() * 0.1, random() * 0.1]);
+    for _ in 0..feet {
+        x += random() * 0.6;
+        let at = Pose::new(x, random() - 0.5, random() - 0.5);
+        let sole = Sole { center: [0.02, 0.0], half: [0.05 + 0.1 * random(), 0.03] };
+        for _ in 0..2 {
+            t += 0.1 + random() * 0.6;
+            chain.hold(t, &sole, &at);
+        }
+    }
+    chain.fix(t + 0.3, [x, 0.0]);
+    chain
+}
+
+#[test]
+fn direct_construction_and_sweeps_agree() {
+    let mut random = dice(11);
+    let mut unsettled = 0;
+    for k in 0..2000 {
+        let mut direct = random_chain(&mut random, 2 + k % 8);
+        let mut swept = direct;
+        assert_eq!(swept.relax(100_000), Verdict::Sound);
+        if !direct.solve_directly() {
+            unsettled += 1;
+            continue;
+        }
+        for (a, b) in direct.nodes().iter().zip(swept.nodes()) {
+            close(a.p[0], b.p[0], 1e-6); // sweeps stop when a step is below 1e-9, which is not where they would end
+            close(a.p[1], b.p[1], 1e-6);
+        }
+    }
+    assert!(unsettled <= 2, "{unsettled} of 2000 do not settle");
+}
+
+/// The triangle of errata 2.10 is no rectangle; its two boxes are: a taut string, by hand.
+#[test]
+fn direct_construction_is_a_taut_string() {
+    let mut c = Chain::new();
+    let box_at = |x: f64, y: f64| (Sole { center: [0.0; 2], half: [0.1, 0.05] }, Pose::new(x, y, 0.0));
+    c.fix(0.0, [0.0, 0.0]);
+    let (sole, at) = box_at(0.1, 0.3); // y in [0.25, 0.35], x in [0, 0.2]
+    c.hold(1.0, &sole, &at);
+    let (sole, at) = box_at(0.6, -0.3); // y in [-0.35, -0.25], x in [0.5, 0.7]
+    c.hold(2.0, &sole, &at);
+    c.fix(4.0, [0.8, 0.0]);
+    assert_eq!(c.solve(), Verdict::Sound);
+    // x: straight from (1, 0.2) to the end is (2, 0.4), outside of [0.5, 0.7]: the string bends at both boxes.
+    for (node, p) in c.nodes()[1..3].iter().zip([[0.2, 0.25], [0.5, -0.25]]) {
+        close(node.p[0], p[0], 1e-12);
+        close(node.p[1], p[1], 1e-12);
+    }
+}
+
+#[test]
+fn reference_tells_what_is_wrong() {
+    let sole = Sole { center: [0.0; 2], half: [0.1, 0.03] };
+    let here = Pose::default();
+    let chain = |sole: &Sole, t: [f64; 3], p: f64| {
+        let mut c = Chain::new();
+        c.fix(t[0], [p, 0.0]);
+        c.hold(t[1], sole, &here);
+        c.fix(t[2], [0.1, 0.0]);
+        c
+    };
+    assert_eq!(chain(&sole, [0.0, 1.0, 2.0], 0.0).solve(), Verdict::Sound);
+    let empty = Sole { half: [0.1, -1e-6], ..sole };
+    assert_eq!(chain(&empty, [0.0, 1.0, 2.0], 0.0).solve(), Verdict::NoSupport);
+    assert_eq!(chain(&sole, [0.0, 1.0, 1.0], 0.0).solve(), Verdict::Degenerate);
+    assert_eq!(chain(&sole, [0.0, f64::NAN, 1.0], 0.0).solve(), Verdict::NotFinite);
+    assert_eq!(chain(&sole, [0.0, 1.0, 2.0], f64::NAN).solve(), Verdict::NotFinite);
+    assert_eq!(Chain::new().solve(), Verdict::Degenerate);
+    let mut long = Chain::new();
+    for k in 0..=MAX_NODES {
+        long.hold(k as f64, &sole, &here);
+    }
+    assert_eq!(long.solve(), Verdict::TooLong);
+    let mut slow = walk(20, 0.4);
+    for _ in 0..3 {
+        assert_eq!(slow.relax(0), Verdict::Unsettled);
+    }
+}
+
+/// A problem with constant right-hand sides: `change` may spoil it.
+fn problem(change: impl Fn(&mut Collocation)) -> Verdict {
+    let mut c = Box::new(Collocation::new());
+    c.n = 21;
+    for i in 0..21 {
+        c.t[i] = 0.08 * i as f64;
+        c.om2[i] = G / HEIGHT;
+        c.f[i] = [1.0; 4];
+        c.half[i] = [1.0; 4];
+    }
+    change(&mut c);
+    c.solve()
+}
+
+#[test]
+fn collocation_tells_what_is_wrong() {
+    assert_eq!(problem(|_| ()), Verdict::Sound);
+    assert_eq!(problem(|c| c.n = 2), Verdict::Degenerate);
+    assert_eq!(problem(|c| c.n = MAX_KNOTS + 1), Verdict::Degenerate);
+    assert_eq!(problem(|c| c.t[7] = c.t[6]), Verdict::Degenerate);
+    assert_eq!(problem(|c| c.t[7] = c.t[5]), Verdict::Degenerate);
+    // The body falls freely, or faster: z.. + g <= 0.
+    assert_eq!(problem(|c| c.om2[9] = 0.0), Verdict::Falling);
+    assert_eq!(problem(|c| c.om2[0] = -0.1), Verdict::Falling);
+    assert_eq!(problem(|c| c.om2[20] = -0.1), Verdict::Falling);
+    for (i, k) in [(0, 0), (9, 1), (20, 3)] {
+        assert_eq!(problem(|c| c.f[i][k] = f64::NAN), Verdict::NotFinite);
+        assert_eq!(problem(|c| c.half[i.min(19)][k] = f64::INFINITY), Verdict::NotFinite);
+    }
+    assert_eq!(problem(|c| c.om2[9] = f64::NAN), Verdict::NotFinite);
+    assert_eq!(problem(|c| c.t[9] = f64::NAN), Verdict::NotFinite);
+}
+
+/// Meeting the divergent component leaves the rest to die out: from the end on, along the same zero-moment point, the
+/// way comes back to the one with the full state, and until there it needs smaller amplitudes.
+#[test]
+fn divergent_component_is_met() {
+    let om2 = G / HEIGHT;
+    let w = om2.sqrt();
+    let trapezoid = |t: f64, at: f64| ((t - at) / 0.16).min((at + 0.8 - t) / 0.16).clamp(0.0, 1.0);
+    let mut c = Box::new(Collocation::new());
+    c.n = 81;
+    for i in 0..81 {
+        let t = 0.02 * i as f64;
+        let forces =
+            |t: f64| [-om2 * 0.1 * t, -om2 * 0.05, -om2 * trapezoid(t, 0.0), -om2 * trapezoid(t, 0.8)];
+        (c.t[i], c.om2[i], c.f[i], c.half[i]) = (t, om2, forces(t), forces(t + 0.01));
+    }
+    assert_eq!(c.solve(), Verdict::Sound);
+    let begin = State { r: [0.02, 0.03], v: [0.1, -0.1] };
+    let target = State { r: [0.2, 0.04], v: [0.15, 0.1] };
+    let full = Ends { begin: begin.r, end: target.r, gamma: c.amplitudes(&begin, &target) };
+    let loose = c.divergent_ends(&begin, &target);
+    for d in 0..2 {
+        for ends in [&full, &loose] {
+            let [r, v, _] = c.motion(0, ends);
+            close(r[d], begin.r[d], 1e-12);
+            close(v[d], begin.v[d], 1e-10);
+            let [r, v, _] = c.motion(80, ends);
+            close(r[d] + v[d] / w, target.r[d] + target.v[d] / w, 1e-10);
+        }
+        let size = |e: &Ends| e.gamma[0][d].hypot(e.gamma[1][d]);
+        assert!(size(&loose) <= size(&full) + 1e-12);
+    }
+}
+
+/// Hull of two soles against supporting lines in many directions.
+#[test]
+fn hull_of_two_soles() {
+    let mut random = dice(3);
+    for _ in 0..500 {
+        let sole = Sole { center: [-0.1, 0.01], half: [0.15, 0.05] };
+        let poses = [0, 1].map(|_| Pose::new(random() - 0.5, random() - 0.5, 6.0 * random()));
+        let hull = Hull::of((&sole, &poses[0]), (&sole, &poses[1]));
+        let p = [random() - 0.5, random() - 0.5];
+        let corners: Vec<_> = poses.iter().flat_map(|q| sole.corners(q)).collect();
+        // Least distance of p to a supporting line, by directions.
+        let mut least = f64::INFINITY;
+        for k in 0..20_000 {
+            let (s, c) = (k as f64 * std::f64::consts::TAU / 20_000.0).sin_cos();
+            let far = corners.iter().map(|q| c * q[0] + s * q[1]).fold(f64::NEG_INFINITY, f64::max);
+            least = least.min(far - c * p[0] - s * p[1]);
+        }
+        if least > 0.0 {
+            close(hull.margin(p), least, 3e-4);
+        } else {
+            assert!(hull.margin(p) <= 1e-12); // outside, edges go on for ever
+        }
+    }
+}

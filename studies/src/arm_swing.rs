@@ -1,0 +1,179 @@
+//! What swinging arms take from the soles (thesis 4.9): the vertical moment, and how far soles turn on the ground.
+//!
+//! The moment is that of the ground on the foot that carries more, about its own centre of pressure: the one that friction
+//! alone has to bear. Both come from the simulated robot itself, not from its sensors.
+
+use std::path::{Path, PathBuf};
+
+use config::Setup;
+use drawing::color::{BLACK, GREY, VERMILION};
+use drawing::{Chart, Figure};
+use messages::{Command, GaitState, SimState};
+use serde::Serialize;
+
+use crate::chain::Chain;
+
+/// Scenes that are walked, and their speeds for people \[km/h\].
+const SCENES: [(&str, f64); 2] = [("walk_2kmh", 2.0), ("walk_3kmh", 3.0)];
+/// Arm swings that are tried; the first one is the comparison, the others against it.
+const SWINGS: [f64; 5] = [0.0, 0.5, 1.0, 1.5, 2.0];
+/// The one that is drawn beside none.
+const DRAWN: f64 = 1.0;
+/// \[s\] The gait is periodic by then, and is looked at for that long, of which the last ones are drawn.
+const TIMES: (f64, f64, f64) = (10.0, 10.0, 3.0);
+
+type Error = Box<dyn std::error::Error>;
+
+/// All walks.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Scene by scene, swing by swing.
+    pub walks: Vec<Walk>,
+    /// A picture per scene.
+    pub pictures: Vec<PathBuf>,
+}
+
+/// One walk.
+#[derive(Clone, Debug, Serialize)]
+pub struct Walk {
+    /// Name of the scene.
+    pub scene: String,
+    /// \[km/h\]
+    pub speed_kmh: f64,
+    /// Arm's over leg's motion.
+    pub swing: f64,
+    /// Whether the robot fell: then nothing else counts.
+    pub fell: bool,
+    /// \[N m\] Vertical moment of the stance foot about its centre of pressure: root mean square, largest.
+    pub moment_nm: [f64; 2],
+    /// \[mrad\] How far a sole turns on the ground while it carries more than the other: mean of all steps.
+    pub turned_mrad: f64,
+    /// \[mrad\] Largest inclination errors phi_x, phi_y.
+    pub inclination_mrad: [f64; 2],
+    /// \[rad\] Amplitude of the shoulders.
+    pub shoulder_rad: f64,
+    /// (time, moment)
+    #[serde(skip)]
+    trace: Vec<[f64; 2]>,
+}
+
+/// Walks every scene with every swing and draws into `out`.
+///
+/// # Errors
+/// A configuration is wrong, or a picture cannot be written.
+pub fn run(root: &Path, depth: u8, out: &Path) -> Result<Report, Error> {
+    std::fs::create_dir_all(out)
+        .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
+    let mut report = Report { walks: Vec::new(), pictures: Vec::new() };
+    for (scene, speed) in SCENES {
+        let mut setup = Setup::load(root, scene)?;
+        crate::figures_of_thesis::deepen(&mut setup, depth);
+        setup.scene.duration = TIMES.0 + TIMES.1;
+        setup.scene.commands.retain(|(_, command)| *command != Command::Stop);
+        let walks: Vec<Walk> = SWINGS
+            .iter()
+            .map(|&swing| {
+                setup.gait.arm_swing = (swing > 0.0).then_some(swing);
+                walk(&setup, speed, swing)
+            })
+            .collect::<Result<_, _>>()?;
+        let picture = out.join(format!("arm_swing_{scene}.png"));
+        draw(&setup, &walks).save(&picture)?;
+        report.pictures.push(picture);
+        report.walks.extend(walks);
+    }
+    Ok(report)
+}
+
+/// \[N m\] Moment of the ground on a foot about its centre of pressure, vertical.
+fn moment(sim: &SimState, foot: usize) -> f64 {
+    let ([fx, fy, fz], [mx, my, mz]) = (sim.foot_wrench[foot].force, sim.foot_wrench[foot].moment);
+    let (px, py) = (-my / fz, mx / fz);
+    mz - (px * fy - py * fx)
+}
+
+fn walk(setup: &Setup, speed_kmh: f64, swing: f64) -> Result<Walk, Error> {
+    let mut chain = Chain::new(setup)?;
+    let mut walk = Walk {
+        scene: setup.scene.name.clone(),
+        speed_kmh,
+        swing,
+        fell: false,
+        moment_nm: [0.0; 2],
+        turned_mrad: f64::NAN,
+        inclination_mrad: [0.0; 2],
+        shoulder_rad: 0.0,
+        trace: Vec::new(),
+    };
+    let shoulder = setup.robot.arms.map_or(0, |arms| arms.joints[0]);
+    let mut shoulders = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut turned = Vec::new();
+    // The foot that carries, and its heading when it began to.
+    let mut stance: Option<(usize, f64)> = None;
+    for _ in 0..(setup.scene.duration / setup.scene.cycle).round() as u64 {
+        let cycle = chain.step();
+        let (sim, state) = (&cycle.sim_state, &cycle.controller_state);
+        walk.fell |= sim.fallen == 1;
+        if sim.time < TIMES.0 || GaitState::from(state.gait) != GaitState::Walking {
+            continue;
+        }
+        let foot = usize::from(sim.foot_wrench[1].force[2] > sim.foot_wrench[0].force[2]);
+        if stance.is_none_or(|(before, _)| before != foot) {
+            if let Some((before, heading)) = stance {
+                turned.push((sim.feet[before][3] - heading).abs() * 1e3);
+            }
+            stance = Some((foot, sim.feet[foot][3]));
+        }
+        let m = moment(sim, foot);
+        walk.trace.push([sim.time, m]);
+        walk.moment_nm[1] = walk.moment_nm[1].max(m.abs());
+        for (most, e) in walk.inclination_mrad.iter_mut().zip(state.inclination_error) {
+            *most = most.max(1e3 * e.abs());
+        }
+        let q = sim.joint_angle[shoulder];
+        shoulders = [shoulders[0].min(q), shoulders[1].max(q)];
+    }
+    let square: f64 = walk.trace.iter().map(|[_, m]| m * m).sum();
+    walk.moment_nm[0] = (square / walk.trace.len() as f64).sqrt();
+    walk.turned_mrad = turned.iter().sum::<f64>() / turned.len() as f64;
+    walk.shoulder_rad = 0.5 * (shoulders[1] - shoulders[0]);
+    Ok(walk)
+}
+
+fn draw(setup: &Setup, walks: &[Walk]) -> Figure {
+    let end = TIMES.0 + TIMES.1;
+    let about = format!("{}, scene {}, model type {}", setup.robot.name, setup.scene.name, setup.scene.depth);
+    let mut chart =
+        Chart::new("vertical moment of the stance foot", "time [s]", "moment [N m]").height(360.0);
+    chart.dashed("", vec![[end - TIMES.2, 0.0], [end, 0.0]], GREY);
+    for (w, color) in
+        walks.iter().filter(|w| !w.fell && (w.swing == 0.0 || w.swing == DRAWN)).zip([VERMILION, BLACK])
+    {
+        let name = if w.swing == 0.0 { "arms still".into() } else { format!("arm swing {}", w.swing) };
+        let points = w.trace.iter().copied().filter(|row| row[0] > end - TIMES.2).collect();
+        let draw = if w.swing == 0.0 { Chart::dashed } else { Chart::line };
+        draw(&mut chart, &name, points, color);
+    }
+    Figure::new("Arm swing (thesis 4.9)", &about).with(chart)
+}
+
+/// The report as lines for people.
+pub fn table(report: &Report) -> String {
+    let mut text = String::from(
+        "                 arm     vertical moment [N m]   sole turned   inclination error [mrad]   shoulder\n\
+         scene          swing       rms         max       [mrad/step]      phi_x       phi_y     amplitude [rad]",
+    );
+    for w in &report.walks {
+        text += &format!("\n{:14}{:6.1}", w.scene, w.swing);
+        if w.fell {
+            text += "   fell";
+            continue;
+        }
+        let ([rms, max], [x, y]) = (w.moment_nm, w.inclination_mrad);
+        text += &format!("{rms:11.2}{max:12.2}{:16.1}{x:13.1}{y:12.1}{:14.2}", w.turned_mrad, w.shoulder_rad);
+    }
+    for picture in &report.pictures {
+        text += &format!("\n{}", picture.display());
+    }
+    text
+}

@@ -1,0 +1,303 @@
+//! Control of one joint with an elastic gear: which gains are stable (J1-J3).
+//!
+//! Predicted by the conditions of Hurwitz, poles and spectral radii of [`ElasticJoint`]; measured with the drives, gears,
+//! friction and controllers that move the robot, on a robot of one joint in free fall: does a swing of it calm down?
+//!
+//! | symbol | name | unit |
+//! |---|---|---|
+//! | K, J_J, J_M | stiffness of the gear, inertia of link and rotor on the link's side | N m/rad, kg m^2 |
+//! | K_p, K_d, d | gains, viscous friction of the rotor, on the link's side | N m/rad, N m s/rad |
+//! | T, V | cycle of a sampled law, amplitude of the rotor's speed | s, rad/s |
+
+use std::f64::consts::PI;
+
+use ::drives::elastic_joint::{ElasticJoint, Gains};
+use ::drives::{
+    Cascade, Elasticity, Feedback, Friction, HarmonicFriction, JointControl, Law, Motor, Sampled, Sampling,
+    ScrewFriction, Transmission,
+};
+use config::Robot;
+use config::robot::Drive as Description;
+use config::scene::Integrator;
+use environment::Environment;
+use sim_backend::drive::Drive;
+use sim_backend::integrate::Stepper;
+use sim_backend::plant::{Outside, Plant};
+
+use super::{Bench, Finding, Findings, Result, Rule};
+
+/// A leg joint standing, and the same in the air (errata 2.14): HFUC-25-100 with a large motor.
+pub(super) const STANCE: ElasticJoint =
+    ElasticJoint { stiffness: 3.1e4, link: 10.0, rotor: 1.2, friction: 0.0 };
+pub(super) const AIR: ElasticJoint = ElasticJoint { link: 0.5, ..STANCE };
+/// Speeds and angles as they are, torques at once; with a cycle of delay; with speeds by differences.
+pub(super) const EXACT: Sampled = Sampled { delay: false, difference: false };
+pub(super) const DELAYED: Sampled = Sampled { delay: true, difference: false };
+const DIFFERENCE: Sampled = Sampled { delay: false, difference: true };
+
+/// Ratio of the gear, as that of all harmonic drives negative.
+const RATIO: f64 = -100.0;
+/// \[N m/A\]
+const CONSTANT: f64 = 0.1;
+/// \[s\] Longest steps of the simulation, with sampled laws and continuous ones; a step h damps a swing w by w^2 h/2.
+const STEPS: [f64; 2] = [1e-5, 5e-6];
+/// \[rad/s\] Speed with which the rotor begins where the loop is linear.
+const KICK: f64 = 1e-3;
+
+/// One loop on the bench.
+#[derive(Clone, Copy)]
+struct Loop {
+    joint: ElasticJoint,
+    feedback: Feedback,
+    gains: Gains,
+    /// T \[s\], and how it is sampled.
+    sampled: Option<(f64, Sampled)>,
+    friction: Friction,
+    /// \[s\] How long it is watched.
+    seconds: f64,
+}
+
+impl Loop {
+    fn new(joint: ElasticJoint, feedback: Feedback, [kp, kd]: [f64; 2]) -> Self {
+        let gains = Gains { position: kp * joint.stiffness, speed: kd };
+        let n = RATIO * RATIO;
+        let viscous =
+            HarmonicFriction { starting: 0.0, load: 0.0, viscous: joint.friction / n, coupled: 0.0 };
+        let friction = if joint.friction > 0.0 { Friction::Harmonic(viscous) } else { Friction::Free };
+        Self { joint, feedback, gains, sampled: None, friction, seconds: 1.0 }
+    }
+
+    fn every(self, period: f64, sampled: Sampled) -> Self {
+        Self { sampled: Some((period, sampled)), ..self }
+    }
+
+    fn with(self, friction: Friction) -> Self {
+        Self { friction, ..self }
+    }
+
+    /// Whether the linear loop is stable by theory.
+    fn predicted(&self) -> bool {
+        let Self { joint, feedback, gains, .. } = *self;
+        match self.sampled {
+            None => joint.is_stable(feedback, gains),
+            Some((period, sampled)) => joint.held(period).is_stable(feedback, gains, sampled),
+        }
+    }
+
+    /// \[1/s\] How fast the swing of the simulated rotor grows, that begins with these speeds \[rad/s\] of link and rotor;
+    /// from the second quarter of the time to the last.
+    fn measured(&self, lola: &Robot, [link, rotor]: [f64; 2]) -> Result<f64> {
+        let mut plant = Plant::new(&self.robot(lola), Environment::flat(), 3, &[0.0])?;
+        if let Some(train) = plant.train_mut() {
+            train.set_speed_gains([self.gains.speed / (RATIO * RATIO * CONSTANT)]);
+        }
+        let (l, mut x) = (*plant.layout(), plant.standing(&[0.0]));
+        x[2] += 1e3;
+        x[l.layer()].fill(0.0);
+        (x[l.speed()][6], x[l.rotor_speed()][0]) = (link, rotor);
+        let (drives, outside) = ([Drive::resting(0.0)], Outside { push: [0.0; 3], powered: true });
+        let cycle = self.sampled.map_or(1e-3, |(period, _)| period);
+        let longest = STEPS[usize::from(self.sampled.is_none())];
+        let (cycles, steps) = ((self.seconds / cycle) as usize, (cycle / longest).ceil() as usize);
+        let mut stepper = Stepper::new(Integrator::SemiImplicit, x.len());
+        let mut most = [0.0_f64; 4];
+        for i in 0..cycles {
+            plant.sample(cycle, &x, &drives, &outside);
+            for k in 0..steps {
+                let h = cycle / steps as f64;
+                stepper.step(&mut plant, k as f64 * h, h, &mut x, &drives, &outside);
+                let speed = x[l.rotor_speed()][0].abs();
+                most[4 * i / cycles] = most[4 * i / cycles].max(speed);
+            }
+            if !(x[l.rotor_speed()][0].abs() < 1e6) {
+                return Ok(f64::INFINITY);
+            }
+        }
+        Ok((most[3] / most[1]).ln() / (0.5 * self.seconds))
+    }
+
+    fn is_calm(&self, bench: &Bench) -> Result<bool> {
+        Ok(self.measured(&bench.setup.robot, [0.0, KICK])? < 0.0)
+    }
+
+    /// A robot of one joint on a base too heavy to feel it, with motors that do what they are told.
+    fn robot(&self, lola: &Robot) -> Robot {
+        let inertia = self.joint.link;
+        let mut robot = lola.clone();
+        robot.urdf = format!(
+            r#"<robot name="bench"><link name="base"><inertial><mass value="1e6"/>
+            <inertia ixx="1e7" ixy="0" ixz="0" iyy="1e7" iyz="0" izz="1e7"/></inertial></link>
+            <joint name="joint" type="continuous"><parent link="base"/><child link="link"/><axis xyz="0 0 1"/></joint>
+            <link name="link"><inertial><mass value="1"/>
+            <inertia ixx="{inertia}" ixy="0" ixz="0" iyy="{inertia}" iyz="0" izz="{inertia}"/></inertial></link></robot>"#
+        );
+        robot.torso = "base".into();
+        robot.joints.truncate(1);
+        robot.joints[0].name = "joint".into();
+        for foot in &mut robot.feet {
+            (foot.link, foot.sensor_link, foot.toe) = ("base".into(), "base".into(), None);
+            foot.points.iter_mut().for_each(|point| point.0 = "base".into());
+        }
+        robot.drives = vec![self.drive()];
+        robot
+    }
+
+    fn drive(&self) -> Description {
+        let cascade = Cascade {
+            feedback: self.feedback,
+            position_gain: self.gains.position / self.gains.speed,
+            speed_bandwidth: 1.0, // the bench sets the gain itself
+            current_bandwidth: 1e8,
+        };
+        Description {
+            name: "bench".into(),
+            transmission: Transmission::Harmonic { ratio: RATIO },
+            joints: vec![0],
+            stator: "base".into(),
+            axis: [0.0, 0.0, 1.0],
+            rotor_inertia: self.joint.rotor / (RATIO * RATIO),
+            motor: Motor { inductance: 1e-3, resistance: 1e-3, torque_constant: CONSTANT },
+            voltage_limit: 1e15,
+            current_limit: 1e9,
+            friction: self.friction,
+            elasticity: Some(Elasticity::linear(self.joint.stiffness)),
+            control: JointControl {
+                law: Law::Cascade(cascade),
+                sampling: self.sampled.map_or(Sampling::Continuous, |(_, sampled)| Sampling::Cycle(sampled)),
+            },
+        }
+    }
+}
+
+/// Where `stable` ends between `low` and `high`, to `share` of it.
+fn limit(low: f64, high: f64, share: f64, mut stable: impl FnMut(f64) -> Result<bool>) -> Result<f64> {
+    let (mut low, mut high) = (low, high);
+    while high - low > share * high {
+        let middle = 0.5 * (low + high);
+        *(if stable(middle)? { &mut low } else { &mut high }) = middle;
+    }
+    Ok(0.5 * (low + high))
+}
+
+/// Predicted and measured limit of a family of loops, in units of `unit`; looked for from 0.7 to 1.4 times `about`.
+fn limits(bench: &Bench, about: f64, unit: f64, family: impl Fn(f64) -> Loop) -> Result<[f64; 2]> {
+    let (low, high) = (0.7 * about, 1.4 * about);
+    let predicted = limit(low, high, 1e-5, |x| Ok(family(x).predicted()))?;
+    let measured = limit(low, high, 3e-3, |x| family(x).is_calm(bench))?;
+    Ok([predicted / unit, measured / unit])
+}
+
+/// J1: continuous loops. (5.44) grows with any gains, (5.46) with none, (5.50) from K_p = K on.
+pub(super) fn continuous(bench: &Bench) -> Findings {
+    let mut findings = Vec::new();
+    for (name, joint) in [("J_J = 10", STANCE), ("J_J = 0.5", AIR)] {
+        let link = Loop { seconds: 0.5, ..Loop::new(joint, Feedback::Link, [0.1, 100.0]) };
+        let numbers =
+            [joint.growth(link.feedback, link.gains), link.measured(&bench.setup.robot, [0.0, KICK])?];
+        let regime = format!("link-side PD (5.43), {name}, no friction: rate of growth");
+        findings.push(Finding::new("J1", &regime, "1/s", numbers, Rule::Within(0.05)));
+    }
+    let motor = Loop::new(STANCE, Feedback::Motor, [20.0, 1000.0]);
+    let regime = "motor-side PD (5.45), K_p = 20 K: rate of growth";
+    let growth = motor.measured(&bench.setup.robot, [0.0, KICK])?;
+    findings.push(Finding::new("J1", regime, "1/s", [0.0, growth], Rule::AtMost));
+    for (name, joint, kd) in [("J_J = 10", STANCE, 500.0), ("J_J = 0.5", AIR, 100.0)] {
+        let k = joint.stiffness;
+        let mixed = |kp: f64| Loop::new(joint, Feedback::LinkMotor, [kp / k, kd]);
+        let regime = format!("link angle, motor speed (5.49), {name}: largest K_p/K");
+        findings.push(Finding::new("J1", &regime, "", limits(bench, k, k, mixed)?, Rule::Within(0.01)));
+    }
+    Ok(findings)
+}
+
+/// J2: sampled loops, against spectral radii.
+pub(super) fn sampled(bench: &Bench) -> Findings {
+    let mut findings = Vec::new();
+    let largest_kd = [
+        ("motor-side, 1 ms", Feedback::Motor, 1e-3, EXACT, 2380.0),
+        ("motor-side, 1 ms, differences", Feedback::Motor, 1e-3, DIFFERENCE, 2343.0),
+        ("motor-side, 1 ms + 1 cycle", Feedback::Motor, 1e-3, DELAYED, 1172.0),
+        ("motor-side, 3.5 ms", Feedback::Motor, 3.5e-3, EXACT, 665.0),
+        ("link and motor, 3.5 ms + 1 cycle", Feedback::LinkMotor, 3.5e-3, DELAYED, 247.0),
+    ];
+    for (name, feedback, period, sampled, about) in largest_kd {
+        let family = |kd| Loop::new(STANCE, feedback, [0.1, kd]).every(period, sampled);
+        let regime = format!("{name}, J_J = 10, K_p = 0.1 K: largest K_d");
+        let numbers = limits(bench, about, 1.0, family)?;
+        findings.push(Finding::new("J2", &regime, "N m s/rad", numbers, Rule::Within(0.02)));
+    }
+    let largest_kp = [
+        ("motor-side, 3.5 ms + 1 cycle", STANCE, Feedback::Motor, DELAYED, 144.0, 0.370),
+        ("motor-side, 3.5 ms, differences", STANCE, Feedback::Motor, DIFFERENCE, 247.0, 1.656),
+        ("link and motor, 3.5 ms", STANCE, Feedback::LinkMotor, EXACT, 300.0, 0.9),
+        ("link and motor, 3.5 ms + 1 cycle", STANCE, Feedback::LinkMotor, DELAYED, 200.0, 0.6),
+        ("link and motor, 3.5 ms + 1 cycle", AIR, Feedback::LinkMotor, DELAYED, 221.0, 0.666),
+    ];
+    for (name, joint, feedback, sampled, kd, about) in largest_kp {
+        let k = joint.stiffness;
+        let family = |kp: f64| Loop::new(joint, feedback, [kp / k, kd]).every(3.5e-3, sampled);
+        let regime = format!("{name}, J_J = {}, K_d = {kd}: largest K_p/K", joint.link);
+        let numbers = limits(bench, about * k, k, family)?;
+        findings.push(Finding::new("J2", &regime, "", numbers, Rule::Within(0.02)));
+    }
+    // Where the motor-side loop has no stable gains at all (errata 2.14), the mixed one has.
+    let growth = |feedback: Feedback| {
+        let tried = Loop::new(AIR, feedback, [0.1, 120.0]).every(3.5e-3, DELAYED);
+        let radius = AIR.held(3.5e-3).spectral_radius(feedback, tried.gains, DELAYED);
+        let measured = Loop { seconds: 0.5, ..tried }.measured(&bench.setup.robot, [0.0, KICK]);
+        measured.map(|measured| [radius.ln() / 3.5e-3, measured])
+    };
+    let regime = "motor-side, 3.5 ms + 1 cycle, J_J = 0.5, K_d = 120: rate of growth";
+    let [predicted, measured] = growth(Feedback::Motor)?;
+    let told = "grows, as predicted";
+    findings
+        .push(Finding::new("J2", regime, "1/s", [0.0, measured], Rule::AtLeast).says(told, predicted > 0.0));
+    let regime = "link and motor, 3.5 ms + 1 cycle, J_J = 0.5, K_d = 120: rate of growth";
+    let [predicted, measured] = growth(Feedback::LinkMotor)?;
+    let calm = "decays, as predicted";
+    findings
+        .push(Finding::new("J2", regime, "1/s", [0.0, measured], Rule::AtMost).says(calm, predicted < 0.0));
+    Ok(findings)
+}
+
+/// \[N m s/rad\] Viscous friction of the rotor from which on the loop is stable.
+fn enough_friction(loop_: &Loop) -> Result<f64> {
+    let stable = |d: f64| ElasticJoint { friction: d, ..loop_.joint }.is_stable(loop_.feedback, loop_.gains);
+    limit(0.0, 1e4, 1e-6, |d| Ok(!stable(d)))
+}
+
+/// J3: friction of the rotor makes link-side PD stable: viscous friction up to gains, dry friction up to swings. A swing
+/// of V feels dry friction T_0 like viscous friction 4 T_0/(pi V).
+pub(super) fn friction(bench: &Bench) -> Findings {
+    let mut findings = Vec::new();
+    for (joint, u) in [(STANCE, 2.0), (AIR, 0.2)] {
+        let (k, d) = (joint.stiffness, 200.0);
+        let joint = ElasticJoint { friction: d, ..joint };
+        let about = (1.0 + u) * (joint.link - joint.rotor * u) / joint.link * k;
+        let family = |kp: f64| Loop::new(joint, Feedback::Link, [kp / k, u * d]);
+        let regime = format!("link-side, J_J = {}, d = 200, K_d = {}: largest K_p/K", joint.link, u * d);
+        let numbers = limits(bench, about, k, family)?;
+        findings.push(Finding::new("J3", &regime, "", numbers, Rule::Within(0.02)));
+    }
+    for joint in [STANCE, AIR] {
+        let dry = HarmonicFriction { starting: 6.20e-2, load: 0.0, viscous: 0.0, coupled: 0.0 };
+        let held = Loop::new(joint, Feedback::Link, [0.1, 100.0]).with(Friction::Harmonic(dry));
+        let enough = enough_friction(&held)?;
+        let about = 4.0 * dry.starting * RATIO.abs() / (PI * enough);
+        // The swing at the limit: link and rotor against each other, v_J/v_M = -d/K_d.
+        let calm = |v: f64| {
+            let grows = held.measured(&bench.setup.robot, [-v * enough / held.gains.speed, v])?;
+            Ok(!(grows > 0.0))
+        };
+        let regime =
+            format!("link-side, dry friction of HFUC-25-100, J_J = {}: largest calm swing", joint.link);
+        let numbers = [about, limit(0.3 * about, 3.0 * about, 5e-3, calm)?];
+        findings.push(Finding::new("J3", &regime, "rad/s", numbers, Rule::Within(0.15)));
+    }
+    let screw = Friction::Screw(ScrewFriction { direct: 0.860, indirect: 0.858 });
+    let knee = Loop::new(STANCE, Feedback::Link, [0.1, 100.0]).with(screw);
+    let growth = knee.measured(&bench.setup.robot, [0.0, KICK])?;
+    let regime = "link-side, friction of a roller screw, J_J = 10: rate of growth";
+    findings.push(Finding::new("J3", regime, "1/s", [0.0, growth], Rule::AtLeast));
+    Ok(findings)
+}

@@ -1,0 +1,229 @@
+//! `gangwerk scorecard`: everything the robots are to be able to do, walked, measured and held against what is demanded
+//! and what others have reached.
+//!
+//! What is walked stands in `entries.rs`. Walks do not depend on each other, and each is deterministic: they share the
+//! cores, and the table is the same on one core. A fall is a row like any other.
+
+mod demand;
+mod entries;
+mod fastest;
+mod pushes;
+mod walk;
+
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use config::Setup;
+use serde::Serialize;
+
+use entries::{ENTRIES, PICTURED, PUSHES};
+
+/// Errors are sentences: they come from other threads, which boxed ones cannot.
+pub type Result<T> = std::result::Result<T, String>;
+/// Told how many tasks are done, of how many, and which one was done last.
+pub type Progress<'a> = &'a (dyn Fn(usize, usize, &str) + Sync);
+
+/// What is to be walked.
+#[derive(Clone, Copy, Debug)]
+pub struct Order<'a> {
+    /// Configuration directory.
+    pub config: &'a Path,
+    /// Only entries whose name contains this.
+    pub only: Option<&'a str>,
+    /// Only the fastest bus cycle, and pushes at two instants.
+    pub quick: bool,
+    /// Seed of every scene.
+    pub seed: u64,
+}
+
+/// What was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Seed of every scene.
+    pub seed: u64,
+    /// Goals met.
+    pub met: usize,
+    /// Goals.
+    pub goals: usize,
+    /// \[s\] Processor time of everything.
+    pub cpu_s: f64,
+    /// One row per demand.
+    pub rows: Vec<Row>,
+}
+
+/// Whether a goal was met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Goal {
+    /// It was.
+    Met,
+    /// It was not.
+    Missed,
+    /// There is none: a figure to be compared.
+    Measured,
+}
+
+/// One demand.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// What is walked.
+    pub entry: String,
+    /// With which scene.
+    pub scene: String,
+    /// Which figure is looked at.
+    pub what: String,
+    /// What it is to be.
+    pub demanded: String,
+    /// What it is; none if the walk did not get to its end.
+    pub ours: Option<f64>,
+    /// Its unit.
+    pub unit: String,
+    /// Whether that is enough.
+    pub goal: Goal,
+    /// What else is to be said, such as how the walk ended.
+    pub note: String,
+    /// Type of the model, integrator, steps per bus cycle.
+    pub depth: String,
+    /// \[s\] Bus cycle.
+    pub cycle_s: f64,
+    /// \[s\] Processor time of all that the entry simulated.
+    pub cpu_s: f64,
+    /// The thesis's figure or the best published one.
+    pub published: String,
+}
+
+/// One piece of work: its name, and what finds its rows.
+struct Task<'a> {
+    name: String,
+    work: Box<dyn Fn() -> Result<Vec<Row>> + Send + Sync + 'a>,
+}
+
+/// Walks everything.
+///
+/// # Errors
+/// A configuration is wrong, or no entry has this name.
+pub fn run(order: &Order<'_>, progress: Progress<'_>) -> Result<Report> {
+    let mut tasks = tasks(order);
+    if let Some(only) = order.only {
+        let known: Vec<String> = tasks.iter().map(|task| task.name.clone()).collect();
+        tasks.retain(|task| task.name.contains(only));
+        if tasks.is_empty() {
+            return Err(format!("no entry contains `{only}`; there are: {}", known.join("; ")));
+        }
+    }
+    let rows = perform(&tasks, progress)?;
+    let goals = rows.iter().filter(|row| row.goal != Goal::Measured).count();
+    let met = rows.iter().filter(|row| row.goal == Goal::Met).count();
+    // Rows of one walk share its processor time.
+    let alone = |a: &Row, b: &Row| a.entry == b.entry && a.cycle_s == b.cycle_s && a.cpu_s == b.cpu_s;
+    let cpu_s = rows.chunk_by(alone).map(|walk| walk[0].cpu_s).sum();
+    Ok(Report { seed: order.seed, met, goals, cpu_s, rows })
+}
+
+/// Scenes of which the thesis shows pictures, set up as in the table, with the shortest bus cycle.
+///
+/// # Errors
+/// A configuration is wrong.
+pub fn pictured(order: &Order<'_>) -> Result<Vec<Setup>> {
+    let chosen = ENTRIES.iter().filter(|entry| PICTURED.contains(&entry.name));
+    let asked = chosen.filter(|entry| order.only.is_none_or(|only| entry.name.contains(only)));
+    asked.map(|entry| walk::set_up(order, entry.scene, entry.depth, entry.cycles[0])).collect()
+}
+
+fn tasks<'a>(order: &'a Order<'a>) -> Vec<Task<'a>> {
+    let mut tasks = Vec::new();
+    let mut add = |name: String, work: Box<dyn Fn() -> Result<Vec<Row>> + Send + Sync + 'a>| {
+        tasks.push(Task { name, work });
+    };
+    for entry in ENTRIES {
+        for &cycle in &entry.cycles[..if order.quick { 1 } else { entry.cycles.len() }] {
+            let name = format!("{}, {} ms", entry.name, 1e3 * cycle);
+            add(name, Box::new(move || walk::rows(order, entry, cycle)));
+        }
+    }
+    add("as fast as it goes".into(), Box::new(move || fastest::rows(order, 0.001)));
+    for (k, (direction, ..)) in PUSHES.iter().enumerate() {
+        add(format!("push {direction}"), Box::new(move || pushes::rows(order, k, 0.001)));
+    }
+    tasks
+}
+
+/// All tasks on all cores; rows in their order. The last ones, which take longest, are begun first, so that no core
+/// waits for them at the end.
+fn perform(tasks: &[Task<'_>], progress: Progress<'_>) -> Result<Vec<Row>> {
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let workers = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut found: Vec<(usize, Result<Vec<Row>>)> = std::thread::scope(|scope| {
+        let work = || {
+            let mut mine = Vec::new();
+            while let Some(k) = tasks.len().checked_sub(next.fetch_add(1, Ordering::Relaxed) + 1) {
+                mine.push((k, (tasks[k].work)()));
+                progress(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len(), &tasks[k].name);
+            }
+            mine
+        };
+        let threads: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+        threads
+            .into_iter()
+            .map(|t| t.join().map_err(|_| "a walk panicked".to_owned()))
+            .collect::<Result<Vec<_>>>()
+    })?
+    .into_iter()
+    .flatten()
+    .collect();
+    found.sort_by_key(|(k, _)| *k);
+    let mut rows = Vec::new();
+    for (_, of_task) in found {
+        rows.extend(of_task?);
+    }
+    Ok(rows)
+}
+
+/// As [`crate::figures::Figures`] says it.
+fn depth_of(scene: &config::Scene) -> String {
+    format!("type {}, {:?} x {}", scene.depth, scene.integrator, scene.substeps)
+}
+
+/// The report as lines for people.
+pub fn table(report: &Report) -> String {
+    let mut text = String::new();
+    let walk = |a: &Row, b: &Row| a.entry == b.entry && a.cycle_s == b.cycle_s && a.depth == b.depth;
+    for rows in report.rows.chunk_by(walk) {
+        let head = &rows[0];
+        text += &format!(
+            "{} ({}): {}, cycle {} ms, {:.1} s CPU\n",
+            head.entry,
+            head.scene,
+            head.depth,
+            1e3 * head.cycle_s,
+            head.cpu_s
+        );
+        for row in rows {
+            let ours = row.ours.map_or("-".into(), |x| format!("{} {}", figure(x), row.unit));
+            let goal = match row.goal {
+                Goal::Met => "met",
+                Goal::Missed => "MISSED",
+                Goal::Measured => "",
+            };
+            text += &format!("  {:33}{:26}{:26}{:8}{}\n", row.what, row.demanded, ours, goal, row.published);
+        }
+        let mut notes: Vec<&String> =
+            rows.iter().map(|row| &row.note).filter(|note| !note.is_empty()).collect();
+        notes.dedup();
+        for note in notes {
+            text += &format!("    {note}\n");
+        }
+    }
+    text + &format!(
+        "{} of {} goals met, seed {}, {:.0} s CPU",
+        report.met, report.goals, report.seed, report.cpu_s
+    )
+}
+
+/// Three digits, no needless ones.
+fn figure(x: f64) -> String {
+    if x != 0.0 && x.abs() < 0.1 { format!("{x:.4}") } else { format!("{x:.3}") }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,316 @@
+//! `gangwerk study viability`: which disturbances and errors does a gait survive?
+//!
+//! The thesis's way to a margin of stability (3.4): put errors and disturbances into the simulation, and see whether the
+//! robot falls. Each is tried alone, larger and larger by bisection, everything else as in the scene.
+//!
+//! - *Pushes* of 0.1 s at the torso, in eight directions, at instants spread over a stride; survived: 4 s later the robot
+//!   still walks.
+//! - *Errors* are there from the beginning; survived: the robot gets to the end of the scene, and nothing stops it.
+//!
+//! Bisection takes for granted that what survives much survives less. Three lesser values are tried afterwards, and
+//! one that is not survived is told (`holes`).
+
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use config::Setup;
+use config::sensors::PerJoint;
+use config::terrain::{Shape, TerrainObject, TerrainPose};
+use serde::Serialize;
+
+use super::picture;
+use crate::chain::Chain;
+use crate::parallel;
+use crate::push;
+
+/// Scene unless another one is asked for.
+const SCENE: &str = "walk_1kmh";
+/// Directions of pushes, counter-clockwise from forward.
+pub(super) const DIRECTIONS: usize = 8;
+/// Shares of a survived value at which it is looked whether less is survived, too.
+const LESS: [f64; 3] = [0.25, 0.5, 0.75];
+/// \[m\] Where the board lies, how long and wide it is; as in the scene `board`.
+const BOARD: (f64, [f64; 2]) = (1.2, [0.4, 1.2]);
+/// Joints whose calibration is wrong, of one leg, so far as a robot has them.
+const JOINTS: [&str; 4] =
+    ["right_hip_adduction", "right_knee_flexion", "right_ankle_flexion", "right_ankle_adduction"];
+
+/// What was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Name of the scene.
+    pub scene: String,
+    /// Pushes.
+    pub pushes: Pushes,
+    /// Errors.
+    pub errors: Vec<Survived>,
+    /// Pictures.
+    pub pictures: Vec<String>,
+}
+
+/// Largest impulses survived.
+#[derive(Clone, Debug, Serialize)]
+pub struct Pushes {
+    /// \[N s\] By instant of the stride, then by direction: counter-clockwise from forward, steps of 45 degrees.
+    pub impulse_n_s: Vec<Vec<f64>>,
+    /// \[N s\] By direction: survived whenever it comes.
+    pub always_n_s: Vec<f64>,
+}
+
+/// What of one error is survived.
+#[derive(Clone, Debug, Serialize)]
+pub struct Survived {
+    /// What is wrong.
+    pub name: String,
+    /// Unit of the numbers.
+    pub unit: &'static str,
+    /// From, to; zero is no error (of a factor: one).
+    pub interval: [f64; 2],
+    /// What was tried at most.
+    pub tried: [f64; 2],
+    /// Whether even that is survived.
+    pub beyond: [bool; 2],
+    /// Lesser values inside of the interval that are not survived.
+    pub holes: Vec<f64>,
+}
+
+/// Puts an error of a size into a scene.
+type Apply = dyn Fn(&mut Setup, f64) + Sync;
+
+/// An error that a scene can have.
+struct Kind {
+    name: String,
+    unit: &'static str,
+    /// Tried at most, in the unit; zero on a side that does not exist.
+    tried: [f64; 2],
+    /// Bisection ends with brackets this narrow, in the unit.
+    resolution: f64,
+    /// The number is a power of two.
+    factor: bool,
+    apply: Box<Apply>,
+}
+
+impl Kind {
+    fn new(
+        name: impl Into<String>,
+        unit: &'static str,
+        tried: [f64; 2],
+        resolution: f64,
+        apply: impl Fn(&mut Setup, f64) + Sync + 'static,
+    ) -> Self {
+        Self { name: name.into(), unit, tried, resolution, factor: false, apply: Box::new(apply) }
+    }
+}
+
+/// Looks for the borders of what is survived, and draws them into `out`. `instants` of a stride; `coarse` has brackets
+/// four times as wide.
+///
+/// # Errors
+/// The scene is wrong, or its robot falls without a disturbance.
+pub fn run(
+    config: &Path,
+    scene: Option<&str>,
+    (instants, coarse): (usize, bool),
+    out: &Path,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Report, Box<dyn std::error::Error>> {
+    let mut setup = Setup::load(config, scene.unwrap_or(SCENE))?;
+    setup.scene.pushes.clear();
+    let way = walk(&setup).ok_or_else(|| format!("scene {}: the robot falls by itself", setup.scene.name))?;
+    let kinds = kinds(&setup, way);
+    let starts = push::at_instants(&setup, instants)?;
+    let (sides, cases) = (2 * kinds.len(), starts.len() * DIRECTIONS);
+    let done = AtomicUsize::new(0);
+    let tick = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, sides + cases);
+    let fine = if coarse { 4.0 } else { 1.0 };
+
+    let found = parallel::map(sides, |k| {
+        let found = side(&setup, &kinds[k / 2], k % 2, fine);
+        tick();
+        found
+    });
+    let errors = kinds.iter().zip(found.chunks(2)).map(|(kind, pair)| survived(kind, pair)).collect();
+    let impulses = parallel::map(cases, |k| {
+        let turn = std::f64::consts::TAU * (k % DIRECTIONS) as f64 / DIRECTIONS as f64;
+        let found = push::largest(&starts[k / DIRECTIONS], [turn.cos(), turn.sin()], fine);
+        tick();
+        found
+    });
+    let impulse_n_s: Vec<Vec<f64>> = impulses.chunks(DIRECTIONS).map(<[f64]>::to_vec).collect();
+    let least = |d: usize| impulse_n_s.iter().map(|at| at[d]).fold(f64::INFINITY, f64::min);
+    let pushes = Pushes { always_n_s: (0..DIRECTIONS).map(least).collect(), impulse_n_s };
+    let mut report = Report { scene: setup.scene.name.clone(), pushes, errors, pictures: Vec::new() };
+    std::fs::create_dir_all(out)
+        .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
+    report.pictures = vec![picture::of_viability(&report, out)?];
+    Ok(report)
+}
+
+/// All errors that make sense for a scene in which the robot gets `way` \[m\] far.
+fn kinds(setup: &Setup, way: f64) -> Vec<Kind> {
+    let mut all = Vec::new();
+    for (axis, name) in ["roll", "pitch"].into_iter().enumerate() {
+        all.push(Kind::new(format!("IMU bias, {name}"), "deg", [-20.0, 20.0], 0.1, move |s, x| {
+            s.scene.sensors.imu.bias[axis] = x.to_radians();
+        }));
+    }
+    for joint in JOINTS.into_iter().filter(|joint| setup.robot.joint(joint).is_some()) {
+        let name = format!("calibration of {}", joint.replace('_', " "));
+        all.push(Kind::new(name, "deg", [-20.0, 20.0], 0.1, move |s, x| {
+            let own = vec![(joint.to_string(), x.to_radians())];
+            s.scene.unknown.joint_offset = PerJoint { all: None, own };
+        }));
+    }
+    for (axis, name) in ["roll", "pitch"].into_iter().enumerate() {
+        all.push(Kind::new(format!("tilt of the ground, {name}"), "deg", [-15.0, 15.0], 0.1, move |s, x| {
+            s.scene.unknown.ground_tilt[axis] = x.to_radians();
+        }));
+    }
+    let stiffness = Kind::new("stiffness of the soles, factor", "1", [-8.0, 6.0], 0.1, |s, x| {
+        s.scene.unknown.contact_stiffness = x.exp2();
+    });
+    all.push(Kind { factor: true, ..stiffness });
+    all.push(Kind::new("delay of all sensors", "ms", [0.0, 100.0], 1.0, |s, x| {
+        let (delay, sensors) = (x.round() * 1e-3, &mut s.scene.sensors);
+        (sensors.encoder.delay, sensors.motor_encoder.delay) = (delay, delay);
+        (sensors.force_torque.delay, sensors.imu.delay) = (delay, delay);
+    }));
+    if way > BOARD.0 + 0.5 * BOARD.1[0] {
+        all.push(Kind::new("height of a board in the way", "mm", [0.0, 100.0], 0.5, |s, x| {
+            s.scene.objects.push(board(x * 1e-3));
+        }));
+    }
+    all
+}
+
+fn board(height: f64) -> TerrainObject {
+    let (x, [length, width]) = BOARD;
+    TerrainObject {
+        name: "board".into(),
+        shape: Shape::Box([length, width, height]),
+        pose: TerrainPose { position: [x, 0.0, 0.5 * height], rotation: [0.0; 3] },
+        friction: None,
+        appears: 0.0,
+        vanishes: f64::INFINITY,
+        known: false,
+        poses: Vec::new(),
+    }
+}
+
+/// The border on one side: value, whether it is beyond what was tried, lesser values that are not survived.
+fn side(setup: &Setup, kind: &Kind, side: usize, fine: f64) -> (f64, bool, Vec<f64>) {
+    let most = kind.tried[side];
+    if most == 0.0 {
+        return (0.0, false, Vec::new());
+    }
+    let sign = most.signum();
+    let survives = |x: f64| {
+        let mut setup = setup.clone();
+        (kind.apply)(&mut setup, sign * x);
+        walk(&setup).is_some()
+    };
+    if survives(most.abs()) {
+        return (most, true, holes(most, sign, survives));
+    }
+    let found = sign * push::bisect(most.abs(), kind.resolution * fine, survives);
+    (found, false, holes(found, sign, survives))
+}
+
+fn holes(found: f64, sign: f64, survives: impl Fn(f64) -> bool) -> Vec<f64> {
+    LESS.into_iter().map(|s| s * found).filter(|x| *x != 0.0 && !survives(sign * x)).collect()
+}
+
+fn survived(kind: &Kind, found: &[(f64, bool, Vec<f64>)]) -> Survived {
+    let shown = |x: f64| if kind.factor { x.exp2() } else { x };
+    Survived {
+        name: kind.name.clone(),
+        unit: kind.unit,
+        interval: [shown(found[0].0), shown(found[1].0)],
+        tried: kind.tried.map(shown),
+        beyond: [found[0].1, found[1].1],
+        holes: found.iter().flat_map(|f| f.2.iter().map(|x| shown(*x))).collect(),
+    }
+}
+
+/// \[m\] How far along x the robot gets in a scene; none if it does not survive it.
+fn walk(setup: &Setup) -> Option<f64> {
+    let mut chain = Chain::new(setup).ok()?;
+    let start = chain.robot().state().position[0];
+    let cycles = (setup.scene.duration / setup.scene.cycle) as u64;
+    (0..cycles).all(|_| !push::ended(chain.step())).then(|| chain.robot().state().position[0] - start)
+}
+
+/// The report as lines for people.
+pub fn table(r: &Report) -> String {
+    let mut text = format!(
+        "{}: what is survived, each alone\n{:44}{:>5}{:>12}{:>12}",
+        r.scene, "error", "unit", "from", "to"
+    );
+    for e in &r.errors {
+        let number = |k: usize| {
+            let (x, mark) = (e.interval[k], if e.beyond[k] { "≥ " } else { "" });
+            if e.tried[k] == 0.0 { "-".to_string() } else { format!("{mark}{x:.2}") }
+        };
+        text += &format!("\n{:44}{:>5}{:>12}{:>12}", e.name, e.unit, number(0), number(1));
+        if !e.holes.is_empty() {
+            let each: Vec<String> = e.holes.iter().map(|x| format!("{x:.2}")).collect();
+            text += &format!("   but not {}", each.join(", "));
+        }
+    }
+    text += "\n\npush of 0.1 s at the torso [N s], counter-clockwise from forward\n";
+    text += &format!("{:12}", "direction");
+    (0..DIRECTIONS).for_each(|d| text += &format!("{:>7}°", d * 360 / DIRECTIONS));
+    for (k, at) in r.pushes.impulse_n_s.iter().enumerate() {
+        text += &format!("\n{:12}", format!("{k}/{} stride", r.pushes.impulse_n_s.len()));
+        at.iter().for_each(|x| text += &format!("{x:8.2}"));
+    }
+    text += &format!("\n{:12}", "always");
+    r.pushes.always_n_s.iter().for_each(|x| text += &format!("{x:8.2}"));
+    r.pictures.iter().for_each(|path| text += &format!("\n{path}"));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn walking() -> Setup {
+        let mut setup = Setup::load(&config::root(None), SCENE).unwrap();
+        setup.scene.duration = 8.0;
+        setup.scene.commands.retain(|(time, _)| *time < 8.0);
+        setup
+    }
+
+    /// What the bisection says to be survived is, and what lies above the bracket is not.
+    #[test]
+    fn a_border_lies_between_what_is_survived_and_what_is_not() {
+        let setup = walking();
+        let way = walk(&setup).unwrap();
+        assert!(way > 0.5, "{way} m");
+        let kinds = kinds(&setup, way);
+        let kind = kinds.iter().find(|k| k.name == "IMU bias, pitch").unwrap();
+        let (found, beyond, holes) = side(&setup, kind, 1, 20.0);
+        assert!(!beyond && found > 0.5 && found < 15.0, "{found} deg");
+        for (x, survives) in [(found, true), (found + 20.0 * kind.resolution, false)] {
+            let mut setup = setup.clone();
+            (kind.apply)(&mut setup, x);
+            assert_eq!(walk(&setup).is_some(), survives, "{x} deg");
+        }
+        assert!(holes.is_empty(), "{holes:?}");
+    }
+
+    /// A hole in what is survived is told.
+    #[test]
+    fn less_that_is_not_survived_is_told() {
+        assert_eq!(holes(-8.0, -1.0, |x| !(3.0..5.0).contains(&x)), [-4.0]);
+        assert!(holes(8.0, 1.0, |_| true).is_empty());
+    }
+
+    /// A robot on ground that falls away by more than its friction holds does not survive, and says so.
+    #[test]
+    fn a_scene_that_is_not_survived_has_no_way() {
+        let mut setup = walking();
+        setup.scene.unknown.ground_tilt = [0.0, 40f64.to_radians()];
+        assert_eq!(walk(&setup), None);
+    }
+}
