@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: [&[&str]; 6] = [
     &["contact", "curves", "drawing", "drives", "environment", "multibody"],
     &["messages"],
-    &["ipc", "realtime", "config", "recording", "daemon"],
+    &["ipc", "realtime", "config", "recording", "daemon", "fieldbus", "sercos"],
     &["planner", "controller", "lowlevel", "sim-backend", "broker", "watchdog", "logger"],
     &["studies", "harness"],
     &["cli"],
@@ -19,7 +19,7 @@ const LAYERS: [&[&str]; 6] = [
 const PROCESSES: usize = 3;
 
 /// Libraries that only these crates name.
-const ONLY: [(&str, &[&str]); 8] = [
+const ONLY: [(&str, &[&str]); 10] = [
     ("iceoryx2", &["ipc"]),
     ("toml", &["config"]),
     ("bincode", &["messages"]),
@@ -27,6 +27,8 @@ const ONLY: [(&str, &[&str]); 8] = [
     ("urdf-rs", &["multibody"]),
     ("tiny-skia", &["drawing"]),
     ("tokio", &["broker"]),
+    ("socketcan", &["fieldbus"]),
+    ("can-dbc", &["config"]),
     ("libc", &["ipc", "realtime"]),
 ];
 

@@ -45,10 +45,10 @@ fn a_fall_is_shown() {
         scene: "walk_2kmh",
         forward: None,
         depth: 3,
-        cycles: &[0.01],
+        cycles: &[0.02],
         demands: DEMANDS,
     };
-    let rows = walk::rows(&order(&root), &entry, 0.01).unwrap();
+    let rows = walk::rows(&order(&root), &entry, 0.02).unwrap();
     assert_eq!((rows[0].ours, rows[0].goal), (None, Goal::Missed));
     assert!(rows[0].note.contains(" at "), "{}", rows[0].note);
 }

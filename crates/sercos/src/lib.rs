@@ -1,0 +1,1 @@
+//! Sercos III, cyclic part: telegrams, communication phases, a master and simulated slaves.
