@@ -4,7 +4,9 @@
 //! its checksum (classic) or of its data (CAN FD, whose checksum has stuff bits at fixed places instead). Behind that
 //! stand delimiters, acknowledgement, end of frame and the three bits before the next frame, never stuffed.
 
-use crate::capture::{BASE_BITS, BIT_RATE_SWITCH, Captured, ERROR, EXTENDED, EXTENDED_BITS, FD_LENGTHS, Form, REMOTE};
+use crate::capture::{
+    BASE_BITS, BIT_RATE_SWITCH, Captured, ERROR, EXTENDED, EXTENDED_BITS, FD_LENGTHS, Form, REMOTE,
+};
 
 /// Checksum delimiter, acknowledgement and its delimiter, end of frame (7), intermission (3).
 const TAIL: u32 = 1 + 2 + 7 + 3;
@@ -168,7 +170,10 @@ mod tests {
             {
                 let bits = of(&frame(id, &data, Form::CLASSIC)).nominal;
                 let bare = fixed + 8 * n as u32;
-                assert!(bits >= bare && bits <= bare + (stuffed + 8 * n as u32 - 1) / 4, "{id:x} {data:x?}: {bits}");
+                assert!(
+                    bits >= bare && bits <= bare + (stuffed + 8 * n as u32 - 1) / 4,
+                    "{id:x} {data:x?}: {bits}"
+                );
                 (least, most) = (least.min(bits - bare), most.max(bits - bare));
             }
         }

@@ -172,7 +172,8 @@ impl LineReader {
                 let newest = &mut self.newest[frame.line as usize];
                 if frame.time_ns < *newest {
                     let back = (*newest - frame.time_ns) as f64 * 1e-9;
-                    let why = format!("time of {name} goes back by {back:.6} s: was the clock set meanwhile?");
+                    let why =
+                        format!("time of {name} goes back by {back:.6} s: was the clock set meanwhile?");
                     return self.broken.add(self.number, text, why);
                 }
                 *newest = frame.time_ns;

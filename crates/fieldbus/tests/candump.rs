@@ -1,7 +1,7 @@
 //! Files of can-utils: what is written is read back the same, and what is broken is named.
 
-use fieldbus::capture::{ERROR, EXTENDED, FD_LENGTHS, REMOTE};
 use fieldbus::candump::{self, CandumpError, Strictness};
+use fieldbus::capture::{ERROR, EXTENDED, FD_LENGTHS, REMOTE};
 use fieldbus::{Capture, Captured, Form, Way, candump_line};
 use proptest::prelude::*;
 use std::path::PathBuf;
@@ -147,22 +147,23 @@ fn an_empty_file_and_a_missing_one_are_told_apart() {
 
 fn captured() -> impl Strategy<Value = Captured> {
     let id = prop_oneof![0..0x800u32, (0..0x2000_0000u32).prop_map(|id| id | EXTENDED)];
-    let classic = (id.clone(), 0..=8usize, prop_oneof![4 => Just(0u8), 1 => 9..=15u8]).prop_map(|(id, n, code)| {
-        (id, n, Form::Classic { code: if n == 8 { code } else { 0 } })
-    });
+    let classic = (id.clone(), 0..=8usize, prop_oneof![4 => Just(0u8), 1 => 9..=15u8])
+        .prop_map(|(id, n, code)| (id, n, Form::Classic { code: if n == 8 { code } else { 0 } }));
     let remote = (id.clone(), 0..=8usize).prop_map(|(id, n)| (id | REMOTE, n, Form::CLASSIC));
     let error = (0..0x2000_0000u32).prop_map(|id| (id | ERROR, 8, Form::CLASSIC));
     let fd = (id, 0..16usize, 0..16u8).prop_map(|(id, n, flags)| (id, FD_LENGTHS[n], Form::Fd { flags }));
     let way = prop_oneof![Just(None), Just(Some(Way::Received)), Just(Some(Way::Sent))];
     let kind = prop_oneof![3 => classic, 1 => remote, 1 => error, 3 => fd];
     let bytes = proptest::collection::vec(any::<u8>(), 64);
-    (kind, bytes, 0..4_000_000_000_000_000u64, 0..3u32, way).prop_map(|((id, n, form), bytes, micros, line, way)| {
-        let mut data = [0; 64];
-        if id & (REMOTE | ERROR) != REMOTE {
-            data[..n].copy_from_slice(&bytes[..n]);
-        }
-        Captured { time_ns: micros * 1000, line, id, len: n as u8, data, form, way }
-    })
+    (kind, bytes, 0..4_000_000_000_000_000u64, 0..3u32, way).prop_map(
+        |((id, n, form), bytes, micros, line, way)| {
+            let mut data = [0; 64];
+            if id & (REMOTE | ERROR) != REMOTE {
+                data[..n].copy_from_slice(&bytes[..n]);
+            }
+            Captured { time_ns: micros * 1000, line, id, len: n as u8, data, form, way }
+        },
+    )
 }
 
 proptest! {
