@@ -116,9 +116,9 @@ fn fd(frame: &Captured, flags: u8) -> Bits {
         bits.put(frame.id & BASE_BITS, 11);
     }
     let switched = flags & BIT_RATE_SWITCH;
-    // Base: remote request substitution, no extension, FD, reserved, bit rate switch; extended: without the extension.
-    let control = if frame.id & EXTENDED != 0 { 0b0100 } else { 0b00100 };
-    bits.put(control | u32::from(switched), if frame.id & EXTENDED != 0 { 4 } else { 5 });
+    // Remote request substitution (0), in base frames no extension (0), FD (1), reserved (0), bit rate switch.
+    let control = if frame.id & EXTENDED != 0 { 4 } else { 5 };
+    bits.put(0b0100 | u32::from(switched), control);
     let nominal = bits.sent;
     bits.put(u32::from(flags >> 1 & 1), 1); // error state
     let code = FD_LENGTHS.iter().position(|n| *n == usize::from(frame.len)).unwrap_or(15);

@@ -151,7 +151,7 @@ fn bytes(text: &str, most: usize) -> Parsed<(usize, [u8; 64])> {
         return Err(format!("`{wrong}` in the data is not a hex digit"));
     }
     let len = digits.len() / 2;
-    if digits.len() % 2 != 0 {
+    if !digits.len().is_multiple_of(2) {
         return Err(format!("the data end in the middle of a byte ({} hex digits)", digits.len()));
     }
     if len > most {

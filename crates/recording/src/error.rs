@@ -16,6 +16,8 @@ pub enum RecordingError {
     NotALog(PathBuf, String),
     /// The file is an MCAP file, but not one of ours.
     Foreign(PathBuf),
+    /// The file holds no frames of CAN lines.
+    NoTraffic(PathBuf),
     /// The topic was written with another layout of its record.
     OtherLayout {
         /// The log.
@@ -63,6 +65,11 @@ impl fmt::Display for RecordingError {
             Self::Foreign(path) => {
                 write!(f, "{}: an MCAP file without the metadata record of a gangwerk log", path.display())
             }
+            Self::NoTraffic(path) => write!(
+                f,
+                "{}: no CAN frames in it; `gangwerk can record` writes such logs, `gangwerk run` does not",
+                path.display()
+            ),
             Self::OtherLayout { path, topic, record, software } => write!(
                 f,
                 "{}: topic {topic} holds another layout of {record} than this program's; read it with the version \

@@ -2,6 +2,7 @@
 //!
 //! - [`Recorder`]: writes every logged topic of [`messages::TOPICS`] verbatim, and standard messages made from them.
 //! - [`Log`]: reads a log back into records, also one that was cut off by a crash.
+//! - [`traffic`]: frames of CAN lines.
 //! - [`payload_hashes`]: two runs are equal if these are.
 //!
 //! Design: profile `ros2`, CDR only. One channel of another encoding would break other readers of ROS 2 bags.
@@ -17,6 +18,7 @@ mod recorder;
 mod robot;
 mod standard;
 mod standard_definitions;
+pub mod traffic;
 
 pub use error::RecordingError;
 pub use hashes::payload_hashes;

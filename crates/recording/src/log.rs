@@ -175,13 +175,17 @@ fn read_transforms(payload: &[u8]) -> Vec<Transform> {
     transforms
 }
 
-enum Seen<'a> {
+/// What stands in a file.
+pub(crate) enum Seen<'a> {
     Metadata(&'a str, &'a std::collections::BTreeMap<String, String>),
     Message(Message<'a>),
 }
 
 /// Walks over the file until its end, a cut, or a break.
-fn walk(path: &Path, mut see: impl FnMut(Seen<'_>) -> ControlFlow<()>) -> Result<End, RecordingError> {
+pub(crate) fn walk(
+    path: &Path,
+    mut see: impl FnMut(Seen<'_>) -> ControlFlow<()>,
+) -> Result<End, RecordingError> {
     let mut file = std::fs::File::open(path).map_err(|e| RecordingError::Read(path.into(), e))?;
     let options = LinearReaderOptions::default()
         .with_validate_chunk_crcs(true)
