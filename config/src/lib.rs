@@ -11,6 +11,7 @@
 //!
 //! Only this crate names TOML.
 
+pub mod dbc;
 pub mod drive;
 pub mod efficiency;
 mod error;

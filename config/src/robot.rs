@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use messages::MAX_JOINTS;
+use messages::layout::Layout;
 
+use crate::dbc;
 pub use crate::drive::Drive;
 use crate::drive::drives;
 use crate::error::ConfigError;
@@ -33,8 +35,10 @@ pub struct Robot {
     pub imu: [f64; 3],
     /// Named joint poses \[rad\], complete, in joint order.
     pub poses: BTreeMap<String, Vec<f64>>,
-    /// Local controllers of the field bus: the joints (indices) each one drives.
-    pub nodes: Vec<Vec<usize>>,
+    /// Frames of the field bus; as read, those of CAN FD.
+    pub layout: Layout,
+    /// Frames of classic CAN.
+    pub classic: Layout,
     /// Camera head, if it has one.
     pub head: Option<Head>,
     /// Arms that swing, if it has them.
@@ -122,7 +126,11 @@ impl Robot {
         let path = directory.join("robot.toml");
         let text = file::text(&path, hash)?;
         let name = directory.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let mut robot = section::read(&path, &text, |top| Self::build(top, name))?;
+        let (mut robot, can) = section::read(&path, &text, |top| (Self::build(top, name), can(top)))?;
+        let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+        let classic = dbc::load(&directory.join(&can[0]), &joints, hash)?;
+        let layout = dbc::load(&directory.join(&can[1]), &joints, hash)?;
+        (robot.classic, robot.layout) = (classic, layout);
         let urdf_path = directory.join(&robot.urdf);
         robot.urdf = file::text(&urdf_path, hash)?;
         let masses = masses(&robot.urdf).map_err(|text| ConfigError::of_file(&urdf_path, text))?;
@@ -159,7 +167,8 @@ impl Robot {
             contact: top.table("contact", Contact::build).unwrap_or(Contact::NONE),
             imu: top.numbers("imu", "m", -2.0..=2.0),
             poses: poses(top, &joints),
-            nodes: nodes(top, &names),
+            layout: Layout::default(),
+            classic: Layout::default(),
             head: optional(top, "head", |table| Head::build(table, &joints)),
             arms: optional(top, "arms", |table| Arms::build(table, &joints)),
             drives: drives(top, &joints),
@@ -315,20 +324,9 @@ fn poses(top: &Section<'_, '_>, joints: &[Joint]) -> BTreeMap<String, Vec<f64>> 
     top.table("pose_deg", all).unwrap_or_default()
 }
 
-/// Every joint hangs on exactly one node.
-fn nodes(top: &Section<'_, '_>, joints: &[&str]) -> Vec<Vec<usize>> {
-    let node = |row: &Section<'_, '_>| {
-        let names = row.texts("joints").into_iter();
-        names.filter_map(|name| joint_index(row, "joints", &name, joints)).collect::<Vec<_>>()
-    };
-    let nodes = top.tables("node", node);
-    for (i, name) in joints.iter().enumerate() {
-        let count = nodes.iter().flatten().filter(|joint| **joint == i).count();
-        if count != 1 {
-            top.problem("node", format!("joint `{name}` is on {count} nodes; it must be on exactly one"));
-        }
-    }
-    nodes
+/// DBC files of the classic CAN bus and of CAN FD.
+fn can(top: &Section<'_, '_>) -> [String; 2] {
+    top.table("can", |can| [can.text("classic"), can.text("fd")]).unwrap_or_default()
 }
 
 /// Sum of all `<mass value="...">` of a URDF; its structure is checked where the model is built.

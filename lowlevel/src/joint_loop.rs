@@ -1,7 +1,7 @@
 //! One cycle of the joint loop. Pure: no clock, no bus, no shared memory.
 
 use config::{Robot, System};
-use messages::frames::{decode_sensors, encode_targets};
+use messages::frames::{DriveCommand, Received, decode_sensors, encode_targets};
 use messages::{BusFrames, EventCode, Header, JointMode, JointTargets, Sensors, WatchdogReset};
 
 use crate::braking::brake;
@@ -36,7 +36,8 @@ pub struct JointLoop {
     /// Cycles since the bus answered.
     silent: u32,
     sensors: Sensors,
-    targets: JointTargets,
+    command: DriveCommand,
+    received: Received,
     frames: BusFrames,
     reset: WatchdogReset,
     event: Option<(EventCode, u64)>,
@@ -55,7 +56,8 @@ impl JointLoop {
             stale: 0,
             silent: 0,
             sensors: Sensors::default(),
-            targets: JointTargets::default(),
+            command: DriveCommand::default(),
+            received: Received::default(),
             frames: BusFrames::default(),
             reset: WatchdogReset::default(),
             event: None,
@@ -77,8 +79,9 @@ impl JointLoop {
         self.sensors.header = Header { tick, stamp_ns, epoch: 0 };
         self.silent += 1;
         if let Some(frames) = frames {
-            let missing = decode_sensors(&self.robot.nodes, frames, &mut self.sensors);
-            self.sensors.frames_missed += missing as u64;
+            self.received = decode_sensors(&self.robot.layout, frames, &mut self.sensors);
+            let missing = self.received.missed();
+            self.sensors.frames_missed += u64::from(missing);
             if missing == 0 {
                 self.silent = 0;
             }
@@ -203,16 +206,16 @@ impl JointLoop {
     fn write_frames(&mut self) {
         let header = Header { epoch: 0, ..self.sensors.header };
         self.reset.header = header;
-        self.targets.header = header;
-        self.targets.mode = match self.state {
+        self.command.targets.header = header;
+        self.command.targets.mode = match self.state {
             State::Off => JointMode::Off,
             State::Hold | State::Stop(_) => JointMode::Hold,
             State::Track => JointMode::Track,
         } as u64;
         for j in 0..self.robot.joints.len() {
-            self.targets.angle[j] = self.last[j].angle;
-            self.targets.speed[j] = self.last[j].speed;
+            self.command.targets.angle[j] = self.last[j].angle;
+            self.command.targets.speed[j] = self.last[j].speed;
         }
-        encode_targets(&self.robot.nodes, &self.targets, &mut self.frames);
+        encode_targets(&self.robot.layout, &self.command, &mut self.frames);
     }
 }

@@ -3,7 +3,7 @@
 use config::{Robot, System};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::State;
-use messages::frames::{decode_targets, encode_sensors};
+use messages::frames::{DriveCommand, decode_targets, encode_sensors};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Sensors};
 use proptest::prelude::*;
 
@@ -16,7 +16,7 @@ struct Rig {
     /// What the drives say: they follow what they were told, unless blocked.
     drives: Sensors,
     blocked: Option<usize>,
-    last: JointTargets,
+    last: DriveCommand,
 }
 
 impl Rig {
@@ -30,7 +30,7 @@ impl Rig {
             drives.joint_angle[j] = *q;
         }
         let loop_ = JointLoop::new(&robot, &system, DT);
-        let mut rig = Self { robot, loop_, tick: 0, drives, blocked: None, last: JointTargets::default() };
+        let mut rig = Self { robot, loop_, tick: 0, drives, blocked: None, last: DriveCommand::default() };
         for _ in 0..3 {
             let still = rig.still();
             rig.cycle(Some(&still));
@@ -54,7 +54,7 @@ impl Rig {
     fn cycle(&mut self, targets: Option<&JointTargets>) -> u64 {
         let mut answer = BusFrames::default();
         self.drives.header.tick = self.tick;
-        encode_sensors(&self.robot.nodes, &self.drives, &mut answer);
+        encode_sensors(&self.robot.layout, &self.drives, &mut answer);
         self.tick += 1;
         self.cycle_with(Some(&answer), targets)
     }
@@ -63,10 +63,10 @@ impl Rig {
         self.loop_.receive(self.tick, self.tick * 1_000_000, answer);
         let (frames, reset) = self.loop_.send(targets, None);
         let trip = reset.trip;
-        decode_targets(&self.robot.nodes, frames, &mut self.last);
+        decode_targets(&self.robot.layout, frames, &mut self.last);
         for j in (0..self.robot.joints.len()).filter(|j| Some(*j) != self.blocked) {
-            self.drives.joint_angle[j] = self.last.angle[j];
-            self.drives.joint_speed[j] = self.last.speed[j];
+            self.drives.joint_angle[j] = self.last.targets.angle[j];
+            self.drives.joint_speed[j] = self.last.targets.speed[j];
         }
         trip
     }
@@ -79,7 +79,7 @@ fn follows_targets_to_the_resolution_of_the_bus() {
     wanted.angle[5] += 0.004;
     wanted.speed[5] = 4.0;
     rig.cycle(Some(&wanted));
-    assert!((rig.last.angle[5] - wanted.angle[5]).abs() < 2e-9);
+    assert!((rig.last.targets.angle[5] - wanted.angle[5]).abs() < 2e-9);
     assert_eq!(rig.loop_.take_event(), None);
 }
 
@@ -87,13 +87,13 @@ fn follows_targets_to_the_resolution_of_the_bus() {
 fn one_nan_in_any_joint_is_a_controlled_stop_that_names_it() {
     for j in 0..24 {
         let mut rig = Rig::tracking();
-        let before = rig.last.angle;
+        let before = rig.last.targets.angle;
         let mut bad = rig.still();
         bad.speed[j] = f64::NAN;
         rig.cycle(Some(&bad));
         assert_eq!(rig.loop_.state(), State::Stop(EventCode::TargetNotFinite));
         assert_eq!(rig.loop_.take_event(), Some((EventCode::TargetNotFinite, j as u64)));
-        assert_eq!(rig.last.angle, before);
+        assert_eq!(rig.last.targets.angle, before);
     }
 }
 
@@ -113,7 +113,7 @@ fn silence_of_the_controller_is_carried_on_then_stopped_and_stays_stopped() {
     while rig.loop_.state() == State::Track {
         rig.cycle(Some(&moving)); // the same old targets again
         cycles += 1;
-        let carried_on = rig.last.speed[5] > 0.49;
+        let carried_on = rig.last.targets.speed[5] > 0.49;
         assert_eq!(carried_on, rig.loop_.state() == State::Track, "carried on at the last speed");
         assert!(cycles < 100);
     }
@@ -122,7 +122,7 @@ fn silence_of_the_controller_is_carried_on_then_stopped_and_stays_stopped() {
     for _ in 0..100 {
         rig.cycle(None);
     }
-    assert!((0..24).all(|j| rig.last.speed[j] == 0.0), "at rest");
+    assert!((0..24).all(|j| rig.last.targets.speed[j] == 0.0), "at rest");
     let still = rig.still();
     rig.cycle(Some(&still));
     assert_eq!(rig.loop_.state(), State::Stop(EventCode::TargetsStale), "latched while the supply is on");
@@ -142,7 +142,7 @@ fn a_blocked_joint_trips_the_supply() {
     let mut trip = 0;
     for _ in 0..200 {
         let mut t = rig.still();
-        t.angle[5] = rig.last.angle[5] + 1.0 * DT;
+        t.angle[5] = rig.last.targets.angle[5] + 1.0 * DT;
         t.speed[5] = 1.0;
         trip = rig.cycle(Some(&t));
         if trip != 0 {
@@ -170,7 +170,7 @@ fn a_silent_bus_is_a_controlled_stop() {
 fn a_loop_that_starts_with_power_begins_where_the_joints_are() {
     let rig = Rig::tracking();
     for (j, q) in rig.robot.poses["stand"].iter().enumerate() {
-        assert!((rig.last.angle[j] - q).abs() < 2e-9, "joint {j}");
+        assert!((rig.last.targets.angle[j] - q).abs() < 2e-9, "joint {j}");
     }
 }
 
@@ -182,7 +182,7 @@ fn without_power_the_targets_are_where_the_joints_are() {
     wild.angle[3] += 0.3;
     rig.cycle(Some(&wild));
     assert_eq!(rig.loop_.state(), State::Off);
-    assert!((rig.last.angle[3] - rig.drives.joint_angle[3]).abs() < 2e-9);
+    assert!((rig.last.targets.angle[3] - rig.drives.joint_angle[3]).abs() < 2e-9);
 }
 
 proptest! {
@@ -198,16 +198,16 @@ proptest! {
         };
         for _ in 0..30 {
             let mut t = rig.still();
-            let before = rig.last.angle;
+            let before = rig.last.targets.angle;
             for j in 0..24 {
                 t.angle[j] += random() * 0.05;
                 t.speed[j] = random() * 30.0;
             }
             rig.cycle(Some(&t));
             for (j, joint) in rig.robot.joints.iter().enumerate() {
-                let moved = (rig.last.angle[j] - before[j]).abs();
+                let moved = (rig.last.targets.angle[j] - before[j]).abs();
                 prop_assert!(moved <= joint.speed_limit * DT + 5e-9, "{} moved {moved} rad", joint.name);
-                prop_assert!(rig.last.angle[j] >= joint.range[0] - 5e-9 && rig.last.angle[j] <= joint.range[1] + 5e-9);
+                prop_assert!(rig.last.targets.angle[j] >= joint.range[0] - 5e-9 && rig.last.targets.angle[j] <= joint.range[1] + 5e-9);
             }
         }
     }

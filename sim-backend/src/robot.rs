@@ -4,8 +4,8 @@ use std::error::Error;
 
 use config::{Robot, Scene};
 use messages::command::PushCommand;
-use messages::frames::{decode_targets, encode_sensors};
-use messages::{BusFrames, EventCode, Imu, JointMode, JointTargets, Power, Sensors, SimState, Wrench};
+use messages::frames::{DriveCommand, decode_targets, encode_sensors};
+use messages::{BusFrames, EventCode, Imu, JointMode, Power, Sensors, SimState, Wrench};
 use multibody::Frame;
 use nalgebra::Vector3;
 
@@ -40,7 +40,7 @@ pub struct SimBackend {
     power: PowerLine,
     /// \[rad\] By how much the encoders of each joint read too much.
     offset: Vec<f64>,
-    targets: JointTargets,
+    command: DriveCommand,
     /// Tick of the newest targets followed.
     followed: u64,
     cycles: u64,
@@ -87,7 +87,7 @@ impl SimBackend {
             state,
             power: PowerLine::default(),
             offset: offsets(robot, scene),
-            targets: JointTargets::default(),
+            command: DriveCommand::default(),
             followed: 0,
             cycles: 0,
             fallen: false,
@@ -164,7 +164,7 @@ impl SimBackend {
             self.sim_state.header = frames.header;
         }
         if self.measure(&snapshot, outside.push, powered) {
-            encode_sensors(&self.robot.nodes, &self.sensors, &mut self.frames);
+            encode_sensors(&self.robot.layout, &self.sensors, &mut self.frames);
         }
         (&self.frames, &self.sim_state)
     }
@@ -174,20 +174,20 @@ impl SimBackend {
         let dt = self.scene.cycle;
         let fresh = frames.is_some_and(|f| {
             f.header.tick > self.followed
-                && decode_targets(&self.robot.nodes, f, &mut self.targets) == self.robot.nodes.len()
+                && decode_targets(&self.robot.layout, f, &mut self.command).missed() == 0
         });
         if fresh {
-            self.followed = self.targets.header.tick;
+            self.followed = self.command.targets.header.tick;
         }
-        let driven = powered && self.targets.mode != JointMode::Off as u64;
+        let driven = powered && self.command.targets.mode != JointMode::Off as u64;
         for j in 0..self.drives.len() {
             let (from, joint) = (self.goals[j], &self.robot.joints[j]);
             self.drives[j] = match (driven, fresh) {
                 (false, _) if self.plant.layout().joints > 0 => Drive::resting(self.motions[j].angle),
                 (false, _) => Drive::brake(joint, from, dt),
                 (true, true) => {
-                    let angle = self.targets.angle[j] - self.offset[j];
-                    Drive::follow(from, angle, self.targets.speed[j], dt)
+                    let angle = self.command.targets.angle[j] - self.offset[j];
+                    Drive::follow(from, angle, self.command.targets.speed[j], dt)
                 }
                 // No new frame: the local controllers carry on at the last speed.
                 (true, false) => Drive::follow(from, from.angle + from.speed * dt, from.speed, dt),

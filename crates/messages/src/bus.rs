@@ -1,14 +1,18 @@
-//! `bus_tx` and `bus_rx`: the frames of one cycle on the simulated field bus.
+//! `bus_tx` and `bus_rx`: the frames of one cycle on the field bus.
 
 use crate::{Header, record};
 
-/// Room for frames in one cycle of the simulated bus.
-pub const MAX_FRAMES: usize = 32;
+/// Room for frames in one cycle.
+pub const MAX_FRAMES: usize = 128;
+/// In an identifier, as in Linux's `can_id`: the frame tells of an error on its line.
+pub const ERROR_FLAG: u32 = 0x2000_0000;
 
 record! {
-    /// One frame: identifier and up to 64 bytes, as on CAN FD.
+    /// One frame, as on CAN FD.
     part Frame {
-        /// \[1\] Identifier.
+        /// \[1\] Line it is on: index of a local controller.
+        line: u32,
+        /// \[1\] Identifier with flags, as in Linux's `can_id`.
         id: u32,
         /// \[1\] @range 0..64 Number of bytes in use.
         len: u32,
@@ -18,7 +22,7 @@ record! {
 }
 
 record! {
-    /// All frames that one side of the simulated bus sent in one cycle.
+    /// All frames that one side of the bus sent in one cycle.
     record BusFrames {
         /// Tick of the cycle.
         header: Header,
@@ -35,17 +39,21 @@ impl BusFrames {
         &self.frames[..(self.count as usize).min(MAX_FRAMES)]
     }
 
-    /// Appends a frame; `false` if the cycle is full or the payload longer than 64 bytes.
-    pub fn push(&mut self, id: u32, payload: &[u8]) -> bool {
-        let i = self.count as usize;
-        if i >= MAX_FRAMES || payload.len() > 64 {
-            return false;
+    /// Appends a frame; `false` if the cycle is full.
+    pub fn push(&mut self, frame: &Frame) -> bool {
+        match self.append() {
+            Some(room) => {
+                *room = *frame;
+                true
+            }
+            None => false,
         }
-        self.frames[i].id = id;
-        self.frames[i].len = payload.len() as u32;
-        self.frames[i].data[..payload.len()].copy_from_slice(payload);
-        self.frames[i].data[payload.len()..].fill(0);
+    }
+
+    /// Room for one more frame; none if the cycle is full.
+    pub fn append(&mut self) -> Option<&mut Frame> {
+        let room = self.frames.get_mut(self.count as usize)?;
         self.count += 1;
-        true
+        Some(room)
     }
 }

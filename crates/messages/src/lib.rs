@@ -15,6 +15,7 @@ pub mod cycle_stats;
 pub mod event;
 pub mod frames;
 pub mod joint_targets;
+pub mod layout;
 pub mod parameters;
 pub mod plan;
 pub mod power;
@@ -24,7 +25,7 @@ pub mod sim_state;
 pub mod topics;
 pub mod wire;
 
-pub use bus::{BusFrames, Frame};
+pub use bus::{BusFrames, ERROR_FLAG, Frame, MAX_FRAMES};
 pub use command::Command;
 pub use controller_state::ControllerState;
 pub use cycle_stats::CycleStats;

@@ -1,6 +1,6 @@
 //! `sensors`: everything measured on the robot, once per bus cycle.
 
-use crate::{Header, Joints, Wrench, record};
+use crate::{Header, Joints, MAX_JOINTS, Wrench, record};
 
 record! {
     /// Orientation and motion of the upper body.
@@ -29,6 +29,12 @@ record! {
         motor_speed: Joints,
         /// \[A\] @invalid NaN where the drive has no current sensor
         motor_current: Joints,
+        /// \[1\] Statuswords of the drives (CiA 402); 0 where none is sent.
+        drive_status: [u32; MAX_JOINTS],
+        /// \[1\] Error codes of the drives (CiA 402); 0: none.
+        drive_error: [u32; MAX_JOINTS],
+        /// \[deg C\] Windings of the motors.
+        temperature: Joints,
         /// \[N, N m\] @sensor frame of each foot: force and moment of the ground on the foot; right, left.
         foot_wrench: [Wrench; 2],
         /// Upper body.

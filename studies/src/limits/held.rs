@@ -1,7 +1,8 @@
 //! The simulated robot with its supply on and all joints told to stay where they are.
 
 use config::scene::Scene;
-use messages::frames::encode_targets;
+use messages::frames::{DriveCommand, encode_targets};
+use messages::layout::Layout;
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, SimState};
 use sim_backend::SimBackend;
 
@@ -10,8 +11,8 @@ use super::{Bench, Result};
 /// Robot, and what the bus tells it.
 pub(super) struct Held {
     pub(super) sim: SimBackend,
-    nodes: Vec<Vec<usize>>,
-    targets: JointTargets,
+    layout: Layout,
+    command: DriveCommand,
     frames: BusFrames,
     power: Power,
 }
@@ -24,8 +25,8 @@ impl Held {
         targets.angle[..bench.pose().len()].copy_from_slice(bench.pose());
         Ok(Self {
             sim: SimBackend::new(robot, scene)?,
-            nodes: robot.nodes.clone(),
-            targets,
+            layout: robot.layout.clone(),
+            command: DriveCommand { targets, ..DriveCommand::default() },
             frames: BusFrames::default(),
             power: Power { on: 1, ..Power::default() },
         })
@@ -33,9 +34,9 @@ impl Held {
 
     /// One bus cycle.
     pub(super) fn step(&mut self) -> (&BusFrames, &SimState) {
-        self.targets.header.tick += 1;
+        self.command.targets.header.tick += 1;
         self.power.toggle += 1;
-        encode_targets(&self.nodes, &self.targets, &mut self.frames);
+        encode_targets(&self.layout, &self.command, &mut self.frames);
         self.sim.step(Some(&self.frames), Some(&self.power))
     }
 

@@ -1,0 +1,202 @@
+//! Layouts from DBC files: the shipped ones carry everything, and a broken one says what is wrong with it.
+
+use config::{Robot, dbc};
+use messages::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
+use messages::layout::{Carries, Layout};
+use messages::{BusFrames, Sensors};
+
+fn robots() -> Vec<Robot> {
+    ["lola", "johnnie"].map(|name| Robot::load(&config::root(None).join("robots").join(name)).unwrap()).into()
+}
+
+/// Numbers without a pattern, from -1 to 1.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+fn sensors(robot: &Robot, tick: u64) -> Sensors {
+    let mut noise = Noise(tick);
+    let mut s = Sensors { power: 1, ..Sensors::default() };
+    s.header.tick = tick;
+    for j in 0..robot.joints.len() {
+        s.joint_angle[j] = 3.0 * noise.next();
+        s.joint_speed[j] = 10.0 * noise.next();
+        s.motor_angle[j] = 3.0 * noise.next();
+        s.motor_speed[j] = 10.0 * noise.next();
+        s.motor_current[j] = 50.0 * noise.next();
+        s.drive_status[j] = (30000.0 * (1.0 + noise.next())) as u32;
+        s.drive_error[j] = (30000.0 * (1.0 + noise.next())) as u32;
+        s.temperature[j] = 60.0 + 80.0 * noise.next();
+    }
+    for foot in &mut s.foot_wrench {
+        foot.force = [0; 3].map(|_| 1500.0 * noise.next());
+        foot.moment = [0; 3].map(|_| 200.0 * noise.next());
+    }
+    s.imu.orientation = [0; 4].map(|_| noise.next());
+    s.imu.angular_velocity = [0; 3].map(|_| 5.0 * noise.next());
+    s.imu.acceleration = [0; 3].map(|_| 30.0 * noise.next());
+    s
+}
+
+/// Half a unit of the signal that carries it, or 0 if none does.
+fn unit(layout: &Layout, carries: Carries) -> Option<f64> {
+    let signals = layout.messages.iter().flat_map(|m| &m.signals);
+    signals.filter(|s| s.carries == carries).map(|s| 0.5 * s.scale * (1.0 + 1e-9)).next()
+}
+
+#[test]
+fn whatever_is_sent_comes_back_within_half_a_unit() {
+    for robot in robots() {
+        for layout in [&robot.classic, &robot.layout] {
+            for tick in [1, 255, 256, 0x1_0007] {
+                let sent = sensors(&robot, tick);
+                let (mut frames, mut got) = (BusFrames::default(), Sensors::default());
+                encode_sensors(layout, &sent, &mut frames);
+                assert_eq!(decode_sensors(layout, &frames, &mut got).missed(), 0);
+                assert_eq!(got.power, 1);
+                let near = |carries, a: f64, b: f64| {
+                    if let Some(unit) = unit(layout, carries) {
+                        assert!((a - b).abs() <= unit, "{}: {carries:?}: {a} and {b}", robot.name);
+                    }
+                };
+                for j in 0..robot.joints.len() {
+                    near(Carries::Angle(j), sent.joint_angle[j], got.joint_angle[j]);
+                    near(Carries::Speed(j), sent.joint_speed[j], got.joint_speed[j]);
+                    near(Carries::Motor(j), sent.motor_angle[j], got.motor_angle[j]);
+                    near(Carries::MotorSpeed(j), sent.motor_speed[j], got.motor_speed[j]);
+                    near(Carries::Current(j), sent.motor_current[j], got.motor_current[j]);
+                    near(Carries::Temperature(j), sent.temperature[j], got.temperature[j]);
+                    near(Carries::Status(j), sent.drive_status[j].into(), got.drive_status[j].into());
+                    near(Carries::Error(j), sent.drive_error[j].into(), got.drive_error[j].into());
+                }
+                for k in 0..3 {
+                    for foot in 0..2 {
+                        let (a, b) = (&sent.foot_wrench[foot], &got.foot_wrench[foot]);
+                        near(Carries::Force(foot, k), a.force[k], b.force[k]);
+                        near(Carries::Moment(foot, k), a.moment[k], b.moment[k]);
+                    }
+                    near(Carries::Rate(k), sent.imu.angular_velocity[k], got.imu.angular_velocity[k]);
+                    near(Carries::Acceleration(k), sent.imu.acceleration[k], got.imu.acceleration[k]);
+                }
+                for k in 0..4 {
+                    near(Carries::Orientation(k), sent.imu.orientation[k], got.imu.orientation[k]);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn targets_come_back_too_and_a_motor_side_that_nobody_sends_is_the_link_side() {
+    for robot in robots() {
+        for layout in [&robot.classic, &robot.layout] {
+            let from = sensors(&robot, 9);
+            let mut sent = DriveCommand::default();
+            (sent.targets.header.tick, sent.targets.mode) = (9, 2);
+            (sent.targets.angle, sent.targets.speed) = (from.joint_angle, from.joint_speed);
+            sent.control = [15; messages::MAX_JOINTS];
+            let (mut frames, mut got) = (BusFrames::default(), DriveCommand::default());
+            encode_targets(layout, &sent, &mut frames);
+            assert_eq!(decode_targets(layout, &frames, &mut got).missed(), 0);
+            assert_eq!((got.targets.mode, got.control[0]), (2, 15));
+            for j in 0..robot.joints.len() {
+                let half = unit(layout, Carries::Target(j)).unwrap();
+                assert!((got.targets.angle[j] - sent.targets.angle[j]).abs() <= half);
+                let half = unit(layout, Carries::Feed(j)).unwrap();
+                assert!((got.targets.speed[j] - sent.targets.speed[j]).abs() <= half);
+            }
+            let mut seen = Sensors::default();
+            encode_sensors(layout, &from, &mut frames);
+            decode_sensors(layout, &frames, &mut seen);
+            let same = seen.motor_angle == seen.joint_angle;
+            assert_eq!(same, unit(layout, Carries::Motor(0)).is_none(), "{}", robot.name);
+        }
+    }
+}
+
+#[test]
+fn old_repeated_short_foreign_and_error_frames_are_counted_and_move_nothing() {
+    let robot = &robots()[0];
+    for layout in [&robot.classic, &robot.layout] {
+        let mut frames = BusFrames::default();
+        encode_sensors(layout, &sensors(robot, 9), &mut frames);
+        let all = frames.count as usize;
+        frames.frames[1].data[0] ^= 1; // another cycle's counter
+        frames.frames[2].len -= 1; // cut short
+        frames.frames[3].id = 0x7ff; // nobody's
+        frames.frames[4].id |= messages::ERROR_FLAG;
+        frames.frames[5].line += 1; // on the wrong line
+        let twice = frames.frames[0];
+        assert!(frames.push(&twice));
+        let mut got = Sensors::default();
+        let received = decode_sensors(layout, &frames, &mut got);
+        assert_eq!((received.missed(), received.stale, received.wrong_length), (5, 1, 1));
+        assert_eq!((received.unknown, received.errors, received.repeated), (2, 1, 1));
+        assert!(received.complete(8) && !received.complete(0), "of {all} frames");
+    }
+}
+
+#[test]
+fn every_line_carries_two_or_three_joints_and_its_sync_comes_last() {
+    let robot = &robots()[0];
+    assert_eq!(robot.classic.nodes.len(), 9);
+    assert_eq!(robot.classic.nodes, robot.layout.nodes);
+    for (node, name) in robot.classic.nodes.iter().enumerate() {
+        let joints = |layout: &Layout| {
+            let all = layout.messages.iter().filter(|m| m.node == node).flat_map(|m| &m.signals);
+            all.filter(|s| matches!(s.carries, Carries::Target(_))).count()
+        };
+        assert!((2..=3).contains(&joints(&robot.classic)), "{name}");
+        assert_eq!(joints(&robot.classic), joints(&robot.layout));
+    }
+    assert!(robot.classic.messages.iter().all(|m| m.len <= 8));
+}
+
+fn lola() -> String {
+    std::fs::read_to_string(config::root(None).join("robots/lola/can/lola.dbc")).unwrap()
+}
+
+fn problems(text: &str) -> Vec<String> {
+    let robot = &robots()[0];
+    let joints: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
+    dbc::read(text, &joints).unwrap_err().iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn what_is_wrong_with_a_dbc_file_is_said() {
+    let cases: &[(&str, &str, &str)] = &[
+        ("head_pan_target :", "head_pam_target :", "no joint `head_pam`; the nearest is `head_pan`"),
+        ("head_pan_target :", "head_pan_aim :", "nothing of that name goes this way; there is counter, mode"),
+        ("supply : 8|8@1+", "supply : 8|8@0+", "must be Intel (@1)"),
+        ("supply : 8|8@1+ (1,0)", "supply : 8|8@1+ (0,0)", "the factor must be above 0"),
+        ("supply : 8|8@1+", "supply : 7|8@1+", "bit 7 belongs to another signal, too"),
+        ("supply : 8|8@1+", "supply : 60|8@1+", "1 to 32 bits within 8 bytes"),
+        ("BO_ 128 ", "BO_ 256 ", "identifier 256 is taken on this line"),
+        ("BO_ 128 ", "BO_ 3000 ", "below 2048"),
+        ("BO_ 128 ", "BO_ 2147483776 ", "29 bits"),
+        (
+            "BO_ 128 node0_sync: 1 PC\n SG_ counter : 0|8@1+",
+            "BO_ 128 node0_sync: 1 PC\n SG_ counter : 0|8@1-",
+            "a counter is unsigned",
+        ),
+    ];
+    for (from, to, wanted) in cases {
+        let text = lola();
+        assert!(text.contains(from), "{from}");
+        let said = problems(&text.replacen(from, to, 1));
+        assert!(said.iter().any(|p| p.contains(wanted)), "{wanted}\nis not in\n{said:#?}");
+    }
+    let said = problems("this is no DBC");
+    assert!(said.len() == 1 && said[0].contains("not a DBC file"), "{said:?}");
+    let said = problems(&lola().replacen("BO_ 128 node0_sync: 1 PC", "BO_ 129 node0_sync: 1 hip_right", 1));
+    assert!(said.iter().any(|p| p.contains("hip_right: the last message to it")), "{said:#?}");
+    // Lines of the file are named.
+    let said = problems(&lola().replacen("head_pan_target :", "head_pam_target :", 1));
+    let line = lola().lines().position(|l| l.contains("SG_ head_pan_target")).unwrap() + 1;
+    assert!(said[0].starts_with(&format!("line {line}: head_pan_to.head_pam_target: ")), "{}", said[0]);
+}
