@@ -4,7 +4,7 @@ mod rig;
 
 use config::scene::Integrator;
 use config::{Setup, root};
-use messages::frames::encode_targets;
+use messages::frames::{DriveCommand, encode_targets};
 use messages::{BusFrames, JointMode, JointTargets, Power};
 use realtime::allocations::{arm, counted, disarm};
 use rig::Rig;
@@ -60,7 +60,11 @@ fn cycles_of_the_simulated_robot() {
             let counts = during(|| {
                 for tick in 1..=5 {
                     targets.header.tick = tick;
-                    encode_targets(&setup.robot.nodes, &targets, &mut frames);
+                    encode_targets(
+                        &setup.robot.layout,
+                        &DriveCommand { targets, ..DriveCommand::default() },
+                        &mut frames,
+                    );
                     sim.step(Some(&frames), Some(&Power { toggle: tick, on: 1, ..Power::default() }));
                     sim.take_event();
                 }

@@ -2,7 +2,7 @@
 
 use config::{Setup, root};
 use messages::command::PushCommand;
-use messages::frames::{decode_sensors, encode_targets};
+use messages::frames::{DriveCommand, decode_sensors, encode_targets};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, Sensors, SimState};
 use sim_backend::SimBackend;
 
@@ -19,10 +19,14 @@ fn hold(sim: &mut SimBackend, setup: &Setup, cycles: u64, until: u64) -> (SimSta
     let (mut frames, mut sensors) = (BusFrames::default(), Sensors::default());
     for tick in 1..=cycles {
         targets.header.tick = tick;
-        encode_targets(&setup.robot.nodes, &targets, &mut frames);
+        encode_targets(
+            &setup.robot.layout,
+            &DriveCommand { targets, ..DriveCommand::default() },
+            &mut frames,
+        );
         let power = Power { toggle: tick.min(until), on: 1, ..Power::default() };
         let (answer, _) = sim.step(Some(&frames), Some(&power));
-        assert_eq!(decode_sensors(&setup.robot.nodes, answer, &mut sensors), 0);
+        assert_eq!(decode_sensors(&setup.robot.layout, answer, &mut sensors).missed(), 0);
     }
     (*sim.state(), sensors)
 }

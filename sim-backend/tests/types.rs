@@ -4,7 +4,7 @@
 use config::scene::Integrator;
 use config::{Setup, root};
 use messages::command::PushCommand;
-use messages::frames::encode_targets;
+use messages::frames::{DriveCommand, encode_targets};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, SimState};
 use sim_backend::SimBackend;
 
@@ -33,7 +33,11 @@ fn cycles(
             targets.angle[j] = *q;
         }
         change(tick, &mut targets);
-        encode_targets(&setup.robot.nodes, &targets, &mut frames);
+        encode_targets(
+            &setup.robot.layout,
+            &DriveCommand { targets, ..DriveCommand::default() },
+            &mut frames,
+        );
         let (answer, truth) =
             sim.step(Some(&frames), Some(&Power { toggle: tick, on: on.into(), ..Power::default() }));
         assert!(finite(truth), "cycle {tick}: {truth:?}");
@@ -122,7 +126,7 @@ fn brakes_hold_a_standing_robot() {
         assert!((carried - 60.885 * 9.81).abs() < 10.0, "type {depth}: {carried} N");
         // What the sensors see of it is a robot that rests, too.
         let mut sensors = messages::Sensors::default();
-        messages::frames::decode_sensors(&setup.robot.nodes, sim.step(None, None).0, &mut sensors);
+        messages::frames::decode_sensors(&setup.robot.layout, sim.step(None, None).0, &mut sensors);
         let felt = sensors.imu.acceleration;
         assert!((felt[2] - 9.81).abs() < 0.05 && felt[0].hypot(felt[1]) < 0.2, "type {depth}: {felt:?}");
     }
