@@ -1,0 +1,64 @@
+#!/bin/sh
+# Gets the kernel that the virtual machine boots: Debian's, from its package, unpacked into tests/vcan/.kernel.
+# Prints that folder, which holds `vmlinuz` and, in the order of their loading, `modules/NN-NAME.ko`. Safe to run again.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+kernel="$here/.kernel"
+
+# Each after those it needs. The host's files: 9p over virtio, with a writable layer above. The rest is CAN.
+modules="drivers/virtio/virtio_ring drivers/virtio/virtio drivers/virtio/virtio_pci_modern_dev
+drivers/virtio/virtio_pci_legacy_dev drivers/virtio/virtio_pci fs/netfs/netfs fs/fscache/fscache net/9p/9pnet
+net/9p/9pnet_virtio fs/9p/9p fs/overlayfs/overlay net/can/can net/can/can-raw net/can/can-bcm net/can/can-gw
+drivers/net/can/dev/can-dev drivers/net/can/vcan"
+
+fail() {
+    echo "kernel.sh: $*" >&2
+    exit 1
+}
+
+if [ -f "$kernel/complete" ]; then
+    echo "$kernel"
+    exit
+fi
+for tool in apt-get apt-cache dpkg-deb; do
+    command -v "$tool" >/dev/null ||
+        fail "$tool is missing: the kernel comes from a Debian package. On a machine that has vcan no kernel is needed"
+done
+
+# newest: name of the package that the metapackage stands for now.
+newest() {
+    apt-cache depends linux-image-amd64 2>/dev/null | sed -n 's/^ *Depends: \(linux-image-[0-9].*-amd64\)$/\1/p' | head -n 1
+}
+
+package=$(newest)
+if [ -z "$package" ] && [ "$(id -u)" -eq 0 ]; then
+    apt-get update -qq >&2 || true
+    package=$(newest)
+fi
+[ -n "$package" ] || fail "no package linux-image-amd64 in apt's lists: run apt-get update as root; needs Debian's sources"
+
+rm -rf "$kernel"
+mkdir -p "$kernel/modules" "$kernel/package"
+cd "$kernel/package"
+apt-get download -qq -o APT::Sandbox::User=root "$package" >&2 || {
+    # Lists older than the archive name a version that is gone.
+    [ "$(id -u)" -eq 0 ] && apt-get update -qq >&2
+    package=$(newest)
+    apt-get download -qq -o APT::Sandbox::User=root "$package" >&2
+} || fail "apt-get download $package failed: is the archive reachable?"
+dpkg-deb -x ./*.deb unpacked
+mv unpacked/boot/vmlinuz-* "$kernel/vmlinuz"
+number=10
+for module in $modules; do
+    file=$(echo unpacked/lib/modules/*/kernel/"$module".ko*)
+    [ -f "$file" ] || fail "$package has no module $module"
+    case $file in
+    *.xz) xz -dc "$file" ;;
+    *) cat "$file" ;;
+    esac >"$kernel/modules/$number-$(basename "$module").ko"
+    number=$((number + 1))
+done
+cd "$kernel"
+rm -rf package
+echo "$package" >complete
+echo "$kernel"
