@@ -68,6 +68,12 @@ fn walk_2kmh() {
     walks(&figures("walk_2kmh", 20.0), 2.0);
 }
 
+/// The cycle of 3.5 ms that her CAN lines leave room for. `tests/vcan` walks it over such lines.
+#[test]
+fn can_2kmh() {
+    walks(&figures("can_2kmh", 20.0), 2.0);
+}
+
 #[test]
 fn walk_3kmh() {
     walks(&figures("walk_3kmh", 20.0), 3.0);
