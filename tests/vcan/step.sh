@@ -35,9 +35,9 @@ within() {
     done
 }
 
-# listened LINE [COUNT]: whether that many sockets hear all of this line (any: of every line).
+# listened LINE [COUNT]: whether that many sockets hear this line (any: every line).
 listened() {
-    [ "$(awk -v line="$1" '$1 == line { n++ } END { print n + 0 }' /proc/net/can/rcvlist_all)" -ge "${2:-1}" ]
+    [ "$(awk -v line="$1" '$1 == line { n++ } END { print n + 0 }' /proc/net/can/rcvlist_*)" -ge "${2:-1}" ]
 }
 
 # listen FILE SECONDS: candump of all lines into this file, from now on; its process is $listener.
