@@ -3,13 +3,19 @@
 //! Layouts of frames are data: `config/robots/NAME/can/*.dbc`, read by `config`, used by [`messages::frames`].
 //!
 //! - [`capture`]: recorded traffic. [`candump`]: the files of can-utils. [`bits`]: how long a frame occupies its line.
+//! - [`address`]: which bus a run uses. [`lines`]: one end of all lines of a robot. [`load`]: how full they are.
 //! - [`interface`]: interfaces by name, and what is wrong with them. [`tap`]: listening and playing, for tools.
 
+pub mod address;
 pub mod bits;
 pub mod candump;
 pub mod candump_line;
 pub mod capture;
 pub mod interface;
+pub mod lines;
+pub mod load;
 pub mod tap;
 
+pub use address::Address;
 pub use capture::{Capture, Captured, Form, Way};
+pub use lines::{End, Lines, Trouble};

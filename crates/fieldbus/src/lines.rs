@@ -1,0 +1,187 @@
+//! The CAN lines of a robot: one end of them, over SocketCAN.
+//!
+//! After [`Lines::open`] nothing allocates and, but for [`Lines::wait`], nothing blocks.
+
+use std::io::{self, ErrorKind};
+use std::os::fd::AsFd;
+use std::time::Duration;
+
+use crate::interface::{self, InterfaceError};
+use messages::layout::{Layout, MAX_NODES};
+use messages::{BusFrames, ERROR_FLAG, Frame};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use socketcan::{
+    CanAnyFrame, CanDataFrame, CanFdFrame, CanFdSocket, CanFilter, EmbeddedFrame, Frame as _, Socket,
+    SocketOptions, StandardId,
+};
+
+/// Errno: the interface is down.
+const DOWN: i32 = 100;
+/// Largest transfer of a CAN FD interface \[byte\].
+const FD_MTU: &str = "72";
+/// Receive buffer asked for \[byte\].
+const BUFFER: usize = 1 << 20;
+
+/// Which end of the lines this is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Lowlevel.
+    Near,
+    /// The drives.
+    Far,
+}
+
+/// What did not work since the last look.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Trouble {
+    /// \[1\] Frames that could not be sent.
+    pub unsent: u32,
+    /// Lines (bits) whose interface is down.
+    pub down: u32,
+}
+
+/// One end of all lines.
+pub struct Lines {
+    sockets: Vec<CanFdSocket>,
+    /// Whether all lines share one interface: then the identifier says which line a frame is of.
+    shared: Option<Layout>,
+    fd: bool,
+    trouble: Trouble,
+}
+
+impl Lines {
+    /// Opens one interface per node of the layout, or one for all.
+    ///
+    /// # Errors
+    /// An interface is missing, down, not a CAN interface or not one of CAN FD; the kernel has no CAN; there are neither one
+    /// nor as many interfaces as nodes.
+    pub fn open(
+        interfaces: &[String],
+        layout: &Layout,
+        fd: bool,
+        end: End,
+    ) -> Result<Self, Box<dyn std::error::Error>> {
+        let nodes = layout.nodes.len();
+        let shared = interfaces.len() == 1 && nodes > 1;
+        if interfaces.len() != nodes && !shared {
+            let n = interfaces.len();
+            return Err(
+                format!("the robot has {nodes} CAN lines; give 1 or {nodes} interfaces, not {n}").into()
+            );
+        }
+        if shared && let Some(m) = layout.messages.iter().find(|m| layout.line_of(m.id).is_none()) {
+            let (name, id) = (&m.name, m.id);
+            return Err(
+                format!("message {name}: identifier {id:#x} is used on several lines; give {nodes} interfaces, one for each").into()
+            );
+        }
+        let mut sockets = Vec::new();
+        for (line, interface) in interfaces.iter().enumerate() {
+            let wanted = layout.messages.iter().filter(|m| m.to_drives == (end == End::Far));
+            let ids: Vec<CanFilter> =
+                wanted.filter(|m| shared || m.node == line).map(|m| CanFilter::new(m.id, 0x7ff)).collect();
+            sockets.push(open(interface, &ids, fd)?);
+        }
+        Ok(Self { sockets, shared: shared.then(|| layout.clone()), fd, trouble: Trouble::default() })
+    }
+
+    /// Sends the frames of a cycle; what a line cannot take is counted.
+    pub fn send(&mut self, frames: &BusFrames) {
+        for frame in frames.as_slice() {
+            let line = if self.shared.is_some() { 0 } else { frame.line as usize };
+            let Some(socket) = self.sockets.get(line) else { continue };
+            if let Err(e) = write(socket, frame, self.fd) {
+                self.trouble.unsent += 1;
+                self.note(line, &e);
+            }
+        }
+    }
+
+    /// Appends what has come; returns how many frames.
+    pub fn receive(&mut self, frames: &mut BusFrames) -> usize {
+        let before = frames.count;
+        for line in 0..self.sockets.len() {
+            loop {
+                match self.sockets[line].read_frame() {
+                    Ok(CanAnyFrame::Remote(_)) => {}
+                    Ok(read) => {
+                        let frame = self.frame(line as u32, &read);
+                        if !frames.push(&frame) {
+                            return (frames.count - before) as usize; // the rest waits in the socket
+                        }
+                    }
+                    Err(e) if e.kind() == ErrorKind::Interrupted => {}
+                    Err(e) => {
+                        self.note(line, &e);
+                        break;
+                    }
+                }
+            }
+        }
+        (frames.count - before) as usize
+    }
+
+    /// Waits until a frame is there, at most that long.
+    pub fn wait(&self, at_most: Duration) {
+        let n = self.sockets.len().min(MAX_NODES);
+        let mut waiting: [PollFd<'_>; MAX_NODES] = std::array::from_fn(|i| {
+            PollFd::from_borrowed_fd(self.sockets[i.min(n - 1)].as_fd(), PollFlags::IN)
+        });
+        let timeout = Timespec::try_from(at_most).ok();
+        // Woken early or in vain: the caller looks and waits again.
+        let _ = poll(&mut waiting[..n], timeout.as_ref());
+    }
+
+    /// What did not work since the last call.
+    pub fn take_trouble(&mut self) -> Trouble {
+        std::mem::take(&mut self.trouble)
+    }
+
+    fn frame(&self, line: u32, read: &CanAnyFrame) -> Frame {
+        let id = read.id_word();
+        let line = match &self.shared {
+            Some(layout) => layout.line_of(id).unwrap_or(line),
+            None => line,
+        };
+        let payload = read.data();
+        let mut data = [0; 64];
+        data[..payload.len()].copy_from_slice(payload);
+        Frame { line, id, len: payload.len() as u32, data }
+    }
+
+    fn note(&mut self, line: usize, e: &io::Error) {
+        if e.raw_os_error() == Some(DOWN) {
+            self.trouble.down |= 1 << line;
+        }
+    }
+}
+
+fn write(socket: &CanFdSocket, frame: &Frame, fd: bool) -> io::Result<()> {
+    let payload = &frame.data[..frame.len as usize];
+    let wrong = || io::Error::from(ErrorKind::InvalidInput);
+    let id = StandardId::new((frame.id & 0x7ff) as u16).ok_or_else(wrong)?;
+    debug_assert!(frame.id & ERROR_FLAG == 0);
+    if fd {
+        let mut frame = CanFdFrame::new(id, payload).ok_or_else(wrong)?;
+        frame.set_brs(true);
+        socket.write_frame(&frame)
+    } else {
+        socket.write_frame(&CanDataFrame::new(id, payload).ok_or_else(wrong)?)
+    }
+}
+
+fn open(name: &str, ids: &[CanFilter], fd: bool) -> Result<CanFdSocket, InterfaceError> {
+    let socket = interface::open(name)?;
+    let mtu = std::fs::read_to_string(format!("/sys/class/net/{name}/mtu")).unwrap_or_default();
+    if fd && mtu.trim() != FD_MTU {
+        let why = format!("carries no CAN FD; `ip link set {name} mtu 72` while it is down");
+        return Err(InterfaceError::new(name, why));
+    }
+    socket
+        .set_nonblocking(true)
+        .and_then(|()| socket.set_filters(ids))
+        .and_then(|()| socket.set_error_filter_accept_all())
+        .and_then(|()| socket.as_raw_socket().set_recv_buffer_size(BUFFER))
+        .map_err(|e| InterfaceError::of(name, &e))?;
+    Ok(socket)
+}
