@@ -9,6 +9,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use cli::run::{Order, Outcome};
 use daemon::Commands;
+use fieldbus::Address;
 use ipc::{Mode, Space};
 use messages::command::Domain;
 use realtime::{CountingAllocator, Grade, Stop};
@@ -37,6 +38,12 @@ enum Task {
         /// Simulated time: every process waits for the others, and two runs are bit for bit the same.
         #[arg(long)]
         lockstep: bool,
+        /// Field bus: shm, can:vcan0 (all lines), can:vcan0-8 (one each), canfd:INTERFACES, sercos:INTERFACES.
+        #[arg(long, default_value = "shm")]
+        bus: Address,
+        /// No simulated robot: somebody else is at the far end of the bus, a robot or a replay.
+        #[arg(long)]
+        no_robot: bool,
         /// Where log and pictures go.
         #[arg(long, value_name = "DIR", default_value = "runs/latest")]
         out: PathBuf,
@@ -227,16 +234,19 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
     let task = arguments.task.unwrap_or(Task::Run {
         scene: "demo".into(),
         lockstep: false,
+        bus: Address::Shared,
+        no_robot: false,
         out: "runs/latest".into(),
         no_log: false,
         no_plots: false,
         dir: cli::RUN_DIR.into(),
     });
     match task {
-        Task::Run { scene, lockstep, out, no_log, no_plots, dir } => {
+        Task::Run { scene, lockstep, bus, no_robot, out, no_log, no_plots, dir } => {
             let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
             let log = (!no_log).then(|| out.join(format!("{scene}.mcap")));
-            run(Order { mode, scene, method: None, config, dir, log, progress: true }, no_plots)
+            let robot = !no_robot;
+            run(Order { mode, scene, method: None, config, bus, robot, dir, log, progress: true }, no_plots)
         }
         Task::Sim { scene, json, log } => sim(&config, &scene, json, log),
         Task::Topic { what, dir } => {
@@ -324,7 +334,7 @@ fn run(mut order: Order, no_plots: bool) -> Result<ExitCode, Box<dyn Error>> {
     let (setup, choice) = cli::choose::load(&order.config, &order.scene, true)?;
     order.method = choice.map(|choice| choice.method);
     let Outcome { died, interrupted } = cli::run::run(&order)?;
-    if let Some(log) = &order.log {
+    if let Some(log) = order.log.as_ref().filter(|_| order.robot) {
         let figures = cli::run::figures_of(log, &setup)?;
         println!("{}", cli::figures::table(&figures));
         if !no_plots {

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use config::Setup;
 use config::tolerance::Method;
+use fieldbus::Address;
 use indicatif::{ProgressBar, ProgressStyle};
 use ipc::{Mode, Reader, Run, Space};
 use messages::command::Domain;
@@ -28,6 +29,10 @@ pub struct Order {
     pub method: Option<Method>,
     /// The configuration directory.
     pub config: PathBuf,
+    /// The field bus.
+    pub bus: Address,
+    /// Whether a simulated robot is put at its far end.
+    pub robot: bool,
     /// The run directory.
     pub dir: PathBuf,
     /// Where the log goes; none: no log.
@@ -73,6 +78,8 @@ pub fn run(order: &Order) -> Result<Outcome, Box<dyn Error>> {
         scene: order.scene.clone(),
         method: order.method.map(|method| method.to_string()),
         config: order.config.clone(),
+        bus: order.bus.to_string(),
+        robot: order.robot,
         log: order.log.clone(),
     };
     run.save()?;
@@ -99,7 +106,12 @@ impl Supervisor {
     /// Starts the processes one after the other; each has built everything before the next begins.
     fn start(&mut self) -> Result<(), Box<dyn Error>> {
         for process in Process::ALL {
-            if process == Process::Logger && self.order.log.is_none() {
+            let wanted = match process {
+                Process::Logger => self.order.log.is_some(),
+                Process::SimBackend => self.order.robot,
+                _ => true,
+            };
+            if !wanted {
                 continue;
             }
             let child = Spawn::new(std::env::current_exe()?)
@@ -275,6 +287,7 @@ impl View {
     }
 
     fn update(&mut self) {
+        self.tell_events();
         let Some(sim) = self.sim.latest() else { return };
         let (t, [x, y, _]) = (sim.time, sim.position);
         self.bar.set_position((t * 10.0) as u64);
@@ -290,7 +303,6 @@ impl View {
                 self.say(&format!("{t:7.3} s  {gait:?}"));
             }
         }
-        self.tell_events();
     }
 
     /// Everything that is no routine.

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::Subcommand;
 use cli::run::Order;
+use fieldbus::Address;
 use ipc::Mode;
 
 /// Which study.
@@ -224,7 +225,17 @@ fn realtime_study(
     let before = cyclictest();
     let (mode, dir, config) = (Mode::RealTime, cli::RUN_DIR.into(), config.to_path_buf());
     let method = choice.map(|choice| choice.method);
-    cli::run::run(&Order { mode, scene, method, config, dir, log: Some(log.clone()), progress: false })?;
+    cli::run::run(&Order {
+        bus: Address::Shared,
+        robot: true,
+        mode,
+        scene,
+        method,
+        config,
+        dir,
+        log: Some(log.clone()),
+        progress: false,
+    })?;
     let after = cyclictest();
     let fell = cli::run::figures_of(&log, &setup)?.fell;
     Ok(studies::cycles::Report {

@@ -43,6 +43,14 @@ impl Setup {
         if problems.is_empty() { Ok(setup) } else { Err(ConfigError { file: path, problems }) }
     }
 
+    /// The same with the frames of classic CAN, or those of CAN FD that every other bus carries.
+    pub fn on_bus(mut self, classic: bool) -> Self {
+        if classic {
+            self.robot.layout = self.robot.classic.clone();
+        }
+        self
+    }
+
     /// The same with a method for the scene; one whose depth is "auto" needs it.
     ///
     /// # Errors

@@ -1,7 +1,6 @@
 //! The process around the joint loop: `gangwerk lowlevel --run DIR`. It is the clock of all others.
 
-use crate::simulated_bus::SimulatedBus;
-use crate::{Fieldbus, JointLoop};
+use crate::{Fieldbus, JointLoop, fieldbus};
 use daemon::Daemon;
 use ipc::{Mode, Reader, Waiter, Writer};
 use messages::topics::{BUS_TX, JOINT_TARGETS, LOG_TICK, POWER, SENSORS, SIM_STATE, WATCHDOG_RESET};
@@ -21,7 +20,7 @@ const ANSWER: (u64, u64) = (7, 10);
 pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
     let mut d = Daemon::new(Process::Lowlevel, dir)?;
     let mut ports = Ports {
-        bus: SimulatedBus::new(&d)?,
+        bus: fieldbus::open(&d)?,
         sensors: d.space.writer(&SENSORS)?,
         reset: d.space.writer(&WATCHDOG_RESET)?,
         targets: d.space.reader(&JOINT_TARGETS)?,
@@ -45,7 +44,7 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 struct Ports {
-    bus: SimulatedBus,
+    bus: Box<dyn Fieldbus>,
     sensors: Writer<Sensors>,
     reset: Writer<WatchdogReset>,
     targets: Reader<JointTargets>,

@@ -1,12 +1,37 @@
 //! The far end of the bus.
 
+use std::error::Error;
+
+use ::fieldbus::Address;
+use daemon::Daemon;
+use ipc::Waiter;
 use messages::BusFrames;
 
-/// A field bus that exchanges the frames of one cycle. Implementations neither allocate nor block in these calls.
+use crate::can_bus::CanBus;
+use crate::simulated_bus::SimulatedBus;
+
+/// A field bus that exchanges the frames of one cycle. Implementations neither allocate nor block in [`Fieldbus::send`] and
+/// [`Fieldbus::receive`].
 pub trait Fieldbus {
     /// Sends the frames of this cycle to the drives.
     fn send(&mut self, frames: &BusFrames);
 
-    /// The newest frames from the drives that were not taken yet.
+    /// The newest frames from the drives that were not taken yet; their header says to which cycle they should belong.
     fn receive(&mut self) -> Option<&BusFrames>;
+
+    /// Waits for the answer to cycle `tick`, 0 for where the drives are before the first; in lockstep only. `Ok(false)`:
+    /// asked to end.
+    ///
+    /// # Errors
+    /// Nobody answers.
+    fn wait(&mut self, d: &Daemon, waiter: &Waiter, tick: u64) -> Result<bool, Box<dyn Error>>;
+}
+
+/// The bus of a run.
+pub(crate) fn open(d: &Daemon) -> Result<Box<dyn Fieldbus>, Box<dyn Error>> {
+    match &d.bus {
+        Address::Shared => Ok(Box::new(SimulatedBus::new(d)?)),
+        Address::Can { fd, interfaces } => Ok(Box::new(CanBus::new(d, *fd, interfaces)?)),
+        Address::Sercos(_) => Err("lowlevel: no Sercos master is built in".into()),
+    }
 }

@@ -7,9 +7,11 @@
 //! | controlled stop when targets stay away | [`braking`] |
 //! | targets → frames of the bus; watchdog reset | [`JointLoop::send`] |
 //!
-//! What is at the far end of the bus is behind the trait [`Fieldbus`]: a simulated robot, later CAN and Sercos III.
+//! What is at the far end of the bus is behind the trait [`Fieldbus`]: shared memory or CAN lines to a simulated
+//! robot, or a robot.
 
 pub mod braking;
+mod can_bus;
 pub mod daemon;
 pub mod fieldbus;
 pub mod joint_loop;

@@ -19,21 +19,6 @@ impl SimulatedBus {
     pub(crate) fn new(d: &Daemon) -> Result<Self, IpcError> {
         Ok(Self { tx: d.space.writer(&BUS_TX)?, rx: d.space.reader(&BUS_RX)?, new: false })
     }
-
-    /// Waits for the answer to cycle `tick`; in lockstep only. `Ok(false)`: asked to end.
-    pub(crate) fn wait(
-        &mut self,
-        d: &Daemon,
-        waiter: &Waiter,
-        tick: u64,
-    ) -> Result<bool, Box<dyn std::error::Error>> {
-        debug_assert!(d.mode == Mode::Lockstep);
-        let rx = &mut self.rx;
-        let answered =
-            d.wait(waiter, "sim-backend", || rx.latest().is_some_and(|f| f.header.tick == tick))?;
-        self.new = answered;
-        Ok(answered)
-    }
 }
 
 impl Fieldbus for SimulatedBus {
@@ -44,5 +29,14 @@ impl Fieldbus for SimulatedBus {
     fn receive(&mut self) -> Option<&BusFrames> {
         let new = self.rx.refresh() | std::mem::take(&mut self.new);
         self.rx.held().filter(|_| new)
+    }
+
+    fn wait(&mut self, d: &Daemon, waiter: &Waiter, tick: u64) -> Result<bool, Box<dyn std::error::Error>> {
+        debug_assert!(d.mode == Mode::Lockstep);
+        let rx = &mut self.rx;
+        let answered =
+            d.wait(waiter, "sim-backend", || rx.latest().is_some_and(|f| f.header.tick == tick))?;
+        self.new = answered;
+        Ok(answered)
     }
 }

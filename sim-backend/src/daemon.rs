@@ -3,11 +3,12 @@
 //! It moves on with every cycle of the bus. In real time it also moves on without: the world does not wait for a dead
 //! joint loop.
 
-use crate::SimBackend;
+use crate::far_end::FarEnd;
+use crate::{SimBackend, far_end};
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Writer};
-use messages::topics::{BUS_RX, BUS_TX, POWER, SIM_STATE};
-use messages::{BusFrames, Command, EventCode, Header, Power, Process, SimState};
+use messages::topics::{POWER, SIM_STATE};
+use messages::{Command, EventCode, Header, Power, Process, SimState};
 use realtime::clock;
 use std::error::Error;
 use std::path::Path;
@@ -23,24 +24,20 @@ const PATIENCE: u64 = 2;
 pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut d = Daemon::new(Process::SimBackend, dir)?;
     let mut ports = Ports {
-        tx: d.space.reader(&BUS_TX)?,
+        bus: far_end::open(&mut d)?,
         power: d.space.reader(&POWER)?,
-        rx: d.space.writer(&BUS_RX)?,
         state: d.space.writer(&SIM_STATE)?,
-        bell: d.bell(&BUS_RX)?,
         commands: connect(&d.space)?,
     };
-    let waiter = d.space.waiter(Process::SimBackend)?;
     let mut sim = SimBackend::new(&d.setup.robot, &d.setup.scene)?;
     d.report(Header::default(), EventCode::Started, 0);
     let (frames, _) = sim.step(None, None);
-    ports.rx.write(frames);
-    d.ring(ports.bell);
+    ports.bus.answer(&d, frames);
 
     let mut header = Header::default();
     match d.mode {
         Mode::Lockstep => {
-            while d.wait(&waiter, "lowlevel", || ports.tx.refresh())? {
+            while ports.bus.next(&d)? {
                 d.begin(clock::now());
                 header = cycle(&mut d, &mut sim, &mut ports);
             }
@@ -51,15 +48,17 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             let mut due = clock::now();
             while !d.stop.asked() {
                 let patience = if running { PATIENCE * period } else { 20 * period };
-                let new = ports.tx.refresh() || {
-                    waiter.wait(Duration::from_nanos((due + patience).saturating_sub(clock::now()).max(1)));
-                    ports.tx.refresh()
+                let new = ports.bus.refresh() || {
+                    ports
+                        .bus
+                        .wait(Duration::from_nanos((due + patience).saturating_sub(clock::now()).max(1)));
+                    ports.bus.refresh()
                 };
                 running |= new;
                 let now = clock::now();
                 if new || (running && now >= due + patience) {
                     due = if new { now } else { due + period };
-                    if let Some(frames) = ports.tx.held().filter(|_| new) {
+                    if let Some(frames) = ports.bus.held().filter(|_| new) {
                         d.begin_woken(frames.header);
                     } else {
                         d.begin(due);
@@ -76,11 +75,9 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
 }
 
 struct Ports {
-    tx: Reader<BusFrames>,
+    bus: Box<dyn FarEnd>,
     power: Reader<Power>,
-    rx: Writer<BusFrames>,
     state: Writer<SimState>,
-    bell: usize,
     commands: Commands,
 }
 
@@ -91,11 +88,10 @@ fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
             sim.push(&push);
         }
     }
-    let (frames, state) = sim.step(p.tx.held(), p.power.latest());
+    let (frames, state) = sim.step(p.bus.held(), p.power.latest());
     let header = state.header;
     p.state.write(state);
-    p.rx.write(frames);
-    d.ring(p.bell);
+    p.bus.answer(d, frames);
     if let Some((code, detail)) = sim.take_event() {
         d.report(header, code, detail);
     }

@@ -2,6 +2,7 @@
 //!
 //! | part | where |
 //! |---|---|
+//! | the bus, in shared memory or on CAN lines | `far_end.rs`, `can_end.rs` |
 //! | frames from the bus → joint targets; sensor data → frames | [`SimBackend::step`] |
 //! | motor power line | [`power`] |
 //! | joint references | [`drive`] |
@@ -12,8 +13,10 @@
 //! | time steps; the adaptive ones | [`integrate`], [`stiff`] |
 //! | what the sensors make of it | [`sensors`] |
 
+mod can_end;
 pub mod daemon;
 pub mod drive;
+mod far_end;
 pub mod feet;
 pub mod implicit;
 pub mod integrate;

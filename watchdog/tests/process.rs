@@ -65,6 +65,8 @@ impl Rig {
             scene: "watchdog".into(),
             method: None,
             config: config(&dir),
+            bus: "shm".into(),
+            robot: true,
             log: None,
         };
         run.save().unwrap();

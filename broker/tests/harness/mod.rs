@@ -59,6 +59,8 @@ impl System {
             scene: "none".into(),
             method: None,
             config: "none".into(),
+            bus: "shm".into(),
+            robot: true,
             log: None,
         };
         run.save().expect("run");

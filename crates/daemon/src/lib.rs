@@ -5,6 +5,7 @@
 //! ports and its loop.
 
 use config::Setup;
+use fieldbus::Address;
 use ipc::{Bell, IpcError, Mode, Run, Space, Waiter, Woken, Writer};
 use messages::topics::{Process, Topic};
 use messages::{Command, CycleStats, Event, EventCode, Header};
@@ -30,6 +31,10 @@ pub struct Daemon {
     pub process: Process,
     /// Lockstep or real time.
     pub mode: Mode,
+    /// The field bus.
+    pub bus: Address,
+    /// Whether a simulated robot is at its far end.
+    pub robot: bool,
     /// Whether the run is logged.
     pub logged: bool,
     /// Scene, robot, gait, run-time system.
@@ -55,7 +60,8 @@ impl Daemon {
         let stop = Stop::on_signals()?;
         let run = Run::load(dir)?;
         let method = run.method.as_deref().map(str::parse).transpose()?;
-        let setup = Setup::load(&run.config, &run.scene)?.with_method(method)?;
+        let bus: Address = run.bus.parse()?;
+        let setup = Setup::load(&run.config, &run.scene)?.with_method(method)?.on_bus(bus.is_classic());
         let row = setup.system.process(process).cloned();
         let schedule = match (run.mode, &row) {
             (Mode::RealTime, Some(row)) => Schedule { priority: row.priority, core: row.core },
@@ -75,6 +81,8 @@ impl Daemon {
             bells: Vec::new(),
             cycle: 0,
             granted,
+            bus,
+            robot: run.robot,
             logged: run.log.is_some(),
             mode: run.mode,
             process,

@@ -7,6 +7,8 @@
 //! scene = walk_1kmh
 //! method = type 2, semi_implicit x 4 # what was chosen for a scene that leaves it open; else empty
 //! config = /home/me/gangwerk/config
+//! bus = can:vcan0,vcan1      # or shm, canfd:..., sercos:...
+//! robot = simulated          # or elsewhere
 //! log = /home/me/walk.mcap   # empty: no log
 //! ```
 
@@ -37,6 +39,10 @@ pub struct Run {
     pub method: Option<String>,
     /// The configuration directory: `system.toml`, `robots/`, `scenes/`, `gaits/`.
     pub config: PathBuf,
+    /// The field bus, as `fieldbus::Address` reads it.
+    pub bus: String,
+    /// Whether a simulated robot is at the far end of the bus.
+    pub robot: bool,
     /// Where the log goes; none: nowhere.
     pub log: Option<PathBuf>,
 }
@@ -50,10 +56,12 @@ impl Run {
         };
         let log = self.log.as_deref().unwrap_or(Path::new(""));
         let text = format!(
-            "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nlog = {}\n",
+            "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nbus = {}\nrobot = {}\nlog = {}\n",
             self.scene,
             self.method.as_deref().unwrap_or_default(),
             self.config.display(),
+            self.bus,
+            if self.robot { "simulated" } else { "elsewhere" },
             log.display()
         );
         // Whole or not at all: a process never reads half a file.
@@ -90,6 +98,8 @@ impl Run {
             scene: value("scene")?.into(),
             method: (!method.is_empty()).then(|| method.into()),
             config: value("config")?.into(),
+            bus: value("bus")?.into(),
+            robot: value("robot")? == "simulated",
             log: (!log.is_empty()).then(|| log.into()),
         })
     }

@@ -181,6 +181,8 @@ fn a_run_is_saved_and_loaded() {
         scene: "walk_1kmh".into(),
         method: None,
         config: "/somewhere/config".into(),
+        bus: "shm".into(),
+        robot: true,
         log: None,
     };
     run.save().unwrap();

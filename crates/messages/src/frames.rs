@@ -125,6 +125,11 @@ pub fn decode_sensors(layout: &Layout, frames: &BusFrames, sensors: &mut Sensors
     received
 }
 
+/// What became of the frames of their header's cycle, without reading any number.
+pub fn look(layout: &Layout, to_drives: bool, frames: &BusFrames) -> Received {
+    decode(layout, to_drives, frames, |_, _| {})
+}
+
 /// Every message of one direction, in the order of the layout.
 fn encode(
     layout: &Layout,

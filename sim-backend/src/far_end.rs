@@ -1,0 +1,85 @@
+//! The far end of the bus: where the simulated robot hears what it is told and answers.
+
+use std::error::Error;
+use std::time::Duration;
+
+use daemon::Daemon;
+use fieldbus::Address;
+use ipc::{IpcError, Reader, Waiter, Writer};
+use messages::BusFrames;
+use messages::topics::{BUS_RX, BUS_TX, Process};
+
+use crate::can_end::CanEnd;
+
+/// One end of a bus. But for the two that wait, nothing blocks or allocates.
+pub(crate) trait FarEnd {
+    /// Looks for a whole cycle that was not taken yet.
+    fn refresh(&mut self) -> bool;
+
+    /// The frames of the last one; their header says of which tick they are.
+    fn held(&self) -> Option<&BusFrames>;
+
+    /// Sends the sensors' frames.
+    fn answer(&mut self, d: &Daemon, frames: &BusFrames);
+
+    /// Waits until something may have come, at most that long.
+    fn wait(&mut self, at_most: Duration);
+
+    /// In lockstep: waits for the next cycle. `Ok(false)`: asked to end.
+    ///
+    /// # Errors
+    /// Lowlevel fell silent.
+    fn next(&mut self, d: &Daemon) -> Result<bool, Box<dyn Error>>;
+}
+
+/// The bus of a run.
+pub(crate) fn open(d: &mut Daemon) -> Result<Box<dyn FarEnd>, Box<dyn Error>> {
+    match d.bus.clone() {
+        Address::Shared => Ok(Box::new(SharedEnd::new(d)?)),
+        Address::Can { fd, interfaces } => Ok(Box::new(CanEnd::new(d, fd, &interfaces)?)),
+        Address::Sercos(_) => Err("sim-backend: no Sercos slaves are built in".into()),
+    }
+}
+
+/// Frames through shared memory.
+struct SharedEnd {
+    tx: Reader<BusFrames>,
+    rx: Writer<BusFrames>,
+    bell: usize,
+    waiter: Waiter,
+}
+
+impl SharedEnd {
+    fn new(d: &mut Daemon) -> Result<Self, IpcError> {
+        Ok(Self {
+            tx: d.space.reader(&BUS_TX)?,
+            rx: d.space.writer(&BUS_RX)?,
+            bell: d.bell(&BUS_RX)?,
+            waiter: d.space.waiter(Process::SimBackend)?,
+        })
+    }
+}
+
+impl FarEnd for SharedEnd {
+    fn refresh(&mut self) -> bool {
+        self.tx.refresh()
+    }
+
+    fn held(&self) -> Option<&BusFrames> {
+        self.tx.held()
+    }
+
+    fn answer(&mut self, d: &Daemon, frames: &BusFrames) {
+        self.rx.write(frames);
+        d.ring(self.bell);
+    }
+
+    fn wait(&mut self, at_most: Duration) {
+        self.waiter.wait(at_most);
+    }
+
+    fn next(&mut self, d: &Daemon) -> Result<bool, Box<dyn Error>> {
+        let tx = &mut self.tx;
+        d.wait(&self.waiter, "lowlevel", || tx.refresh())
+    }
+}
