@@ -86,6 +86,8 @@ pub(super) enum Task {
         #[arg(long, value_name = "DIR", default_value = "runs/study/arm_swing")]
         out: PathBuf,
     },
+    /// What the field bus costs: load of its lines, time of its frames, accuracy of the walk.
+    Bus,
     /// How well the processes keep real time, beside cyclictest before and after.
     Realtime {
         /// The scene that is run.
@@ -126,6 +128,10 @@ pub(super) fn run(config: &Path, what: Task, json: bool) -> Result<ExitCode, Box
             let report = limits::run(config)?;
             tracing::info!("{}", limits::draw(&out)?);
             (serde_json::to_string(&report)?, limits::table(&report))
+        }
+        Task::Bus => {
+            let report = studies::bus::run(config)?;
+            (serde_json::to_string(&report)?, studies::bus::table(&report))
         }
         Task::Speed => {
             let report = speed::run(config)?;

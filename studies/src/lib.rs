@@ -8,6 +8,7 @@
 //! | [`stability`] | how near to falling is a walk, how fast does it forget, what does it survive? |
 //! | [`limits`] | where do methods fail, and is it told? |
 //! | [`speed`], [`simulation_speed`] | how fast is each part, and how accurate is it at that speed? |
+//! | [`bus`] | what does the field bus cost, in time, room on its lines and accuracy of the walk? |
 //! | [`arm_swing`] | what do swinging arms take from the soles? |
 //! | [`figures_of_thesis`] | are the figures of the thesis found again? |
 //! | [`scorecard`] | does everything walk that is to walk, and how well beside what others reached? |
@@ -17,6 +18,7 @@
 
 pub mod accuracy;
 pub mod arm_swing;
+pub mod bus;
 pub mod chain;
 pub mod cycles;
 pub mod depth;

@@ -8,7 +8,7 @@ mod demand;
 mod entries;
 mod fastest;
 mod pushes;
-mod walk;
+pub(crate) mod walk;
 
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};

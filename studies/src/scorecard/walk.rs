@@ -16,10 +16,10 @@ use crate::figures::{Figures, Gatherer};
 const STEPS: [f64; 2] = [2.5e-4, 1e-4];
 
 /// A walk and how it ended.
-pub(super) struct Walked {
-    pub(super) figures: Figures,
+pub(crate) struct Walked {
+    pub(crate) figures: Figures,
     /// What ended it before its time, if anything did.
-    pub(super) ended: Option<String>,
+    pub(crate) ended: Option<String>,
 }
 
 impl Walked {
@@ -50,7 +50,7 @@ pub(super) fn walk_at(setup: &mut Setup, kmh: f64) {
 }
 
 /// One walk.
-pub(super) fn walk(setup: &Setup) -> Result<Walked> {
+pub(crate) fn walk(setup: &Setup) -> Result<Walked> {
     let begun = thread_time();
     let mut chain = Chain::new(setup).map_err(|e| e.to_string())?;
     let mut gatherer = Gatherer::default();

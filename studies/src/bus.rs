@@ -1,0 +1,244 @@
+//! What the field bus costs: how full its lines are, how long frames take to make and to read, and what the resolution and
+//! the cycle of a bus do to the walk.
+
+use std::hint::black_box;
+use std::path::Path;
+
+use config::scene::Integrator;
+use config::tolerance::Method;
+use config::{Robot, Setup};
+use fieldbus::load::{Rates, cycle_time};
+use messages::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
+use messages::layout::{Carries, Layout};
+use messages::{BusFrames, Sensors};
+use realtime::clock::thread_time;
+use serde::Serialize;
+
+use crate::scorecard::walk;
+
+/// Robots, and the cycle of their CAN lines \[s\]: Lola's of the thesis (8.2), Johnnie's control cycle (5.5.1).
+const ROBOTS: [(&str, f64); 2] = [("lola", 0.0035), ("johnnie", 0.0015)];
+/// Classic CAN, and CAN FD with the usual data rate.
+const CLASSIC: Rates = Rates { nominal: 1e6, data: None };
+const FD: Rates = Rates { nominal: 1e6, data: Some(5e6) };
+/// \[s\] Cycle that CAN FD is to allow.
+const FD_CYCLE: f64 = 0.001;
+/// Walks, whose joint laws hear their targets and tell their angles by the bus, and the cycles they are walked with.
+const WALKS: [(&str, &[f64]); 2] = [("walk_2kmh_type3", &[0.001, 0.0035]), ("johnnie_type3", &[0.0015])];
+/// \[s\] Integration step of the models with motors.
+const STEP: f64 = 1e-4;
+/// Cycles that are timed together, and how often; the median counts.
+const TIMED: (usize, usize) = (1000, 51);
+
+type Error = Box<dyn std::error::Error>;
+
+/// Everything that was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Per robot and kind of bus.
+    pub buses: Vec<Bus>,
+    /// Per walk and kind of bus.
+    pub walks: Vec<Walk>,
+}
+
+/// One robot's frames.
+#[derive(Clone, Debug, Serialize)]
+pub struct Bus {
+    /// Name of the robot.
+    pub robot: String,
+    /// Kind of bus.
+    pub kind: String,
+    /// \[s\]
+    pub cycle_s: f64,
+    /// Frames of one cycle: to the drives, from them.
+    pub frames: [usize; 2],
+    /// The fullest line.
+    pub fullest: String,
+    /// \[1\] Its load by the frames of one cycle with the worst stuffing.
+    pub load: f64,
+    /// \[us\] Encoding and decoding all frames of one cycle at lowlevel: median.
+    pub near_us: f64,
+    /// \[us\] The same at the far end.
+    pub far_us: f64,
+    /// \[rad\] Smallest step of a target.
+    pub target_step: f64,
+    /// \[rad\] Smallest step of a measured angle.
+    pub angle_step: f64,
+}
+
+/// One walk over one kind of bus.
+#[derive(Clone, Debug, Serialize)]
+pub struct Walk {
+    /// Name of the scene.
+    pub scene: String,
+    /// Kind of bus.
+    pub kind: String,
+    /// \[s\]
+    pub cycle_s: f64,
+    /// What ended it before its time.
+    pub ended: Option<String>,
+    /// \[mrad\] Largest inclination errors phi_x, phi_y.
+    pub inclination_mrad: [f64; 2],
+    /// \[mrad\] Largest tracking error of hip flexion and knees.
+    pub tracking_mrad: f64,
+}
+
+/// Computes loads, measures costs, walks.
+///
+/// # Errors
+/// A configuration is wrong.
+pub fn run(root: &Path) -> Result<Report, Error> {
+    let mut buses = Vec::new();
+    for (name, cycle) in ROBOTS {
+        let robot = Robot::load(&root.join("robots").join(name))?;
+        buses.push(bus(&robot, "classic CAN, 1 Mbit/s", &robot.classic, CLASSIC, cycle));
+        buses.push(bus(&robot, "CAN FD, 1 and 5 Mbit/s", &robot.layout, FD, FD_CYCLE));
+    }
+    let mut walks = Vec::new();
+    for (scene, cycles) in WALKS {
+        for &cycle in cycles {
+            for classic in [true, false] {
+                walks.push(one_walk(root, scene, cycle, classic)?);
+            }
+        }
+    }
+    Ok(Report { buses, walks })
+}
+
+fn one_walk(root: &Path, scene: &str, cycle: f64, classic: bool) -> Result<Walk, Error> {
+    let mut setup = Setup::load(root, scene)?.on_bus(classic);
+    let substeps = (cycle / STEP).round() as u32;
+    setup.scene.choose(Method { depth: 3, integrator: Integrator::SemiImplicit, substeps });
+    setup.scene.cycle = cycle;
+    let walked = walk::walk(&setup)?;
+    let f = &walked.figures;
+    Ok(Walk {
+        scene: scene.into(),
+        kind: if classic { "classic CAN" } else { "CAN FD" }.into(),
+        cycle_s: cycle,
+        inclination_mrad: f.inclination_error_max_rad.map(|x| 1e3 * x),
+        tracking_mrad: 1e3 * f.hip_knee_tracking_error_max_rad,
+        ended: walked.ended,
+    })
+}
+
+fn bus(robot: &Robot, kind: &str, layout: &Layout, rates: Rates, cycle: f64) -> Bus {
+    let times = cycle_time(layout, rates);
+    let (line, time) =
+        times.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).expect("a robot has a node");
+    let step = |wanted: fn(&Carries) -> bool| {
+        let all = layout.messages.iter().flat_map(|m| &m.signals).filter(|s| wanted(&s.carries));
+        all.map(|s| s.scale).fold(0.0, f64::max)
+    };
+    let (near_us, far_us) = costs(layout);
+    Bus {
+        robot: robot.name.clone(),
+        kind: kind.into(),
+        cycle_s: cycle,
+        frames: [layout.sent(true).count(), layout.sent(false).count()],
+        fullest: layout.nodes[line].clone(),
+        load: time / cycle,
+        near_us,
+        far_us,
+        target_step: step(|c| matches!(c, Carries::Target(_))),
+        angle_step: step(|c| matches!(c, Carries::Angle(_))),
+    }
+}
+
+/// Median times \[us\] of one cycle at lowlevel and at the far end.
+fn costs(layout: &Layout) -> (f64, f64) {
+    let (mut command, mut sensors) = (DriveCommand::default(), Sensors::default());
+    let (mut tx, mut rx) = (BusFrames::default(), BusFrames::default());
+    for j in 0..messages::MAX_JOINTS {
+        command.targets.angle[j] = 0.1 * j as f64;
+        sensors.joint_angle[j] = -0.1 * j as f64;
+    }
+    let mut tick = 0;
+    encode_targets(layout, &command, &mut tx);
+    encode_sensors(layout, &sensors, &mut rx);
+    let near = median(|| {
+        tick += 1;
+        command.targets.header.tick = tick;
+        encode_targets(layout, black_box(&command), &mut tx);
+        rx.header.tick = 0;
+        black_box(decode_sensors(layout, black_box(&rx), &mut sensors));
+    });
+    let mut told = DriveCommand::default();
+    tx.header.tick = tick;
+    let far = median(|| {
+        sensors.header.tick += 1;
+        black_box(decode_targets(layout, black_box(&tx), &mut told));
+        encode_sensors(layout, black_box(&sensors), &mut rx);
+    });
+    (near, far)
+}
+
+fn median(mut work: impl FnMut()) -> f64 {
+    let mut times: Vec<f64> = (0..TIMED.1)
+        .map(|_| {
+            let begun = thread_time();
+            (0..TIMED.0).for_each(|_| work());
+            (thread_time() - begun) as f64 * 1e-3 / TIMED.0 as f64
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[TIMED.1 / 2]
+}
+
+/// The report for people.
+pub fn table(report: &Report) -> String {
+    let mut text = String::from(
+        "robot    bus                     cycle  frames   fullest line       load   lowlevel  far end  target  angle\n\
+         \x20                                  ms  to from                             us       us    urad   urad\n",
+    );
+    for b in &report.buses {
+        text += &format!(
+            "{:8} {:23} {:5.1} {:4} {:4}   {:14} {:6.1} %  {:8.2} {:8.2} {:7.3} {:6.3}\n",
+            b.robot,
+            b.kind,
+            1e3 * b.cycle_s,
+            b.frames[0],
+            b.frames[1],
+            b.fullest,
+            100.0 * b.load,
+            b.near_us,
+            b.far_us,
+            1e6 * b.target_step,
+            1e6 * b.angle_step
+        );
+    }
+    text += "\nwalk              bus           cycle   inclination    hips, knees\n\
+             \x20                                 ms   mrad            mrad\n";
+    for w in &report.walks {
+        text += &format!(
+            "{:17} {:12} {:6.1}   {:4.1}  {:4.1}     {:6.2}   {}\n",
+            w.scene,
+            w.kind,
+            1e3 * w.cycle_s,
+            w.inclination_mrad[0],
+            w.inclination_mrad[1],
+            w.tracking_mrad,
+            w.ended.as_deref().unwrap_or("")
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The frames of a cycle fit on every line of every robot.
+    #[test]
+    fn every_line_has_room_for_its_frames() {
+        let root = config::root(None);
+        for (name, cycle) in ROBOTS {
+            let robot = Robot::load(&root.join("robots").join(name)).unwrap();
+            for (layout, rates, cycle) in [(&robot.classic, CLASSIC, cycle), (&robot.layout, FD, FD_CYCLE)] {
+                for (time, node) in cycle_time(layout, rates).iter().zip(&layout.nodes) {
+                    assert!(*time < cycle, "{name}, {node}: {time} s of {cycle}");
+                }
+            }
+        }
+    }
+}
