@@ -6,9 +6,9 @@ use std::time::Duration;
 use daemon::Daemon;
 use fieldbus::{End, Lines};
 use ipc::Waiter;
-use messages::BusFrames;
 use messages::frames::{self, DriveCommand, encode_targets};
 use messages::layout::Layout;
+use messages::{BusFrames, MAX_FRAMES};
 use realtime::clock;
 
 use crate::Fieldbus;
@@ -86,7 +86,12 @@ impl Fieldbus for CanBus {
                     format!("lowlevel: nobody answers on the CAN lines within {seconds} s{why}").into()
                 );
             }
-            self.lines.wait(LOOK);
+            if self.rx.as_slice().len() == MAX_FRAMES {
+                frames::keep_current(&self.layout, false, &mut self.rx); // else there is no room for the rest
+            }
+            // Lines are answered in their order: the last one that is missing is worth waking up for.
+            let last = (0..self.layout.nodes.len()).rfind(|&node| !received.complete(node));
+            self.lines.wait(last, LOOK);
         }
         Ok(false)
     }

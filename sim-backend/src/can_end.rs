@@ -47,8 +47,8 @@ struct Gathering {
 enum Step {
     More,
     Whole,
-    /// Asked for the state before the first cycle.
-    Asked,
+    /// This line was asked for the state before the first cycle.
+    Asked(u32),
 }
 
 impl CanEnd {
@@ -68,7 +68,7 @@ impl CanEnd {
         for i in 0..count {
             match self.gathering.take(&self.layout, &self.inbox.frames[i]) {
                 Step::More => {}
-                Step::Asked => self.lines.send(&self.answer),
+                Step::Asked(line) => self.lines.send_on(line, &self.answer),
                 Step::Whole => {
                     self.inbox.frames.copy_within(i + 1..count, 0);
                     self.inbox.count = (count - i - 1) as u64;
@@ -109,7 +109,7 @@ impl FarEnd for CanEnd {
     }
 
     fn wait(&mut self, at_most: Duration) {
-        self.lines.wait(at_most);
+        self.lines.wait(None, at_most);
     }
 
     fn next(&mut self, d: &Daemon) -> Result<bool, Box<dyn Error>> {
@@ -136,7 +136,9 @@ impl FarEnd for CanEnd {
                 )
                 .into());
             }
-            self.lines.wait(LOOK);
+            // Lines are synchronized in their order.
+            let last = (self.gathering.alive & !self.gathering.synced).checked_ilog2();
+            self.lines.wait(last.map(|line| line as usize), LOOK);
         }
         Ok(false)
     }
@@ -168,7 +170,7 @@ impl Gathering {
         if ahead == 0 && self.synced == 0 {
             if self.tick == 0 {
                 self.frames.count = 0;
-                return Step::Asked;
+                return Step::Asked(frame.line);
             }
             // A repeated one, or a broken line that speaks again, too late for this cycle.
             self.alive |= line;

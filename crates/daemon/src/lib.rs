@@ -114,7 +114,7 @@ impl Daemon {
     }
 
     /// Waits until `ready`; `Ok(false)`: asked to end. In lockstep a silent peer is an error that names it; in real time
-    /// it is waited for without end: its silence is seen by the age of what it wrote.
+    /// it is waited for without end, as before the first cycle: its silence is seen by the age of what it wrote.
     pub fn wait(
         &self,
         waiter: &Waiter,
@@ -126,6 +126,8 @@ impl Daemon {
                 Woken::Ready => return Ok(true),
                 Woken::Stopped => return Ok(false),
                 Woken::Silent if self.mode == Mode::RealTime => {}
+                // Others may still be starting; the supervisor watches that.
+                Woken::Silent if self.cycle == 0 => {}
                 Woken::Silent => {
                     let seconds = self.patience().as_secs_f64();
                     let me = self.process.name();

@@ -87,14 +87,21 @@ impl Lines {
 
     /// Sends the frames of a cycle; what a line cannot take is counted.
     pub fn send(&mut self, frames: &BusFrames) {
-        for frame in frames.as_slice() {
-            let line = if self.shared.is_some() { 0 } else { frame.line as usize };
-            let Some(socket) = self.sockets.get(line) else { continue };
-            if let Err(e) = write(socket, frame, self.fd) {
-                self.trouble.unsent += 1;
-                self.note(line, &e);
-            }
+        frames.as_slice().iter().for_each(|frame| self.send_one(frame));
+    }
+
+    fn send_one(&mut self, frame: &Frame) {
+        let line = if self.shared.is_some() { 0 } else { frame.line as usize };
+        let Some(socket) = self.sockets.get(line) else { return };
+        if let Err(e) = write(socket, frame, self.fd) {
+            self.trouble.unsent += 1;
+            self.note(line, &e);
         }
+    }
+
+    /// Sends those frames of a cycle that belong to one line.
+    pub fn send_on(&mut self, line: u32, frames: &BusFrames) {
+        frames.as_slice().iter().filter(|f| f.line == line).for_each(|f| self.send_one(f));
     }
 
     /// Appends what has come; returns how many frames.
@@ -121,15 +128,16 @@ impl Lines {
         (frames.count - before) as usize
     }
 
-    /// Waits until a frame is there, at most that long.
-    pub fn wait(&self, at_most: Duration) {
+    /// Waits until a frame is there, at most that long; on one line, if it is known which one will speak last.
+    pub fn wait(&self, line: Option<usize>, at_most: Duration) {
         let n = self.sockets.len().min(MAX_NODES);
         let mut waiting: [PollFd<'_>; MAX_NODES] = std::array::from_fn(|i| {
             PollFd::from_borrowed_fd(self.sockets[i.min(n - 1)].as_fd(), PollFlags::IN)
         });
         let timeout = Timespec::try_from(at_most).ok();
+        let wanted = line.map_or(0..n, |line| line.min(n - 1)..line.min(n - 1) + 1);
         // Woken early or in vain: the caller looks and waits again.
-        let _ = poll(&mut waiting[..n], timeout.as_ref());
+        let _ = poll(&mut waiting[wanted], timeout.as_ref());
     }
 
     /// What did not work since the last call.

@@ -1,7 +1,7 @@
 //! Records to frames and back, by the layout of a robot: [`Layout`].
 
-use crate::bus::{BusFrames, ERROR_FLAG};
-use crate::layout::{Carries, Layout, MAX_NODES};
+use crate::bus::{BusFrames, ERROR_FLAG, Frame};
+use crate::layout::{Carries, Layout, MAX_NODES, Message};
 use crate::{JointMode, JointTargets, MAX_JOINTS, Sensors};
 
 /// What the drives are told in one cycle.
@@ -130,6 +130,29 @@ pub fn look(layout: &Layout, to_drives: bool, frames: &BusFrames) -> Received {
     decode(layout, to_drives, frames, |_, _| {})
 }
 
+/// Throws away what does not belong to the header's cycle.
+pub fn keep_current(layout: &Layout, to_drives: bool, frames: &mut BusFrames) {
+    let mut kept = 0;
+    for i in 0..frames.as_slice().len() {
+        let frame = frames.frames[i];
+        let message = layout.find(frame.line, frame.id).map(|m| &layout.messages[m]);
+        let wanted = message.is_some_and(|m| {
+            m.to_drives == to_drives && m.len == frame.len && is_current(m, &frame, frames.header.tick)
+        });
+        if wanted {
+            frames.frames[kept] = frame;
+            kept += 1;
+        }
+    }
+    frames.count = kept as u64;
+}
+
+/// Whether a frame of this message is of cycle `tick`; one without counter always is.
+fn is_current(message: &Message, frame: &Frame, tick: u64) -> bool {
+    let counter = message.counter();
+    counter.is_none_or(|s| s.get(&frame.data) as u64 == tick & ((1 << s.bits) - 1))
+}
+
 /// Every message of one direction, in the order of the layout.
 fn encode(
     layout: &Layout,
@@ -180,9 +203,7 @@ fn decode(
             received.wrong_length += 1;
             continue;
         }
-        let belongs =
-            |s: &crate::layout::Signal| s.get(&frame.data) as u64 == frames.header.tick & ((1 << s.bits) - 1);
-        if !message.counter().is_none_or(belongs) {
+        if !is_current(message, frame, frames.header.tick) {
             received.stale += 1;
             continue;
         }
