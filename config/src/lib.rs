@@ -12,6 +12,7 @@
 //! Only this crate names TOML.
 
 pub mod dbc;
+pub mod bus_fault;
 pub mod drive;
 pub mod efficiency;
 mod error;

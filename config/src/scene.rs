@@ -7,6 +7,7 @@ use messages::Command;
 use messages::command::{Domain, PushCommand};
 use messages::command_text::{COMMANDS, CommandInfo};
 
+use crate::bus_fault::BusFault;
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
 use crate::joint_control;
@@ -58,6 +59,8 @@ pub struct Scene {
     pub commands: Vec<(f64, Command)>,
     /// Pushes at the torso by time \[s\], ascending.
     pub pushes: Vec<(f64, PushCommand)>,
+    /// Faults of the field bus by time, ascending.
+    pub bus_faults: Vec<BusFault>,
 }
 
 /// How the equations of motion are integrated.
@@ -128,12 +131,14 @@ impl Scene {
             unknown: unknown(top),
             commands: top.tables("command", command),
             pushes: top.tables("push", push),
+            bus_faults: top.tables("bus_fault", BusFault::build),
         };
         if (scene.integrator == Integrator::Bdf) != scene.tolerance.is_some() {
             top.problem("tolerance", "the integrator \"bdf\" needs a tolerance, and no other one has one");
         }
         scene.check_times(top, "command", scene.commands.iter().map(|(time, _)| *time));
         scene.check_times(top, "push", scene.pushes.iter().map(|(time, _)| *time));
+        scene.check_times(top, "bus_fault", scene.bus_faults.iter().map(|fault| fault.time));
         scene
     }
 

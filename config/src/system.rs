@@ -27,6 +27,23 @@ pub struct System {
     pub tcp_port: u16,
     /// \[s\] How long a process waits for a missing peer before it names it and ends.
     pub peer_timeout: f64,
+    /// What lowlevel bears of the field bus.
+    pub bus: BusLimits,
+}
+
+/// What lowlevel bears of the field bus: `[bus]`.
+#[derive(Clone, Copy, Debug)]
+pub struct BusLimits {
+    /// \[1\] Cycles without a node's frames in which its joints are taken to move on at their last speed.
+    pub carried_on: u32,
+    /// \[1\] Cycles without a node's frames after which a controlled stop begins.
+    pub missed: u32,
+    /// \[rad\] A joint angle that jumps further than this ...
+    pub jump: f64,
+    /// \[1\] ... plus the joint's speed limit times this and the time since it was read last, is no reading.
+    pub jump_speed: f64,
+    /// \[1\] Nor is a force that changes by more than this times the robot's weight in one cycle.
+    pub jump_force: f64,
 }
 
 /// Scheduling of one process.
@@ -59,12 +76,37 @@ impl System {
             following_time: top.number("following_time", "s", NOT_NEGATIVE),
             tcp_port: top.integer("tcp_port", 0..=65_535) as u16,
             peer_timeout: top.number("peer_timeout", "s", POSITIVE),
+            bus: top.table("bus", BusLimits::build).unwrap_or_default(),
         })
     }
 
     /// The row of a process; none for observers.
     pub fn process(&self, process: Process) -> Option<&ProcessRow> {
         self.processes.iter().find(|row| row.process == process)
+    }
+}
+
+impl BusLimits {
+    fn build(table: &Section<'_, '_>) -> Self {
+        let built = Self {
+            carried_on: table.integer("carried_on", 0..=100) as u32,
+            missed: table.integer("missed", 1..=1000) as u32,
+            jump: table.number("jump", "rad", 1e-3..=1.0),
+            jump_speed: table.number("jump_speed", "", 1.0..=100.0),
+            jump_force: table.number("jump_force", "", 0.1..=100.0),
+        };
+        if built.carried_on > built.missed {
+            let text = format!("{} cycles are more than missed = {}, the stop", built.carried_on, built.missed);
+            table.problem("carried_on", text);
+        }
+        built
+    }
+}
+
+impl Default for BusLimits {
+    /// A stand-in for a table that is missing: nothing is borne.
+    fn default() -> Self {
+        Self { carried_on: 0, missed: 1, jump: f64::NAN, jump_speed: f64::NAN, jump_force: f64::NAN }
     }
 }
 

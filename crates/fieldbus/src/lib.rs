@@ -5,12 +5,16 @@
 //! - [`capture`]: recorded traffic. [`candump`]: the files of can-utils. [`bits`]: how long a frame occupies its line.
 //! - [`address`]: which bus a run uses. [`lines`]: one end of all lines of a robot. [`load`]: how full they are.
 //! - [`interface`]: interfaces by name, and what is wrong with them. [`tap`]: listening and playing, for tools.
+//! - [`injector`]: faults between the two ends; with [`error_counters`] and [`error_frame`], as CAN has them.
 
 pub mod address;
 pub mod bits;
 pub mod candump;
 pub mod candump_line;
 pub mod capture;
+pub mod error_counters;
+pub mod error_frame;
+pub mod injector;
 pub mod interface;
 pub mod lines;
 pub mod load;
@@ -19,3 +23,6 @@ pub mod tap;
 pub use address::Address;
 pub use capture::{Capture, Captured, Form, Way};
 pub use lines::{End, Lines, Trouble};
+pub use error_counters::ErrorCounters;
+pub use error_frame::{ErrorFrame, ErrorState};
+pub use injector::Injector;
