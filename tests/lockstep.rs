@@ -10,7 +10,7 @@ use std::path::Path;
 
 const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
 
-/// Standing up, three steps, a point to look at, an order that the head refuses and a push on the way.
+/// Standing up, three steps, a point to look at, an order that the head refuses, a push, a bus with faults.
 const SCENE: &str = "
 [[command]]
 time = 0.2
@@ -33,6 +33,22 @@ pan = 2.0
 time = 4.5
 duration = 0.1
 force = [0.0, 20.0, 0.0]
+[[bus_fault]]
+time = 3.0
+duration = 1.0
+kind = \"lost\"
+share = 0.02
+[[bus_fault]]
+time = 3.5
+duration = 0.2
+kind = \"late\"
+share = 0.1
+cycles = 2
+[[bus_fault]]
+time = 4.0
+duration = 0.005
+kind = \"pulled\"
+node = \"shank_right\"
 ";
 const SECONDS: f64 = 6.0;
 

@@ -118,6 +118,13 @@ fn tracking(figures: &Value) -> [f64; 2] {
     ["hip_knee_tracking_error_max_rad", "hip_knee_motor_side_error_max_rad"].map(|key| number(figures, key))
 }
 
+/// Lost, late, repeated and bent frames, a cable that slips, an arm that falls silent: she walks on.
+#[test]
+fn bus_faults() {
+    let f = figures("bus_faults", 16.0);
+    walks(&f, 2.0);
+}
+
 /// Thesis 8.1.1: hip flexion and knee follow within 8e-3 rad at 2 km/h, here on both sides of the gears.
 #[test]
 fn walk_2kmh_type3() {

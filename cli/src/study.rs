@@ -88,6 +88,12 @@ pub(super) enum Task {
     },
     /// What the field bus costs: load of its lines, time of its frames, accuracy of the walk.
     Bus,
+    /// What the walking robot does when the bus fails: lost, late, corrupted frames, silent nodes, cables.
+    BusFaults {
+        /// At how many instants of a stride each fault begins.
+        #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=100))]
+        instants: u64,
+    },
     /// How well the processes keep real time, beside cyclictest before and after.
     Realtime {
         /// The scene that is run.
@@ -105,7 +111,7 @@ pub(super) enum Task {
 /// Carries out a study and prints what it found.
 pub(super) fn run(config: &Path, what: Task, json: bool) -> Result<ExitCode, Box<dyn Error>> {
     use studies::stability::{floquet, viability};
-    use studies::{arm_swing, cycles, figures_of_thesis, limits, push, speed};
+    use studies::{arm_swing, bus_faults, cycles, figures_of_thesis, limits, push, speed};
     let (object, table) = match what {
         Task::Accuracy { only, peers, out } => {
             let report = accuracy_study(config, only.as_deref(), peers.as_deref(), &out)?;
@@ -144,6 +150,10 @@ pub(super) fn run(config: &Path, what: Task, json: bool) -> Result<ExitCode, Box
         Task::ArmSwing { depth, out } => {
             let report = arm_swing::run(config, depth, &out)?;
             (serde_json::to_string(&report)?, arm_swing::table(&report))
+        }
+        Task::BusFaults { instants } => {
+            let report = bus_faults::run(config, instants as usize)?;
+            (serde_json::to_string(&report)?, bus_faults::table(&report))
         }
         Task::Realtime { scene, cyclictest, out } => {
             let report = realtime_study(config, scene, cyclictest, &out)?;

@@ -100,7 +100,8 @@ impl BusFault {
     pub(crate) fn build(row: &Section<'_, '_>) -> Self {
         let kind = FaultKind::ALL[row.word("kind", &FaultKind::WORDS)];
         let duration = row.has("duration").then(|| row.number("duration", "s", POSITIVE));
-        let mut fault = Self::new(kind, row.number("time", "s", NOT_NEGATIVE), duration.unwrap_or(f64::INFINITY));
+        let mut fault =
+            Self::new(kind, row.number("time", "s", NOT_NEGATIVE), duration.unwrap_or(f64::INFINITY));
         fault.node = row.has("node").then(|| row.text("node"));
         if kind.is_of_line() {
             for key in ["direction", "share", "cycles"].into_iter().filter(|key| row.has(key)) {

@@ -11,8 +11,8 @@
 //!
 //! Only this crate names TOML.
 
-pub mod dbc;
 pub mod bus_fault;
+pub mod dbc;
 pub mod drive;
 pub mod efficiency;
 mod error;

@@ -39,6 +39,8 @@ pub struct Robot {
     pub layout: Layout,
     /// Frames of classic CAN.
     pub classic: Layout,
+    /// Local controllers (indices) that the robot can walk without: nobody stops it if one of them falls silent.
+    pub spare: Vec<usize>,
     /// Camera head, if it has one.
     pub head: Option<Head>,
     /// Arms that swing, if it has them.
@@ -126,11 +128,13 @@ impl Robot {
         let path = directory.join("robot.toml");
         let text = file::text(&path, hash)?;
         let name = directory.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let (mut robot, can) = section::read(&path, &text, |top| (Self::build(top, name), can(top)))?;
+        let (mut robot, (can, spare_names)) =
+            section::read(&path, &text, |top| (Self::build(top, name), can(top)))?;
         let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
         let classic = dbc::load(&directory.join(&can[0]), &joints, hash)?;
         let layout = dbc::load(&directory.join(&can[1]), &joints, hash)?;
         (robot.classic, robot.layout) = (classic, layout);
+        robot.spare = spare(&robot.layout, &spare_names).map_err(|text| ConfigError::of_file(&path, text))?;
         let urdf_path = directory.join(&robot.urdf);
         robot.urdf = file::text(&urdf_path, hash)?;
         let masses = masses(&robot.urdf).map_err(|text| ConfigError::of_file(&urdf_path, text))?;
@@ -169,6 +173,7 @@ impl Robot {
             poses: poses(top, &joints),
             layout: Layout::default(),
             classic: Layout::default(),
+            spare: Vec::new(),
             head: optional(top, "head", |table| Head::build(table, &joints)),
             arms: optional(top, "arms", |table| Arms::build(table, &joints)),
             drives: drives(top, &joints),
@@ -324,9 +329,24 @@ fn poses(top: &Section<'_, '_>, joints: &[Joint]) -> BTreeMap<String, Vec<f64>> 
     top.table("pose_deg", all).unwrap_or_default()
 }
 
-/// DBC files of the classic CAN bus and of CAN FD.
-fn can(top: &Section<'_, '_>) -> [String; 2] {
-    top.table("can", |can| [can.text("classic"), can.text("fd")]).unwrap_or_default()
+/// DBC files of the classic CAN bus and of CAN FD; names of the local controllers that the robot can walk without.
+fn can(top: &Section<'_, '_>) -> ([String; 2], Vec<String>) {
+    let build = |can: &Section<'_, '_>| {
+        let spare = if can.has("spare") { can.texts("spare") } else { Vec::new() };
+        ([can.text("classic"), can.text("fd")], spare)
+    };
+    top.table("can", build).unwrap_or_default()
+}
+
+/// Local controllers by name.
+fn spare(layout: &Layout, names: &[String]) -> Result<Vec<usize>, String> {
+    let node = |name: &String| {
+        layout.nodes.iter().position(|node| node == name).ok_or_else(|| {
+            let there = layout.nodes.join(", ");
+            format!("can.spare: there is no local controller `{name}`; there is {there}")
+        })
+    };
+    names.iter().map(node).collect()
 }
 
 /// Sum of all `<mass value="...">` of a URDF; its structure is checked where the model is built.

@@ -214,6 +214,20 @@ impl<'a, 't> Section<'a, 't> {
         text.unwrap_or_default().to_owned()
     }
 
+    /// A list of strings.
+    pub(crate) fn texts(&self, key: &str) -> Vec<String> {
+        let name = self.path(key);
+        let items = self.items(key, "a list of strings").iter().enumerate();
+        let text = |(i, item): (usize, &Value<'_>)| match item.get_ref().as_str() {
+            Some(text) => text.to_owned(),
+            None => {
+                self.wrong_type(&format!("{name}[{i}]"), item, "a string");
+                String::new()
+            }
+        };
+        items.map(text).collect()
+    }
+
     /// The position of a word in `words`; 0 if the entry is wrong.
     pub(crate) fn word(&self, key: &str, words: &[&str]) -> usize {
         let text = self.text(key);

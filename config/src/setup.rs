@@ -106,6 +106,17 @@ impl Setup {
                 note("unknown.joint_offset_rad".to_owned(), text);
             }
         }
+        let nodes: Vec<&str> = self.robot.layout.nodes.iter().map(String::as_str).collect();
+        for (i, fault) in scene.bus_faults.iter().enumerate() {
+            if let Some(name) = fault.node.as_deref().filter(|name| !nodes.contains(name)) {
+                let near = nearest(name, &nodes).unwrap_or("none");
+                let text = format!(
+                    "robot {} has no local controller `{name}`; the nearest is `{near}`",
+                    scene.robot
+                );
+                note(format!("bus_fault[{i}].node"), text);
+            }
+        }
         problems
     }
 

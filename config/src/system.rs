@@ -96,7 +96,8 @@ impl BusLimits {
             jump_force: table.number("jump_force", "", 0.1..=100.0),
         };
         if built.carried_on > built.missed {
-            let text = format!("{} cycles are more than missed = {}, the stop", built.carried_on, built.missed);
+            let text =
+                format!("{} cycles are more than missed = {}, the stop", built.carried_on, built.missed);
             table.problem("carried_on", text);
         }
         built

@@ -152,7 +152,8 @@ fn wait_for_targets(p: &mut Ports, tick: u64, until_ns: u64) {
 }
 
 fn report(d: &mut Daemon, joints: &mut JointLoop, header: Header) {
-    if let Some((code, detail)) = joints.take_event() {
+    d.count_bus(joints.bus_counters());
+    while let Some((code, detail)) = joints.take_event() {
         d.report(header, code, detail);
     }
 }

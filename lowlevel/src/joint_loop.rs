@@ -2,10 +2,11 @@
 
 use config::{Robot, System};
 use messages::frames::{DriveCommand, Received, decode_sensors, encode_targets};
-use messages::{BusFrames, EventCode, Header, JointMode, JointTargets, Sensors, WatchdogReset};
+use messages::{BusCounters, BusFrames, EventCode, Header, JointMode, JointTargets, Sensors, WatchdogReset};
 
 use crate::braking::brake;
 use crate::limits::{Motion, admit, following_limit};
+use crate::line_guard::LineGuard;
 
 /// What the joint loop is doing with the joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,8 +34,7 @@ pub struct JointLoop {
     used: u64,
     /// Cycles since targets were new.
     stale: u32,
-    /// Cycles since the bus answered.
-    silent: u32,
+    guard: LineGuard,
     sensors: Sensors,
     command: DriveCommand,
     received: Received,
@@ -54,7 +54,7 @@ impl JointLoop {
             last: [Motion { angle: 0.0, speed: 0.0 }; messages::MAX_JOINTS],
             used: 0,
             stale: 0,
-            silent: 0,
+            guard: LineGuard::new(robot, system, dt),
             sensors: Sensors::default(),
             command: DriveCommand::default(),
             received: Received::default(),
@@ -71,21 +71,23 @@ impl JointLoop {
 
     /// Something worth a line in the log, since the last call.
     pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        self.event.take()
+        self.event.take().or_else(|| self.guard.take_event())
+    }
+
+    /// What went wrong on the bus so far.
+    pub fn bus_counters(&self) -> BusCounters {
+        self.guard.counters()
     }
 
     /// First half of the cycle: what the bus brought, stamped.
     pub fn receive(&mut self, tick: u64, stamp_ns: u64, frames: Option<&BusFrames>) -> &Sensors {
         self.sensors.header = Header { tick, stamp_ns, epoch: 0 };
-        self.silent += 1;
+        self.guard.expect(&mut self.sensors);
         if let Some(frames) = frames {
             self.received = decode_sensors(&self.robot.layout, frames, &mut self.sensors);
-            let missing = self.received.missed();
-            self.sensors.frames_missed += u64::from(missing);
-            if missing == 0 {
-                self.silent = 0;
-            }
         }
+        self.guard.judge(frames, &self.received, &mut self.sensors);
+        self.sensors.frames_missed = self.guard.counters().lost;
         &self.sensors
     }
 
@@ -109,6 +111,7 @@ impl JointLoop {
             State::Track => self.track(targets),
         }
         self.check_following();
+        self.check_lines();
         self.write_frames();
         (&self.frames, &self.reset)
     }
@@ -124,13 +127,11 @@ impl JointLoop {
             self.stale = self.stale.saturating_add(1);
         }
         let late = self.stale > self.system.targets_missed;
-        let mute = self.silent > self.system.targets_missed;
+        let mute = self.guard.cause();
         self.state = match self.state {
             _ if !powered => State::Off,
             State::Stop(why) => State::Stop(why),
-            State::Off | State::Hold | State::Track if mute => {
-                self.stop(EventCode::BusSilent, self.silent.into())
-            }
+            State::Off | State::Hold | State::Track if mute.is_some() => self.unheard(mute),
             State::Off => State::Hold,
             State::Hold if mode == JointMode::Track && !late => State::Track,
             State::Hold => State::Hold,
@@ -140,6 +141,14 @@ impl JointLoop {
             State::Track if mode == JointMode::Track => State::Track,
             State::Track => State::Hold,
         };
+    }
+
+    /// A stop because of the bus.
+    fn unheard(&mut self, cause: Option<(EventCode, u64)>) -> State {
+        match cause {
+            Some((EventCode::BusOff, _)) | None => State::Stop(EventCode::BusOff), // told when it happened
+            Some((why, detail)) => self.stop(why, detail),
+        }
     }
 
     fn stop(&mut self, why: EventCode, detail: u64) -> State {
@@ -189,10 +198,11 @@ impl JointLoop {
 
     /// A joint that is not where it was told to be is broken, blocked or not ours: power off.
     fn check_following(&mut self) {
-        if self.state == State::Off || self.silent > 0 {
+        if self.state == State::Off {
             return;
         }
-        for j in 0..self.robot.joints.len() {
+        // A joint that was not read is where it is believed to be.
+        for j in (0..self.robot.joints.len()).filter(|&j| self.guard.reads(j)) {
             let error = (self.last[j].angle - self.sensors.joint_angle[j]).abs();
             let limit =
                 following_limit(self.system.following_error, self.system.following_time, self.last[j].speed);
@@ -200,6 +210,13 @@ impl JointLoop {
                 self.reset.trip = EventCode::FollowingError as u64;
                 self.event = Some((EventCode::FollowingError, j as u64));
             }
+        }
+    }
+
+    /// Joints that nobody reaches must not be driven: power off.
+    fn check_lines(&mut self) {
+        if self.state != State::Off && self.guard.off().is_some() {
+            self.reset.trip = EventCode::BusOff as u64;
         }
     }
 

@@ -3,6 +3,7 @@
 //! | stage | where |
 //! |---|---|
 //! | frames of the bus → sensor data, time stamp | [`JointLoop::receive`] |
+//! | bus heard? readings that can be? | `line_guard.rs`, `reading.rs` |
 //! | finite? fresh? in range? slow enough? following? | [`JointLoop::send`], [`limits`] |
 //! | controlled stop when targets stay away | [`braking`] |
 //! | targets → frames of the bus; watchdog reset | [`JointLoop::send`] |
@@ -16,6 +17,8 @@ pub mod daemon;
 pub mod fieldbus;
 pub mod joint_loop;
 pub mod limits;
+mod line_guard;
+mod reading;
 mod simulated_bus;
 
 pub use fieldbus::Fieldbus;

@@ -5,6 +5,7 @@
 //! | the bus, in shared memory or on CAN lines | `far_end.rs`, `can_end.rs` |
 //! | frames from the bus → joint targets; sensor data → frames | [`SimBackend::step`] |
 //! | motor power line | [`power`] |
+//! | who heard what | [`hearing`]; faults of the bus: [`fieldbus::injector`] |
 //! | joint references | [`drive`] |
 //! | equations of motion, types 1 to 5 of the thesis | [`plant`] |
 //! | their states | [`layout`] |
@@ -18,6 +19,7 @@ pub mod daemon;
 pub mod drive;
 mod far_end;
 pub mod feet;
+pub mod hearing;
 pub mod implicit;
 pub mod integrate;
 pub mod layout;

@@ -2,7 +2,9 @@
 
 use std::error::Error;
 
+use config::bus_fault::{BusFault, Way};
 use config::{Robot, Scene};
+use fieldbus::Injector;
 use messages::command::PushCommand;
 use messages::frames::{DriveCommand, decode_targets, encode_sensors};
 use messages::{BusFrames, EventCode, Imu, JointMode, Power, Sensors, SimState, Wrench};
@@ -10,6 +12,7 @@ use multibody::Frame;
 use nalgebra::Vector3;
 
 use crate::drive::{Drive, Motion};
+use crate::hearing::{Follows, Hearing};
 use crate::integrate::Stepper;
 use crate::plant::{Outside, Plant, Snapshot, orientation};
 use crate::power::PowerLine;
@@ -43,6 +46,9 @@ pub struct SimBackend {
     command: DriveCommand,
     /// Tick of the newest targets followed.
     followed: u64,
+    hearing: Hearing,
+    /// Faults of the bus, if the scene has any.
+    injector: Option<Injector>,
     cycles: u64,
     initial_height: f64,
     fallen: bool,
@@ -89,6 +95,8 @@ impl SimBackend {
             offset: offsets(robot, scene),
             command: DriveCommand::default(),
             followed: 0,
+            hearing: Hearing::new(&robot.layout),
+            injector: Injector::new(&scene.bus_faults, &robot.layout, scene.cycle, scene.seed)?,
             cycles: 0,
             fallen: false,
             push: None,
@@ -105,6 +113,16 @@ impl SimBackend {
     /// Something worth a line in the log, since the last call.
     pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
         self.event.take()
+    }
+
+    /// Brings about these faults of the bus from now on, instead of the scene's; times count from the start.
+    ///
+    /// # Errors
+    /// A fault names a local controller that the robot does not have.
+    pub fn inject(&mut self, faults: &[BusFault]) -> Result<(), String> {
+        let Self { robot, scene, injector, .. } = self;
+        *injector = Injector::new(faults, &robot.layout, scene.cycle, scene.seed)?;
+        Ok(())
     }
 
     /// Begins a push now.
@@ -141,6 +159,35 @@ impl SimBackend {
     ///
     /// A fallen robot stays as it fell: only soles meet the ground in this model.
     pub fn step(&mut self, frames: Option<&BusFrames>, power: Option<&Power>) -> (&BusFrames, &SimState) {
+        if self.injector.is_some() {
+            return self.step_with_faults(frames, power);
+        }
+        self.advance(frames, power);
+        (&self.frames, &self.sim_state)
+    }
+
+    /// The same with a bus that has faults: each way once per tick.
+    fn step_with_faults(
+        &mut self,
+        frames: Option<&BusFrames>,
+        power: Option<&Power>,
+    ) -> (&BusFrames, &SimState) {
+        let Some(mut injector) = self.injector.take() else { return (&self.frames, &self.sim_state) };
+        let new = frames.filter(|f| f.header.tick > self.sensors.header.tick);
+        // Off and without a reason: the watchdog has seen a reset edge.
+        if let (Some(frames), Some(Power { on: 0, reason: 0, .. })) = (new, power) {
+            injector.reset(frames.header.tick);
+        }
+        match new {
+            Some(frames) => self.advance(Some(injector.pass(Way::ToDrives, frames)), power),
+            None => self.advance(None, power),
+        }
+        self.frames = *injector.pass(Way::FromDrives, &self.frames);
+        self.injector = Some(injector);
+        (&self.frames, &self.sim_state)
+    }
+
+    fn advance(&mut self, frames: Option<&BusFrames>, power: Option<&Power>) {
         let powered = self.power.step(power);
         let dt = self.scene.cycle;
         let mut outside = Outside { push: self.current_push(), powered: false };
@@ -166,31 +213,32 @@ impl SimBackend {
         if self.measure(&snapshot, outside.push, powered) {
             encode_sensors(&self.robot.layout, &self.sensors, &mut self.frames);
         }
-        (&self.frames, &self.sim_state)
     }
 
     /// Chooses how each joint is to move during this cycle; true if the drives may act.
     fn begin_cycle(&mut self, frames: Option<&BusFrames>, powered: bool) -> bool {
         let dt = self.scene.cycle;
-        let fresh = frames.is_some_and(|f| {
-            f.header.tick > self.followed
-                && decode_targets(&self.robot.layout, f, &mut self.command).missed() == 0
-        });
-        if fresh {
+        let new = frames.filter(|f| f.header.tick > self.followed);
+        let received = new.map(|f| decode_targets(&self.robot.layout, f, &mut self.command));
+        let driven = powered && self.command.targets.mode != JointMode::Off as u64;
+        if self.hearing.step(received.as_ref(), driven) {
             self.followed = self.command.targets.header.tick;
         }
-        let driven = powered && self.command.targets.mode != JointMode::Off as u64;
+        if let Some(node) = self.hearing.stopped_now() {
+            self.event.get_or_insert((EventCode::NodeStopped, node as u64));
+        }
         for j in 0..self.drives.len() {
             let (from, joint) = (self.goals[j], &self.robot.joints[j]);
-            self.drives[j] = match (driven, fresh) {
+            let angle = self.command.targets.angle[j] - self.offset[j];
+            let follows = self.hearing.follows(j, angle - from.angle, joint.speed_limit * dt);
+            self.drives[j] = match (driven, follows) {
                 (false, _) if self.plant.layout().joints > 0 => Drive::resting(self.motions[j].angle),
                 (false, _) => Drive::brake(joint, from, dt),
-                (true, true) => {
-                    let angle = self.command.targets.angle[j] - self.offset[j];
-                    Drive::follow(from, angle, self.command.targets.speed[j], dt)
+                (true, Follows::Target) => Drive::follow(from, angle, self.command.targets.speed[j], dt),
+                (true, Follows::LastSpeed) => {
+                    Drive::follow(from, from.angle + from.speed * dt, from.speed, dt)
                 }
-                // No new frame: the local controllers carry on at the last speed.
-                (true, false) => Drive::follow(from, from.angle + from.speed * dt, from.speed, dt),
+                (true, Follows::Stop) => Drive::brake(joint, from, dt),
             };
         }
         driven

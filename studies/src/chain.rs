@@ -111,6 +111,11 @@ impl Chain {
         self.dt
     }
 
+    /// \[1\] Bus cycles so far.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
     /// One bus cycle.
     pub fn step(&mut self) -> &Cycle {
         self.tick += 1;
@@ -146,7 +151,8 @@ impl Chain {
         c.events.extend(event.map(|(code, detail)| (Process::Watchdog, code, detail)));
         let (answer, sim_state) = self.sim.step(Some(frames), Some(&c.power));
         (self.answer, c.sim_state) = (*answer, *sim_state);
-        c.events.extend(self.joint_loop.take_event().map(|(code, detail)| (Process::Lowlevel, code, detail)));
+        let told = std::iter::from_fn(|| self.joint_loop.take_event());
+        c.events.extend(told.map(|(code, detail)| (Process::Lowlevel, code, detail)));
         c.events.extend(self.sim.take_event().map(|(code, detail)| (Process::SimBackend, code, detail)));
         c
     }

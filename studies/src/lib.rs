@@ -12,6 +12,7 @@
 //! | [`arm_swing`] | what do swinging arms take from the soles? |
 //! | [`figures_of_thesis`] | are the figures of the thesis found again? |
 //! | [`scorecard`] | does everything walk that is to walk, and how well beside what others reached? |
+//! | [`bus_faults`] | what does a walking robot do when the bus fails? |
 //! | [`cycles`] | how well did the processes of a run keep real time? |
 //!
 //! They work on [`chain`], all steps in one process, and judge by [`figures`]; [`second`] replays a part of it.
@@ -19,6 +20,7 @@
 pub mod accuracy;
 pub mod arm_swing;
 pub mod bus;
+pub mod bus_faults;
 pub mod chain;
 pub mod cycles;
 pub mod depth;

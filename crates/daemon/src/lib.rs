@@ -8,7 +8,7 @@ use config::Setup;
 use fieldbus::Address;
 use ipc::{Bell, IpcError, Mode, Run, Space, Waiter, Woken, Writer};
 use messages::topics::{Process, Topic};
-use messages::{Command, CycleStats, Event, EventCode, Header};
+use messages::{BusCounters, Command, CycleStats, Event, EventCode, Header};
 use realtime::{CycleMeter, Granted, Schedule, Stop, clock, prepare_thread};
 use std::error::Error;
 use std::path::Path;
@@ -106,6 +106,11 @@ impl Daemon {
     pub fn bell(&mut self, topic: &Topic) -> Result<usize, IpcError> {
         self.bells.push(self.space.bell(topic)?);
         Ok(self.bells.len() - 1)
+    }
+
+    /// What went wrong on the field bus so far, for the statistics.
+    pub fn count_bus(&mut self, counters: BusCounters) {
+        self.meter.count_bus(counters);
     }
 
     /// Rings a bell.

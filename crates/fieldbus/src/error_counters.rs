@@ -100,7 +100,10 @@ mod tests {
             })
             .collect();
         let first = |state| states.iter().position(|s| *s == state).unwrap() + 1;
-        assert_eq!([first(ErrorState::Warning), first(ErrorState::Passive), first(ErrorState::Off)], [12, 16, 32]);
+        assert_eq!(
+            [first(ErrorState::Warning), first(ErrorState::Passive), first(ErrorState::Off)],
+            [12, 16, 32]
+        );
         assert_eq!(c.values(), [256, 0], "off the bus nothing is counted");
         c.sent();
         assert_eq!(c.state(), ErrorState::Off, "and nothing but a restart leads back");

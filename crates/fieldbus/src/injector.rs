@@ -219,10 +219,11 @@ impl Injector {
         let i = line as usize;
         match self.lines.get(i) {
             None => return false,
-            Some(line) if line.is_off() => return true,
+            Some(line) if line.near.state() == ErrorState::Off => return true,
             Some(_) => {}
         }
-        if self.any(FaultKind::Pulled, None, line, tick).is_some() {
+        let alone = self.lines[i].far.state() == ErrorState::Off;
+        if alone || self.any(FaultKind::Pulled, None, line, tick).is_some() {
             self.lines[i].not_acknowledged(way);
             return true;
         }
@@ -351,7 +352,11 @@ impl Active {
         let first = (fault.time / cycle).round() as u64;
         // Rust's cast saturates: a fault without an end.
         let after = first.saturating_add(((fault.duration / cycle).round() as u64).max(1));
-        Ok(Self { line: fault.node.as_ref().map(line).transpose()?, ticks: [first, after], fault: fault.clone() })
+        Ok(Self {
+            line: fault.node.as_ref().map(line).transpose()?,
+            ticks: [first, after],
+            fault: fault.clone(),
+        })
     }
 
     /// By how many cycles frames may come later.

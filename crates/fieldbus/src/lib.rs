@@ -22,7 +22,7 @@ pub mod tap;
 
 pub use address::Address;
 pub use capture::{Capture, Captured, Form, Way};
-pub use lines::{End, Lines, Trouble};
 pub use error_counters::ErrorCounters;
 pub use error_frame::{ErrorFrame, ErrorState};
 pub use injector::Injector;
+pub use lines::{End, Lines, Trouble};

@@ -45,7 +45,8 @@ fn sent(way: Way, tick: u64) -> BusFrames {
         for k in 0..FRAMES {
             let id = if way == Way::ToDrives { 0x100 } else { 0x200 } + k;
             let mut frame = Frame { line, id, len: 8, ..Frame::default() };
-            let content = (tick * 31 + u64::from(line) * 7 + u64::from(k)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let content =
+                (tick * 31 + u64::from(line) * 7 + u64::from(k)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
             frame.data[..8].copy_from_slice(&content.to_le_bytes());
             frames.push(&frame);
         }
@@ -72,7 +73,8 @@ fn always(kind: FaultKind) -> BusFault {
 }
 
 fn same(a: &[Frame], b: &[Frame]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a.line, a.id, a.len, a.data) == (b.line, b.id, b.len, b.data))
+    a.len() == b.len()
+        && a.iter().zip(b).all(|(a, b)| (a.line, a.id, a.len, a.data) == (b.line, b.id, b.len, b.data))
 }
 
 #[test]
@@ -133,7 +135,11 @@ fn losses_are_as_frequent_as_they_are_to_be() {
 #[test]
 fn a_burst_takes_all_frames_of_its_line_for_its_cycles() {
     for length in [1, 5, 50] {
-        let fault = BusFault { cycles: length, node: Some("node2".into()), ..BusFault::new(FaultKind::Lost, 0.1, CYCLE) };
+        let fault = BusFault {
+            cycles: length,
+            node: Some("node2".into()),
+            ..BusFault::new(FaultKind::Lost, 0.1, CYCLE)
+        };
         let mut x = injector(&[fault]);
         for tick in 1..300 {
             let gone = (100..100 + u64::from(length)).contains(&tick);
@@ -147,7 +153,8 @@ fn a_burst_takes_all_frames_of_its_line_for_its_cycles() {
 
 #[test]
 fn late_frames_come_so_many_cycles_later_before_the_new_ones() {
-    let fault = BusFault { cycles: 3, node: Some("node1".into()), ..BusFault::new(FaultKind::Late, 0.010, CYCLE) };
+    let fault =
+        BusFault { cycles: 3, node: Some("node1".into()), ..BusFault::new(FaultKind::Late, 0.010, CYCLE) };
     let mut x = injector(&[fault]);
     for tick in 1..10 {
         cycle(&mut x, tick);
@@ -271,7 +278,13 @@ fn a_silent_node_is_silent_without_an_error() {
 fn nothing_is_allocated_in_a_cycle() {
     let faults: Vec<BusFault> = FaultKind::ALL
         .into_iter()
-        .map(|kind| BusFault { share: 0.3, cycles: 5, node: (kind == FaultKind::Shorted).then(|| "node0".into()), ..always(kind) })
+        .map(|kind| BusFault {
+            // More corrupted ones, and all lines would be off soon.
+            share: if kind == FaultKind::Corrupted { 0.05 } else { 0.3 },
+            cycles: 5,
+            node: (kind == FaultKind::Shorted).then(|| "node0".into()),
+            ..always(kind)
+        })
         .filter(|fault| !matches!(fault.kind, FaultKind::Silent | FaultKind::Pulled))
         .collect();
     let mut x = injector(&faults);

@@ -3,6 +3,24 @@
 use crate::{Header, record};
 
 record! {
+    /// What went wrong on the field bus since start, frame by frame.
+    part BusCounters {
+        /// \[1\] Frames that did not come in their cycle.
+        lost: u64,
+        /// \[1\] Frames of an earlier cycle.
+        late: u64,
+        /// \[1\] Frames that came a second time.
+        duplicated: u64,
+        /// \[1\] Frames of wrong length or unknown identifier, and readings that cannot be.
+        refused: u64,
+        /// \[1\] Error frames.
+        error_frames: u64,
+        /// \[1\] How often a line was lost because its controller left the bus.
+        bus_off: u64,
+    }
+}
+
+record! {
     /// Cycle statistics since start. Written by every cyclic process, a few times per second.
     record CycleStats {
         /// Tick of the last cycle counted.
@@ -25,5 +43,7 @@ record! {
         config_hash: u64,
         /// \[1\] 1 if real-time scheduling was asked for and not granted.
         degraded: u64,
+        /// What the field bus did; of lowlevel only.
+        bus: BusCounters,
     }
 }

@@ -95,11 +95,48 @@ pub enum EventCode {
     NoFoothold = 41,
     /// A swing foot met the ground early; the next step begins at once. Detail: the plan's id.
     EarlyContact = 42,
+    /// Frames are missing in a cycle; told at the first, second, fourth, eighth ... time; detail: the node.
+    FramesLost = 43,
+    /// A node's frames are missing for so long that its joints are no longer carried on; detail: 1000 times the node plus
+    /// the cycles.
+    NodeHeld = 44,
+    /// The node is heard again; detail: 1000 times the node plus the cycles it was missing.
+    NodeBack = 45,
+    /// A node's frames are missing for too long; detail: 1000 times the node plus the cycles.
+    NodeSilent = 46,
+    /// A frame was refused: late, sent twice, of wrong length, unknown; or a reading that cannot be. Told at the first,
+    /// second, fourth ... time; detail: a [`Refused`].
+    FrameRefused = 47,
+    /// Errors on a line: its controller warns; detail: the line.
+    BusWarning = 48,
+    /// More errors on a line: its controller no longer takes part in the handling of errors; detail: the line.
+    BusPassive = 49,
+    /// The controller of a line left the bus; detail: the line.
+    BusOff = 50,
+    /// The controller of a line takes part again; detail: the line.
+    BusActive = 51,
+    /// A local controller heard no targets for so long that it brought its joints to rest by itself; detail: the node.
+    NodeStopped = 52,
+}
+
+/// Why a frame or a reading was refused, in the detail of [`EventCode::FrameRefused`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refused {
+    /// Of an earlier cycle.
+    Late = 1,
+    /// Came a second time.
+    Twice = 2,
+    /// Its length is not that of its message.
+    Length = 3,
+    /// Nobody knows its identifier.
+    Unknown = 4,
+    /// Its reading is further from the last one than can be.
+    Jump = 5,
 }
 
 impl EventCode {
     /// All codes, in order of their numbers.
-    pub const ALL: [Self; 43] = [
+    pub const ALL: [Self; 53] = [
         Self::None,
         Self::Started,
         Self::Ended,
@@ -143,6 +180,16 @@ impl EventCode {
         Self::ObstacleTooLong,
         Self::NoFoothold,
         Self::EarlyContact,
+        Self::FramesLost,
+        Self::NodeHeld,
+        Self::NodeBack,
+        Self::NodeSilent,
+        Self::FrameRefused,
+        Self::BusWarning,
+        Self::BusPassive,
+        Self::BusOff,
+        Self::BusActive,
+        Self::NodeStopped,
     ];
 
     /// The code of a number from a record.

@@ -28,7 +28,7 @@ pub mod wire;
 pub use bus::{BusFrames, ERROR_FLAG, Frame, MAX_FRAMES};
 pub use command::Command;
 pub use controller_state::ControllerState;
-pub use cycle_stats::CycleStats;
+pub use cycle_stats::{BusCounters, CycleStats};
 pub use event::{Event, EventCode};
 pub use joint_targets::{JointMode, JointTargets};
 pub use parameters::Parameters;

@@ -1,7 +1,7 @@
 //! How well a process keeps its cycle: fills the record `cycle_stats`.
 
 use crate::{Histogram, allocations};
-use messages::CycleStats;
+use messages::{BusCounters, CycleStats};
 
 /// Measures the cycles of the thread it lives on.
 #[derive(Debug)]
@@ -56,6 +56,11 @@ impl CycleMeter {
         self.stats.skipped += skipped;
         let late = self.deadline_ns > 0 && now_ns.saturating_sub(self.planned_ns) > self.deadline_ns;
         self.stats.overruns += u64::from(late || skipped > 0);
+    }
+
+    /// What went wrong on the field bus since start.
+    pub fn count_bus(&mut self, counters: BusCounters) {
+        self.stats.bus = counters;
     }
 
     /// The record, except for its header. Costs a few microseconds: for a few times per second.

@@ -1,0 +1,282 @@
+//! What the joint loop believes of the bus, node by node, and when it no longer believes.
+//!
+//! | cycles without all frames of a node | reaction |
+//! |---|---|
+//! | 1 to `carried_on` | its joints are taken to move on at their last speed, inside of their ranges |
+//! | to `missed` | its joints are taken to stand; other readings are kept |
+//! | more | controlled stop, [`EventCode::NodeSilent`]; none for a node that the robot can walk without |
+//!
+//! Late and repeated frames, wrong lengths and unknown identifiers never reach the readings: they are as good as lost, and
+//! counted. A reading that cannot be ([`crate::reading`]) makes its node missing for the cycle. A controller that left the
+//! bus is a stop and no power ([`EventCode::BusOff`]), until it takes part again.
+
+use config::{Robot, System};
+use fieldbus::{ErrorFrame, ErrorState};
+use messages::event::Refused;
+use messages::frames::Received;
+use messages::layout::{Carries, Layout};
+use messages::{BusCounters, BusFrames, EventCode, Sensors};
+
+use crate::reading::{Bounds, Readings};
+
+/// Room for events of one cycle.
+const EVENTS: usize = 8;
+
+/// Bits of a statusword that are the state, and the state in which a drive follows (CiA 402, operation enabled).
+const STATE: u32 = 0x6f;
+const ENABLED: u32 = 0x27;
+
+/// One local controller, with the line it is on.
+#[derive(Clone, Debug, Default)]
+struct Node {
+    reads: Readings,
+    /// Cycles in a row in which not all came.
+    missed: u32,
+    /// The robot can walk without it: it is held, and nobody stops.
+    spare: bool,
+    /// Something came since the start.
+    heard: bool,
+    /// State of lowlevel's controller on its line.
+    line: ErrorState,
+}
+
+/// Guards the readings of one robot.
+#[derive(Clone, Debug)]
+pub(crate) struct LineGuard {
+    bounds: Bounds,
+    carried_on: u32,
+    missed: u32,
+    nodes: Vec<Node>,
+    /// Node that reads each joint.
+    node_of: [usize; messages::MAX_JOINTS],
+    /// Drives that said once that they are not enabled.
+    doubted: [bool; messages::MAX_JOINTS],
+    /// What is believed of this cycle before it is heard.
+    believed: Sensors,
+    counters: BusCounters,
+    /// Frames of a whole cycle.
+    frames: u64,
+    /// How often a node went missing.
+    gaps: u64,
+    /// How often frames were refused, by [`Refused`].
+    refused: [u64; 6],
+    layout: Layout,
+    events: [(EventCode, u64); EVENTS],
+    told: usize,
+}
+
+impl LineGuard {
+    pub(crate) fn new(robot: &Robot, system: &System, dt: f64) -> Self {
+        let spare = |i: usize| robot.spare.contains(&i);
+        let nodes = Readings::of(robot).into_iter().enumerate();
+        let nodes: Vec<Node> =
+            nodes.map(|(i, reads)| Node { reads, spare: spare(i), ..Node::default() }).collect();
+        let mut node_of = [0; messages::MAX_JOINTS];
+        for (i, node) in nodes.iter().enumerate() {
+            node.reads.joints.iter().for_each(|&j| node_of[j] = i);
+        }
+        Self {
+            bounds: Bounds::new(robot, system.bus, dt),
+            carried_on: system.bus.carried_on,
+            missed: system.bus.missed,
+            nodes,
+            node_of,
+            doubted: [false; messages::MAX_JOINTS],
+            believed: Sensors::default(),
+            counters: BusCounters::default(),
+            frames: robot.layout.sent(false).count() as u64,
+            gaps: 0,
+            refused: [0; 6],
+            layout: robot.layout.clone(),
+            events: [(EventCode::None, 0); EVENTS],
+            told: 0,
+        }
+    }
+
+    /// Before the frames of a cycle are read: what is believed of it without them.
+    pub(crate) fn expect(&mut self, sensors: &mut Sensors) {
+        for node in self.nodes.iter().filter(|node| node.heard) {
+            self.bounds.carry_on(&node.reads, node.missed < self.carried_on, sensors);
+        }
+        self.believed = *sensors;
+    }
+
+    /// After they were read: which nodes were heard, and what of it can be.
+    pub(crate) fn judge(&mut self, frames: Option<&BusFrames>, received: &Received, sensors: &mut Sensors) {
+        let powered = self.believed.power == 1;
+        match frames {
+            Some(frames) => {
+                self.read_errors(frames);
+                self.count(received);
+                if sensors.power != self.believed.power {
+                    sensors.power = u64::from(self.most_say_powered(frames));
+                }
+            }
+            None => self.counters.lost += self.frames,
+        }
+        for i in 0..self.nodes.len() {
+            let node = &self.nodes[i];
+            let mut heard = frames.is_some() && received.complete(i);
+            // Without power a joint may be moved by hand, and nobody acts on what is read.
+            let check = powered && node.heard;
+            if check && !self.bounds.believes(&node.reads, &self.believed, sensors, node.missed + 1) {
+                node.reads.copy(&self.believed, sensors);
+                self.refuse(Refused::Jump, 1);
+                heard = false;
+            }
+            self.hear(i, heard, sensors.power == 1);
+        }
+        self.doubt_states(sensors);
+    }
+
+    /// A drive that is no longer enabled is believed the second time it says so: a bent bit says it once.
+    fn doubt_states(&mut self, sensors: &mut Sensors) {
+        for (j, doubted) in self.doubted.iter_mut().enumerate() {
+            let (before, now) = (self.believed.drive_status[j], &mut sensors.drive_status[j]);
+            let falls = before & STATE == ENABLED && *now & STATE != ENABLED;
+            if falls && !*doubted {
+                *now = before;
+            }
+            *doubted = falls && !*doubted;
+        }
+    }
+
+    /// Why the joints must come to rest.
+    pub(crate) fn cause(&self) -> Option<(EventCode, u64)> {
+        if let Some(line) = self.off() {
+            return Some((EventCode::BusOff, line as u64));
+        }
+        let silent = |node: &Node| node.missed > self.missed;
+        let i = self.nodes.iter().position(|node| silent(node) && !node.spare)?;
+        let cycles = self.nodes[i].missed;
+        match self.nodes.iter().all(silent) {
+            true => Some((EventCode::BusSilent, cycles.into())),
+            false => Some((EventCode::NodeSilent, detail(i, cycles))),
+        }
+    }
+
+    /// A line whose controller is off the bus.
+    pub(crate) fn off(&self) -> Option<usize> {
+        self.nodes.iter().position(|node| node.line == ErrorState::Off)
+    }
+
+    /// Whether a joint was read in this cycle.
+    pub(crate) fn reads(&self, joint: usize) -> bool {
+        self.nodes[self.node_of[joint]].missed == 0
+    }
+
+    pub(crate) fn counters(&self) -> BusCounters {
+        self.counters
+    }
+
+    /// Something worth a line in the log, since the last call; what came first comes first.
+    pub(crate) fn take_event(&mut self) -> Option<(EventCode, u64)> {
+        let first = *self.events[..self.told].first()?;
+        self.events.copy_within(1..self.told, 0);
+        self.told -= 1;
+        Some(first)
+    }
+
+    /// More than there is room for is not told, but counted.
+    fn tell(&mut self, code: EventCode, detail: u64) {
+        if let Some(room) = self.events.get_mut(self.told) {
+            *room = (code, detail);
+            self.told += 1;
+        }
+    }
+
+    /// A node was heard in this cycle, or not.
+    fn hear(&mut self, i: usize, heard: bool, powered: bool) {
+        let node = &mut self.nodes[i];
+        let (was, known) = (node.missed, node.heard);
+        node.heard |= heard;
+        node.missed = if heard { 0 } else { was.saturating_add(1) };
+        let missed = node.missed;
+        if heard && node.line == ErrorState::Off && !powered {
+            node.line = ErrorState::Active; // heard while the supply is off: its controller was started again
+            self.tell(EventCode::BusActive, i as u64);
+        }
+        if !known {
+            return;
+        }
+        if missed == 1 {
+            self.gaps += 1;
+            if self.gaps.is_power_of_two() {
+                self.tell(EventCode::FramesLost, i as u64);
+            }
+        }
+        if missed == self.carried_on + 1 {
+            self.tell(EventCode::NodeHeld, detail(i, missed));
+        } else if heard && was > self.carried_on {
+            self.tell(EventCode::NodeBack, detail(i, was));
+        }
+    }
+
+    fn count(&mut self, received: &Received) {
+        self.counters.lost += u64::from(received.missed());
+        self.counters.late += u64::from(received.stale);
+        self.counters.duplicated += u64::from(received.repeated);
+        self.refuse(Refused::Late, received.stale);
+        self.refuse(Refused::Twice, received.repeated);
+        self.refuse(Refused::Length, received.wrong_length);
+        self.refuse(Refused::Unknown, received.unknown);
+    }
+
+    /// Frames or readings that are not used; told at the first, second, fourth, eighth ... time.
+    fn refuse(&mut self, why: Refused, frames: u32) {
+        if frames == 0 {
+            return;
+        }
+        if !matches!(why, Refused::Late | Refused::Twice) {
+            self.counters.refused += u64::from(frames);
+        }
+        let times = &mut self.refused[why as usize];
+        *times += 1;
+        if times.is_power_of_two() {
+            self.tell(EventCode::FrameRefused, why as u64);
+        }
+    }
+
+    /// What lowlevel's bus controllers say about their lines.
+    fn read_errors(&mut self, frames: &BusFrames) {
+        for frame in frames.as_slice() {
+            let Some(error) = ErrorFrame::read(frame) else { continue };
+            self.counters.error_frames += 1;
+            let restarted = error.restarted.then_some(ErrorState::Active);
+            let Some(state) = error.state.or(restarted) else { continue };
+            let Some(node) = self.nodes.get_mut(frame.line as usize) else { continue };
+            if std::mem::replace(&mut node.line, state) == state {
+                continue;
+            }
+            self.counters.bus_off += u64::from(state == ErrorState::Off);
+            let code = match state {
+                ErrorState::Active => EventCode::BusActive,
+                ErrorState::Warning => EventCode::BusWarning,
+                ErrorState::Passive => EventCode::BusPassive,
+                ErrorState::Off => EventCode::BusOff,
+            };
+            self.tell(code, frame.line.into());
+        }
+    }
+
+    /// Whether most nodes say that the supply is on: one flipped bit neither stops the robot nor wakes it.
+    fn most_say_powered(&self, frames: &BusFrames) -> bool {
+        let mut votes = 0;
+        for frame in frames.as_slice() {
+            let Some(message) = self.layout.find(frame.line, frame.id).map(|i| &self.layout.messages[i])
+            else {
+                continue;
+            };
+            let supply = message.signals.iter().find(|s| s.carries == Carries::Supply);
+            if let Some(signal) = supply.filter(|_| !message.to_drives && frame.len == message.len) {
+                votes += if signal.get(&frame.data) == 1 { 1 } else { -1 };
+            }
+        }
+        votes > 0
+    }
+}
+
+/// Node and cycles as a number that people can read: 1000 times the node plus the cycles.
+fn detail(node: usize, cycles: u32) -> u64 {
+    1000 * node as u64 + u64::from(cycles.min(999))
+}

@@ -1,0 +1,157 @@
+//! Faults of the field bus while Lola walks: what is noticed, named and done, and how the robot ends.
+//!
+//! Each case begins at several instants of a stride, in the walk of scene `walk_2kmh`. Cycles are counted from the first
+//! one that the fault strikes.
+//!
+//! | file | what |
+//! |---|---|
+//! | `cases` | the faults, and what is demanded |
+//! | `trial` | one fault at one instant |
+//! | `text` | the tables |
+
+mod cases;
+mod text;
+mod trial;
+
+use std::error::Error;
+use std::path::Path;
+
+use config::Setup;
+use messages::EventCode;
+use serde::Serialize;
+
+use crate::{parallel, push};
+use cases::Case;
+pub use text::table;
+use trial::Trial;
+
+/// The walk that is disturbed.
+const SCENE: &str = "walk_2kmh";
+
+/// How a robot ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum End {
+    /// It walks on.
+    Walks,
+    /// It was stopped and stands.
+    Stands,
+    /// It was stopped, its joints came to rest, then it fell.
+    FellBraked,
+    /// It fell with joints in motion.
+    Fell,
+}
+
+/// What was found about a case.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// What happens to the bus.
+    pub fault: String,
+    /// \[cycle\] Until lowlevel tells something, at the latest.
+    pub noticed_cycles: Option<u64>,
+    /// \[cycle\] Until a stop or power off begins, at the latest.
+    pub reacted_cycles: Option<u64>,
+    /// \[cycle\] From then until all joints rest, at the latest; none: not before the end or the fall.
+    pub at_rest_cycles: Option<u64>,
+    /// \[cycle\] Until the motor supply is off, at the latest; none: it stays on.
+    pub power_off_cycles: Option<u64>,
+    /// Names of what the log tells, in the order of the first instant.
+    pub log: Vec<String>,
+    /// The worst end.
+    pub end: End,
+    /// \[1\] Instants at which the robot did not fall.
+    pub upright: usize,
+    /// What is demanded and not met; empty: all is.
+    pub unmet: String,
+}
+
+/// Lengths of bursts that were survived.
+#[derive(Clone, Debug, Serialize)]
+pub struct Burst {
+    /// \[cycle\]
+    pub cycles: u32,
+    /// \[1\] Of the instants, walked on: all lines lost, the line of a knee lost.
+    pub walked_on: [usize; 2],
+    /// \[1\] Of the instants, did not fall.
+    pub upright: [usize; 2],
+}
+
+/// What was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// \[s\] Bus cycle.
+    pub cycle_s: f64,
+    /// \[1\] Instants of a stride at which each fault began.
+    pub instants: usize,
+    /// The cases.
+    pub rows: Vec<Row>,
+    /// The bursts.
+    pub bursts: Vec<Burst>,
+}
+
+impl Report {
+    /// Cases whose demands are not met.
+    pub fn failed(&self) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(|row| !row.unmet.is_empty())
+    }
+}
+
+/// All cases at `instants` of a stride.
+///
+/// # Errors
+/// A configuration or robot is wrong, or the robot falls without a fault.
+pub fn run(config: &Path, instants: usize) -> Result<Report, Box<dyn Error>> {
+    let setup = Setup::load(config, SCENE)?;
+    let starts = push::at_instants(&setup, instants)?;
+    let cases = cases::all(&setup);
+    let trials = parallel::map(cases.len() * instants, |k| {
+        Some(trial::run(&starts[k % instants], &cases[k / instants].faults))
+    });
+    let trials: Vec<Trial> = trials.into_iter().flatten().collect::<Result<_, _>>()?;
+    let rows = cases.iter().zip(trials.chunks(instants)).map(|(case, trials)| row(case, trials)).collect();
+    let lengths = cases::BURSTS;
+    let bursts = parallel::map(lengths.len() * 2 * instants, |k| {
+        let fault = cases::burst(lengths[k / (2 * instants)], k / instants % 2 == 1);
+        Some(trial::run(&starts[k % instants], &[fault]))
+    });
+    let bursts: Vec<Trial> = bursts.into_iter().flatten().collect::<Result<_, _>>()?;
+    let bursts = lengths.iter().zip(bursts.chunks(2 * instants)).map(|(&cycles, trials)| {
+        let count = |ok: fn(&Trial) -> bool| {
+            [0, 1].map(|i| trials[i * instants..(i + 1) * instants].iter().filter(|t| ok(t)).count())
+        };
+        Burst {
+            cycles,
+            walked_on: count(|t| t.end() == End::Walks),
+            upright: count(|t| t.end() <= End::Stands),
+        }
+    });
+    Ok(Report { cycle_s: setup.scene.cycle, instants, rows, bursts: bursts.collect() })
+}
+
+/// The worst of all instants.
+fn row(case: &Case, trials: &[Trial]) -> Row {
+    // Later than everything: it did not happen at one instant.
+    let latest = |of: fn(&Trial) -> Option<u64>| {
+        let all: Vec<Option<u64>> = trials.iter().map(of).collect();
+        if all.iter().all(Option::is_some) { all.into_iter().max().flatten() } else { None }
+    };
+    let mut row = Row {
+        fault: case.name.clone(),
+        noticed_cycles: latest(|t| t.noticed),
+        reacted_cycles: latest(|t| t.reacted),
+        at_rest_cycles: latest(|t| t.at_rest),
+        power_off_cycles: latest(|t| t.power_off),
+        log: trials[0].log.iter().map(|code| format!("{code:?}")).collect(),
+        end: trials.iter().map(Trial::end).max().unwrap_or(End::Fell),
+        upright: trials.iter().filter(|t| t.end() <= End::Stands).count(),
+        unmet: String::new(),
+    };
+    row.unmet = case.demand.unmet(&row, trials).join("; ");
+    row
+}
+
+/// Events that are a stop or no power.
+fn is_reaction(code: EventCode) -> bool {
+    use EventCode::{BusOff, BusSilent, FollowingError, NodeSilent, PowerOff, SafeStop};
+    matches!(code, BusOff | BusSilent | FollowingError | NodeSilent | PowerOff | SafeStop)
+}
