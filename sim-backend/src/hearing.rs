@@ -135,7 +135,9 @@ mod tests {
         h.step(Some(&received(9)), true);
         assert_eq!(h.follows(0, 0.06, 0.008), Follows::Target);
         assert_eq!([0.07, -0.07, f64::NAN].map(|away| h.follows(0, away, 0.008)), [Follows::LastSpeed; 3]);
-        (0..3).for_each(|_| drop(h.step(None, true)));
+        for _ in 0..3 {
+            h.step(None, true);
+        }
         h.step(Some(&received(9)), true);
         assert_eq!(h.follows(0, 0.11, 0.008), Follows::Target, "further away after a gap");
     }

@@ -19,7 +19,7 @@ const FOR_EVER: f64 = 1e3;
 /// \[s\] Two strides.
 const WHILE: f64 = 3.0;
 /// \[cycle\] All joints rest so soon after a stop began.
-const AT_REST: u64 = 50;
+const AT_REST: u64 = 150;
 
 /// One case.
 pub(super) struct Case {
@@ -50,6 +50,11 @@ impl Demand {
     /// The robot is stopped.
     fn stops(why: EventCode, cycles: RangeInclusive<u64>) -> Self {
         Self { noticed: Some(1), reacts: Some((why, cycles)), ..Self::default() }
+    }
+
+    /// Noticed later than in the first cycle: nothing is missing yet.
+    fn noticed_in(self, cycles: u64) -> Self {
+        Self { noticed: Some(cycles), ..self }
     }
 
     fn and_power_off(self, cycles: u64) -> Self {
@@ -163,7 +168,10 @@ pub(super) fn all(setup: &Setup) -> Vec<Case> {
         case(
             "corrupted, all to a knee: lowlevel's controller leaves the bus",
             on(KNEE, to_drives(for_ever(Corrupted))),
-            Demand::stops(BusOff, 1..=17).and_power_off(17).and_tells(&[BusWarning, BusPassive]),
+            Demand::stops(BusOff, 1..=17)
+                .noticed_in(6)
+                .and_power_off(17)
+                .and_tells(&[BusWarning, BusPassive]),
         ),
         case(
             "corrupted, all from a knee: the node's controller leaves the bus",
