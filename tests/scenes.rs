@@ -143,6 +143,15 @@ fn walk_link_motor() {
     assert!(errors[0] < 15e-3, "{errors:?}");
 }
 
+/// The same with look-up tables in integers, counts, and targets every 3.5 ms as CAN carries them.
+#[test]
+fn walk_tables() {
+    let f = figures("walk_tables", 20.0);
+    walks(&f, 2.0);
+    let errors = tracking(&f);
+    assert!(errors[0] < 8e-3 && errors[1] < 8e-3, "{errors:?}");
+}
+
 /// Johnnie's motors under voltage control (5.40), in his control cycle.
 #[test]
 fn johnnie_type3() {

@@ -65,6 +65,12 @@ pub(super) enum Task {
         #[arg(long, value_name = "DIR", default_value = "runs/study/limits")]
         out: PathBuf,
     },
+    /// Look-up tables of the local controllers: error over size, time, and what a walk loses by them.
+    Tables {
+        /// Where the picture goes.
+        #[arg(long, value_name = "DIR", default_value = "runs/study/tables")]
+        out: PathBuf,
+    },
     /// Figures of the thesis that compare two walks: 5.2, 4.17, 9.1.
     Thesis {
         /// Only this figure.
@@ -138,6 +144,11 @@ pub(super) fn run(config: &Path, what: Task, json: bool) -> Result<ExitCode, Box
         Task::Bus => {
             let report = studies::bus::run(config)?;
             (serde_json::to_string(&report)?, studies::bus::table(&report))
+        }
+        Task::Tables { out } => {
+            let report = studies::tables::run(config, |what| eprintln!("{what} ..."))?;
+            tracing::info!("{}", studies::tables::draw(&report, &out)?);
+            (serde_json::to_string(&report)?, studies::tables::table(&report))
         }
         Task::Speed => {
             let report = speed::run(config)?;

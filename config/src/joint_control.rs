@@ -1,6 +1,8 @@
 //! `[joint_control]`: how drives are controlled, of a robot, of one of its drives, or of all of them in a scene.
 
-use drives::{Cascade, Feedback, JointControl, Law, Sampled, Sampling, VoltageLaw};
+use std::ops::RangeInclusive;
+
+use drives::{Cascade, Feedback, JointControl, Law, Resolution, Sampled, Sampling, VoltageLaw};
 
 use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 
@@ -8,7 +10,14 @@ use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 pub(crate) const NONE: JointControl = JointControl {
     law: Law::Voltage(VoltageLaw { position: f64::NAN, speed: f64::NAN }),
     sampling: Sampling::Cycle(Sampled { delay: false, difference: false }),
+    resolution: Resolution { table_points: None, encoder_counts: None },
 };
+
+/// Points of a look-up table in each dimension: an ankle's largest one has 1025^2 rows of 12 bytes.
+const TABLE_POINTS: RangeInclusive<u64> = 2..=1025;
+/// Counts in a turn of a motor.
+const ENCODER_COUNTS: RangeInclusive<u64> = 2..=1 << 24;
+
 
 pub(crate) fn build(table: &Section<'_, '_>) -> JointControl {
     let law = match table.word("law", &["cascade", "voltage"]) {
@@ -28,7 +37,12 @@ pub(crate) fn build(table: &Section<'_, '_>) -> JointControl {
     if matches!(law, Law::Voltage(_)) && sampling == Sampling::Continuous {
         table.problem("sampling", "the law \"voltage\" is computed once per cycle; it takes \"cycle\"");
     }
-    JointControl { law, sampling }
+    let whole = |key, range| table.has(key).then(|| table.integer(key, range) as u32);
+    let resolution = Resolution {
+        table_points: whole("table_points", TABLE_POINTS),
+        encoder_counts: whole("encoder_counts", ENCODER_COUNTS),
+    };
+    JointControl { law, sampling, resolution }
 }
 
 fn cascade(table: &Section<'_, '_>) -> Cascade {

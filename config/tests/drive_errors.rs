@@ -184,6 +184,19 @@ fn joint_control_that_cannot_be() {
 }
 
 #[test]
+fn resolution_that_cannot_be() {
+    let coarse = "sampling = \"continuous\"\ntable_points = 1\nencoder_counts = 1";
+    refused(
+        "resolution",
+        &[("sampling = \"continuous\"", coarse)],
+        &[
+            "joint_control.table_points: 1 is not allowed; it takes ",
+            "joint_control.encoder_counts: 1 is not allowed; it takes ",
+        ],
+    );
+}
+
+#[test]
 fn drives_without_joint_control() {
     refused("uncontrolled", &[("[joint_control]", "[joint_contrl]")], &["joint_control: ", "joint_contrl: "]);
 }

@@ -10,6 +10,7 @@
 //! | equations of motion, types 1 to 5 of the thesis | [`plant`] |
 //! | their states | [`layout`] |
 //! | their drives, with their controllers, and both in an implicit step | [`train`], `local_control.rs`, [`implicit`] |
+//! | counts and look-up tables of these controllers | `resolution.rs` |
 //! | their contact, and what they stand on | [`feet`], [`terrain`] |
 //! | time steps; the adaptive ones | [`integrate`], [`stiff`] |
 //! | what the sensors make of it | [`sensors`] |
@@ -26,6 +27,7 @@ pub mod layout;
 mod local_control;
 pub mod plant;
 pub mod power;
+mod resolution;
 mod robot;
 pub mod sensors;
 pub mod stiff;

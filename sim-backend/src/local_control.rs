@@ -5,6 +5,9 @@
 //! voltage   U = C c (q_d - q) + D (w_d - w) + k_M w_d,   w_d = c q'_d                                  (5.40)
 //! ```
 //!
+//! Between two cycles of the bus the references are the cubic through the targets of both, angle and speed
+//! ([`crate::drive::Drive`]). Controllers that count and look up instead of measuring and computing: `resolution.rs`.
+//!
 //! a, b: sides of an elastic gear that are measured; behind a rigid one both are the same. A law is computed at every
 //! instant, or once per bus cycle with the references of that instant, and then held.
 //!
@@ -15,8 +18,9 @@
 //! | w_d, w | speed of the shaft, wanted and seen | rad/s |
 //! | K_x, K_v, w_c, C, D | gains, see [`drives::JointControl`]; `K_v = w_v J/k_M` | |
 
-use drives::{JointControl, Law, Sampled, Sampling, Side};
+use drives::{JointControl, Law, OutOfDomain, Sampled, Sampling, Side};
 
+use crate::resolution::Angles;
 use crate::train::{Given, Shaft};
 
 /// What is seen of a shaft, in units of its motor; on the link's side and on the motor's.
@@ -69,7 +73,11 @@ impl Sampler {
 
 impl Shaft {
     /// Speed, and how far it is from the wanted one, with the gear as it is.
-    pub(crate) fn load(&mut self, given: &Given<'_>) {
+    ///
+    /// # Errors
+    /// A joint is to be, or is, where the drive has no numbers for it; it goes on with those it had.
+    pub(crate) fn load(&mut self, given: &Given<'_>) -> Result<(), OutOfDomain> {
+        let looked = self.look(given);
         let seen = self.seen(given);
         self.speed = seen.speed[Side::Motor as usize];
         if let Law::Cascade(cascade) = self.drive.control.law {
@@ -77,6 +85,22 @@ impl Shaft {
             self.wanted = cascade.speed_wanted(seen.error[feedback.position() as usize], seen.wanted);
             self.lag = self.wanted - seen.speed[feedback.speed() as usize];
         }
+        if given.powered { looked } else { Ok(()) } // without supply nobody computes
+    }
+
+    /// What a controller with coarse numbers sees.
+    fn look(&mut self, given: &Given<'_>) -> Result<(), OutOfDomain> {
+        let Some(mut coarse) = self.coarse.take() else { return Ok(()) };
+        let angles = |of: &dyn Fn(usize) -> f64| {
+            [0, 1, 2].map(|i| if i < self.coupled { of(i) } else { 0.0 })
+        };
+        let at = Angles {
+            reference: angles(&|i| given.reference[self.joints[i]].angle),
+            measured: [Side::Link, Side::Motor].map(|side| angles(&|i| self.at(side, i, given).0)),
+        };
+        let looked = coarse.look(&self.drive.transmission, &at);
+        self.coarse = Some(coarse);
+        looked
     }
 
     /// Measures and computes once, at the state of [`Shaft::load`]; `cycle` \[s\] since the last time.
@@ -113,6 +137,9 @@ impl Shaft {
                 let turned = |i: usize| self.gear.ratio[i] * (angles[side][i] - last[side][i]);
                 seen.speed[side] = (0..self.coupled).map(turned).sum::<f64>() / cycle;
             }
+            if let Some(coarse) = &mut self.coarse {
+                seen.speed[Side::Motor as usize] = coarse.speed(cycle);
+            }
         }
         seen
     }
@@ -127,6 +154,11 @@ impl Shaft {
                 seen.error[side as usize] += c * (reference.angle - angle);
                 seen.speed[side as usize] += c * speed;
             }
+        }
+        if let Some(coarse) = &self.coarse {
+            let speed = |i: usize| coarse.ratio()[i] * given.reference[self.joints[i]].speed;
+            seen.wanted = (0..self.coupled).map(speed).sum();
+            seen.error = coarse.error();
         }
         seen
     }

@@ -11,14 +11,17 @@
 //! | T_f | friction torque on the motor shaft (2.61), (2.68) | N m |
 //! | T | torque of the elastic gear on its output side (2.69) | N m |
 
+use std::error::Error;
+
 use config::Robot;
-use config::robot::Drive as Description;
+use config::robot::{Drive as Description, Joint};
 use drives::{Elasticity, Gear, Law, NoLoadTorque, OutOfDomain, Sampling, Transmission};
-use multibody::{Damper, Data, Model, ModelError, Rotor};
+use multibody::{Damper, Data, Model, Rotor};
 
 use crate::drive::Motion;
 use crate::implicit::Step;
 use crate::local_control::Sampler;
+use crate::resolution::Coarse;
 
 /// \[rad/s\] Speed of a rotor over which explicit methods see dry friction change its sign.
 pub(crate) const SLOW: f64 = 1.0;
@@ -45,7 +48,7 @@ pub struct Fault {
 /// Why a drive has a [`Fault`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Why {
-    /// The linkage is at its dead point, or beyond.
+    /// The linkage is at its dead point, or beyond, or outside of the controller's look-up table.
     Linkage(OutOfDomain),
     /// The friction has no unique load torque.
     Friction(NoLoadTorque),
@@ -75,6 +78,8 @@ pub(crate) struct Shaft {
     pub(crate) lag: f64,
     /// What a sampled law holds.
     pub(crate) sampler: Sampler,
+    /// Of a controller with coarse numbers.
+    pub(crate) coarse: Option<Coarse>,
     /// Of an implicit step, see there.
     pub(crate) step: Step,
 }
@@ -96,10 +101,13 @@ pub struct Given<'a> {
 impl Train {
     /// The drives of `robot`, whose rotors `model` has; gears with elasticity are elastic if `elastic`. The speed loops are
     /// tuned for the robot hanging in the pose `hanging` \[rad\].
-    pub fn new(robot: &Robot, model: &Model, elastic: bool, hanging: &[f64]) -> Result<Self, ModelError> {
+    ///
+    /// # Errors
+    /// The drives do not belong to the model, or a linkage has no look-up table where its controller needs one.
+    pub fn new(robot: &Robot, model: &Model, elastic: bool, hanging: &[f64]) -> Result<Self, Box<dyn Error>> {
         let mut count = 0;
-        let shaft = |(k, d): (usize, &Description)| Shaft::new(d, k, elastic, &mut count);
-        let mut shafts: Vec<Shaft> = robot.drives.iter().enumerate().map(shaft).collect();
+        let shaft = |(k, d): (usize, &Description)| Shaft::new(d, &robot.joints, k, elastic, &mut count);
+        let mut shafts = robot.drives.iter().enumerate().map(shaft).collect::<Result<Vec<_>, _>>()?;
         tune(&mut shafts, model, hanging);
         let dampers = robot.drives.iter().map(|d| model.damper(&d.joints)).collect::<Result<_, _>>()?;
         Ok(Self { shafts, elastic: count, fault: None, dampers })
@@ -156,7 +164,9 @@ impl Train {
                 }
                 data.set_gear(k, s.gear.ratio, s.gear.bias);
             }
-            s.load(given);
+            if let Err(why) = s.load(given) {
+                self.fault.get_or_insert(Fault { drive: k, why: Why::Linkage(why) });
+            }
         }
     }
 
@@ -226,14 +236,21 @@ impl Train {
 }
 
 impl Shaft {
-    fn new(drive: &Description, motor: usize, elastic: bool, count: &mut usize) -> Self {
+    fn new(
+        drive: &Description,
+        joints: &[Joint],
+        motor: usize,
+        elastic: bool,
+        count: &mut usize,
+    ) -> Result<Self, String> {
+        let coarse = Coarse::new(drive, joints)?;
         let first = drive.joints[0];
         let joint = |i: usize| drive.joints.get(i).copied().unwrap_or(first);
         let mut place = || {
             *count += 1;
             *count - 1
         };
-        Self {
+        Ok(Self {
             motor,
             joints: [joint(0), joint(1), joint(2)],
             coupled: drive.joints.len().min(3),
@@ -245,9 +262,10 @@ impl Shaft {
             wanted: 0.0,
             lag: 0.0,
             sampler: Sampler::new(&drive.control),
+            coarse,
             step: Step::default(),
             drive: drive.clone(),
-        }
+        })
     }
 
     /// Whether the ratio changes with the joints.

@@ -4,7 +4,9 @@ mod rig;
 
 use config::Robot;
 use config::scene::Integrator;
-use drives::{Cascade, Elasticity, Feedback, Friction, JointControl, Law, Sampled, Sampling, VoltageLaw};
+use drives::{
+    Cascade, Elasticity, Feedback, Friction, JointControl, Law, Resolution, Sampled, Sampling, VoltageLaw,
+};
 use environment::Environment;
 use rig::{Rig, lola};
 use sim_backend::drive::Drive;
@@ -23,7 +25,7 @@ fn controlled(law: Law, sampling: Sampling) -> Robot {
         d.friction = Friction::Free;
         (d.current_limit, d.voltage_limit) = (1e9, 1e9);
         d.elasticity = d.elasticity.map(|e| Elasticity::linear(e.stiffness[0]));
-        d.control = JointControl { law, sampling };
+        d.control = JointControl { law, sampling, resolution: Resolution::default() };
     }
     robot
 }

@@ -4,6 +4,8 @@ mod rig;
 
 use config::scene::Integrator;
 use config::{Setup, root};
+use drives::Resolution;
+use environment::Environment;
 use messages::frames::{DriveCommand, encode_targets};
 use messages::{BusFrames, JointMode, JointTargets, Power};
 use realtime::allocations::{arm, counted, disarm};
@@ -43,6 +45,24 @@ fn equations_of_motion() {
         });
         assert_eq!(counts, [0, 0], "type {depth}");
     }
+}
+
+/// Look-up tables and counts.
+#[test]
+fn coarse_controllers() {
+    let mut robot = rig::lola();
+    for d in &mut robot.drives {
+        d.control.resolution = Resolution { table_points: Some(17), encoder_counts: Some(11520) };
+    }
+    let mut rig = Rig::of(robot, 3, Environment::flat()).moving(0.01, 0.1);
+    let counts = during(|| {
+        let Rig { plant, x, drives, outside, .. } = &mut rig;
+        for i in 0..5 {
+            plant.implicit_step(1e-4 * f64::from(i), 1e-4, x, drives, outside);
+        }
+    });
+    assert_eq!(counts, [0, 0]);
+    assert_eq!(rig.plant.take_fault(), None);
 }
 
 #[test]

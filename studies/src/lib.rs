@@ -9,6 +9,7 @@
 //! | [`limits`] | where do methods fail, and is it told? |
 //! | [`speed`], [`simulation_speed`] | how fast is each part, and how accurate is it at that speed? |
 //! | [`bus`] | what does the field bus cost, in time, room on its lines and accuracy of the walk? |
+//! | [`tables`] | what do look-up tables, counts and a slower bus cost the joints? |
 //! | [`arm_swing`] | what do swinging arms take from the soles? |
 //! | [`figures_of_thesis`] | are the figures of the thesis found again? |
 //! | [`scorecard`] | does everything walk that is to walk, and how well beside what others reached? |
@@ -34,3 +35,4 @@ pub mod second;
 pub mod simulation_speed;
 pub mod speed;
 pub mod stability;
+pub mod tables;

@@ -20,6 +20,18 @@ pub struct JointControl {
     pub law: Law,
     /// When it is computed.
     pub sampling: Sampling,
+    /// How finely.
+    pub resolution: Resolution,
+}
+
+/// How finely a local controller sees its motor and computes where it is to be. The default is exact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Resolution {
+    /// Points in each dimension of the [`FixedTable`](crate::FixedTable) of a linkage, by which the motor's angle and speed
+    /// are found from the joints'; none: the linkage itself. Linear gears need no table.
+    pub table_points: Option<u32>,
+    /// \[1\] Counts in a turn of the motor by which its angle is seen; none: all of it.
+    pub encoder_counts: Option<u32>,
 }
 
 /// A law of joint control.

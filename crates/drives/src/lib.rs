@@ -7,7 +7,8 @@
 //! - [`Elasticity`]: of harmonic drives (2.69).
 //! - [`JointControl`]: laws of joint control (5.40), (5.43), (5.45), (5.49); [`elastic_joint`]: their stability
 //!   (5.41)-(5.52), continuous and sampled.
-//! - [`lookup`]: tables of a linkage with linear interpolation, as Lola's local controllers use.
+//! - [`lookup`]: tables of a linkage with linear interpolation; [`FixedTable`]: the same in 32-bit integers, as Lola's local
+//!   controllers have them.
 //! - [`fit`]: friction parameters from efficiencies (2.62); off-line, it allocates.
 //!
 //! Pure mathematics: no file, no clock, and no allocation after construction. All quantities of a motor are those of its
@@ -18,6 +19,7 @@ mod control;
 pub mod elastic_joint;
 mod elasticity;
 pub mod fit;
+pub mod fixed_table;
 mod friction;
 mod inverse;
 mod knee;
@@ -27,8 +29,9 @@ mod transmission;
 mod turn;
 
 pub use ankle::{Ankle, AnkleGeometry};
-pub use control::{Cascade, Feedback, JointControl, Law, Sampled, Sampling, Side, VoltageLaw};
+pub use control::{Cascade, Feedback, JointControl, Law, Resolution, Sampled, Sampling, Side, VoltageLaw};
 pub use elasticity::Elasticity;
+pub use fixed_table::FixedTable;
 pub use friction::{Friction, HarmonicFriction, NoLoadTorque, ScrewFriction, Sliding};
 pub use knee::{Knee, KneeGeometry};
 pub use motor::Motor;

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 use ::drives::elastic_joint::{ElasticJoint, Gains};
 use ::drives::{
-    Cascade, Elasticity, Feedback, Friction, HarmonicFriction, JointControl, Law, Motor, Sampled, Sampling,
+    Cascade, Elasticity, Feedback, Friction, HarmonicFriction, JointControl, Law, Motor, Resolution, Sampled, Sampling,
     ScrewFriction, Transmission,
 };
 use config::Robot;
@@ -164,6 +164,7 @@ impl Loop {
             control: JointControl {
                 law: Law::Cascade(cascade),
                 sampling: self.sampled.map_or(Sampling::Continuous, |(_, sampled)| Sampling::Cycle(sampled)),
+                resolution: Resolution::default(),
             },
         }
     }
