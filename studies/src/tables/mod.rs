@@ -84,19 +84,21 @@ pub fn table(report: &Report) -> String {
         text.push('\n');
     }
     text += &format!(
-        "walks, largest tracking error [mrad]\n{:48}{:>10}{:>13}{:>13}{:>8}{:>14}",
-        "", "cycle", "hip, knee", "motor side", "ankle", "inclination"
+        "walks, tracking errors and inclination [mrad]\n{:60}{:>10}{:>24}{:>22}{:>14}\n{:60}{:>10}{:>12}{:>12}{:>11}{:>11}{:>14}",
+        "", "", "hip and knee, largest", "root mean square", "inclination", "", "cycle", "link", "motor", "knee",
+        "ankle", "largest"
     );
     for w in &report.walks {
         let fell = if w.fell { ", FELL" } else { "" };
         let milli = |x: f64| 1e3 * x;
         text += &format!(
-            "\n{:48}{:>7.1} ms{:>13.2}{:>13.2}{:>8.2}{:>14.1}{fell}",
+            "\n{:60}{:>7.1} ms{:>12.2}{:>12.2}{:>11.3}{:>11.3}{:>14.1}{fell}",
             w.what,
             milli(w.cycle_s),
             milli(w.hip_knee_rad),
             milli(w.motor_side_rad),
-            milli(w.ankle_rad),
+            milli(w.rms_rad[0]),
+            milli(w.rms_rad[1]),
             milli(w.inclination_rad)
         );
     }

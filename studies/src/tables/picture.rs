@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use drawing::color::{BLUE, GREY, VERMILION};
+use drawing::color::{BLUE, GREEN, GREY, VERMILION};
 use drawing::{Chart, Color, Figure, Pen};
 
 use super::{Linkage, Report, Size, Walk};
@@ -57,7 +57,7 @@ fn over_bytes(
         chart.styled(&format!("{}, f64", linkage.name), points(&|s| error(s)[1]), pen);
         let integers = points(&|s| error(s)[0]);
         chart.dots(&format!("{}, integers", linkage.name), integers.clone(), 6.0, color);
-        for (at, s) in integers.into_iter().zip(&linkage.sizes) {
+        for (at, s) in integers.into_iter().zip(&linkage.sizes).skip(1) {
             chart.label(at, &s.points.to_string(), GREY);
         }
     }
@@ -65,7 +65,7 @@ fn over_bytes(
 }
 
 fn over_time(report: &Report) -> Chart {
-    let mut chart = Chart::new("speed against accuracy", "one evaluation [ns]", "error of the angle [rad]")
+    let mut chart = Chart::new("time", "one evaluation [ns]", "error of the angle [rad]")
         .logarithmic()
         .height(420.0);
     let errors = report.linkages.iter().flat_map(|l| &l.sizes).flat_map(|s| s.angle_rad);
@@ -73,7 +73,7 @@ fn over_time(report: &Report) -> Chart {
     for linkage in &report.linkages {
         let color = color(linkage);
         let direct = vec![[linkage.direct_ns, least], [linkage.direct_ns, most]];
-        chart.line(&format!("{}, no table: exact", linkage.name), direct, color.faint(90));
+        chart.line(&format!("{}, no table", linkage.name), direct, color.faint(90));
         let curve =
             |k: usize| linkage.sizes.iter().map(|s| [s.ns[k], s.angle_rad[k]]).collect::<Vec<_>>();
         let pen = Pen { color, width: 2.0, dashed: true };
@@ -81,7 +81,7 @@ fn over_time(report: &Report) -> Chart {
         let pen = Pen { dashed: false, ..pen };
         chart.styled(&format!("{}, integers", linkage.name), curve(0), pen);
         chart.dots("", curve(0), 6.0, color);
-        for (at, s) in curve(0).into_iter().zip(&linkage.sizes) {
+        for (at, s) in curve(0).into_iter().zip(&linkage.sizes).skip(1) {
             chart.label(at, &s.points.to_string(), GREY);
         }
     }
@@ -90,22 +90,25 @@ fn over_time(report: &Report) -> Chart {
 
 fn over_points(walks: &[Walk]) -> Chart {
     let mut chart = Chart::new(
-        "walking at 2 km/h, targets every 3.5 ms",
+        "walking at 2 km/h, targets every 3.5 ms (dashed: no tables)",
         "points of the tables in each dimension",
-        "tracking error [rad]",
+        "tracking error [mrad]",
     )
     .logarithmic()
     .height(420.0);
     let tables = || walks.iter().filter_map(|w| w.table_points.filter(|n| *n > 0).map(|n| (n, w)));
     let ends = tables().fold([f64::INFINITY, 0.0], |[lo, hi], (n, _)| [lo.min(n.into()), hi.max(n.into())]);
-    let parts: [(&str, Color, fn(&Walk) -> f64); 2] =
-        [("hip and knee", BLUE, |w| w.hip_knee_rad), ("ankle", VERMILION, |w| w.ankle_rad)];
+    let parts: [(&str, Color, fn(&Walk) -> f64); 3] = [
+        ("hip and knee, largest", GREEN, |w| 1e3 * w.hip_knee_rad),
+        ("knee, rms", BLUE, |w| 1e3 * w.rms_rad[0]),
+        ("ankle, rms", VERMILION, |w| 1e3 * w.rms_rad[1]),
+    ];
     for (name, color, of) in parts {
         let points: Vec<_> = tables().map(|(n, w)| [f64::from(n), of(w)]).collect();
-        chart.line(&format!("{name}, tables"), points.clone(), color).dots("", points, 6.0, color);
+        chart.line(name, points.clone(), color).dots("", points, 6.0, color);
         if let Some(direct) = walks.iter().find(|w| w.table_points == Some(0)).map(of) {
             let pen = Pen { color, width: 2.0, dashed: true };
-            chart.styled(&format!("{name}, no tables"), ends.map(|n| [n, direct]).to_vec(), pen);
+            chart.styled("", ends.map(|n| [n, direct]).to_vec(), pen);
         }
     }
     chart

@@ -12,6 +12,8 @@ use crate::figures::Gatherer;
 
 /// \[s\] As long as it takes to walk at full speed for some strides.
 const DURATION: f64 = 12.0;
+/// \[s\] From here on it walks at full speed.
+const STEADY: f64 = 6.0;
 /// Points of the tables, none: computed directly.
 const TABLES: [Option<u32>; 9] =
     [None, Some(3), Some(5), Some(9), Some(17), Some(33), Some(65), Some(129), Some(257)];
@@ -37,8 +39,8 @@ pub struct Walk {
     pub hip_knee_rad: f64,
     /// \[rad\] The same on the motors' side of elastic gears.
     pub motor_side_rad: f64,
-    /// \[rad\] Largest tracking error of the ankles.
-    pub ankle_rad: f64,
+    /// \[rad\] Root mean square of the tracking errors of the knees, and of the ankles, while walking at full speed.
+    pub rms_rad: [f64; 2],
     /// \[rad\] Largest error of the torso's inclination.
     pub inclination_rad: f64,
 }
@@ -100,12 +102,24 @@ fn walk(setup: Setup, what: String, tell: &impl Fn(&str)) -> Result<Walk, Box<dy
     let cycle = setup.scene.cycle;
     let mut chain = Chain::new(&setup)?;
     let mut gatherer = Gatherer::default();
+    let of = |part: &str| {
+        let joints = setup.robot.joints.iter().enumerate();
+        joints.filter(|(_, joint)| joint.name.contains(part)).map(|(j, _)| j).collect::<Vec<_>>()
+    };
+    let parts = [of("knee"), of("ankle")];
+    let (mut squares, mut cycles) = ([0.0; 2], 0.0_f64);
     for _ in 0..(DURATION / cycle).round() as usize {
         let c = chain.step();
         gatherer.add(&c.sim_state, &c.controller_state);
+        if c.sim_state.time >= STEADY {
+            cycles += 1.0;
+            for (square, part) in squares.iter_mut().zip(&parts) {
+                let of_part = part.iter().map(|&j| c.controller_state.tracking_error[j].powi(2));
+                *square += of_part.sum::<f64>() / part.len().max(1) as f64;
+            }
+        }
     }
     let f = gatherer.figures(&setup, 0.0, None);
-    let ankles = f.tracking_error_by_joint_rad.iter().filter(|(name, _)| name.contains("ankle"));
     Ok(Walk {
         what,
         table_points: None,
@@ -113,7 +127,7 @@ fn walk(setup: Setup, what: String, tell: &impl Fn(&str)) -> Result<Walk, Box<dy
         fell: f.fell,
         hip_knee_rad: f.hip_knee_tracking_error_max_rad,
         motor_side_rad: f.hip_knee_motor_side_error_max_rad,
-        ankle_rad: ankles.map(|(_, error)| *error).fold(0.0, f64::max),
+        rms_rad: squares.map(|sum| (sum / cycles.max(1.0)).sqrt()),
         inclination_rad: f.inclination_error_max_rad.into_iter().fold(0.0, f64::max),
     })
 }
