@@ -7,13 +7,15 @@ use drives::lookup::Table;
 use drives::{JointControl, Law, OutOfDomain, Resolution, Sampled, Sampling, Transmission, VoltageLaw};
 use environment::Environment;
 use rig::{Rig, lola};
-use sim_backend::drive::Drive;
+use sim_backend::drive::{Drive, Motion};
 use sim_backend::plant::Plant;
 use sim_backend::train::Why;
 use std::f64::consts::TAU;
 
 /// \[V/rad\] Gain of a controller that shows its error as a voltage.
 const GAIN: f64 = 5.0;
+/// Of the tables, in each dimension.
+const POINTS: usize = 17;
 /// \[rad\] By how much the joints are to move.
 const STEP: f64 = 3e-3;
 /// \[rad\] What the tables have beyond the ranges of the joints.
@@ -33,15 +35,21 @@ fn controlled(table_points: Option<u32>, encoder_counts: Option<u32>) -> Robot {
     robot
 }
 
-/// A robot at rest in its pose, told to be a step from it; errors of its drives \[rad\], by the rates of the currents.
+/// A robot at rest in its pose, told to be a step from it; errors of its drives \[rad\].
 fn errors(robot: Robot) -> (Rig, Vec<f64>) {
+    let (rig, voltages) = voltages(robot, |q| Drive::resting(q + STEP));
+    (rig, voltages.into_iter().map(|u| u / GAIN).collect())
+}
+
+/// A robot at rest in its pose, told to move like this; what its controllers set \[V\], by the rates of the currents.
+fn voltages(robot: Robot, told: impl Fn(f64) -> Drive) -> (Rig, Vec<f64>) {
     let mut rig = Rig::of(robot, 3, Environment::flat());
-    rig.drives = rig.pose.iter().map(|q| Drive::resting(q + STEP)).collect();
+    rig.drives = rig.pose.iter().map(|q| told(*q)).collect();
     rig.plant.sample(1e-3, &rig.x, &rig.drives, &rig.outside);
     let x = rig.x.clone();
     let rates = rig.rate(0.0, &x);
     let places = rig.plant.layout().current();
-    let of = |(d, at): (&config::robot::Drive, usize)| rates[at] * d.motor.inductance / GAIN;
+    let of = |(d, at): (&config::robot::Drive, usize)| rates[at] * d.motor.inductance;
     let found = rig.robot.drives.iter().zip(places).map(of).collect();
     (rig, found)
 }
@@ -52,6 +60,17 @@ fn joints(rig: &Rig, drive: usize, moved: f64) -> [f64; 3] {
     [0, 1, 2].map(|i| of.get(i).map_or(0.0, |j| rig.pose[*j] + moved))
 }
 
+/// The table of a drive's linkage in floating point.
+fn table(rig: &Rig, drive: usize) -> Table {
+    let d = &rig.robot.drives[drive];
+    let range = |i: usize| {
+        let [lo, hi] = rig.robot.joints[d.joints[i]].range;
+        [lo - MARGIN, hi + MARGIN]
+    };
+    let ranges = if d.joints.len() == 3 { [range(1), range(2)] } else { [range(0); 2] };
+    Table::new(&d.transmission, ranges, [POINTS; 2]).unwrap()
+}
+
 /// Motor angle of a drive by its linkage or gear itself \[rad\].
 fn motor(rig: &Rig, drive: usize, moved: f64) -> f64 {
     rig.robot.drives[drive].transmission.at(joints(rig, drive, moved), [0.0; 3]).unwrap().angle
@@ -60,7 +79,6 @@ fn motor(rig: &Rig, drive: usize, moved: f64) -> f64 {
 /// Linkages: the table's angle of the targets less the motor's own; the floating-point table says which. Gears: exact.
 #[test]
 fn the_motor_is_to_be_where_the_table_says() {
-    const POINTS: usize = 17;
     let (rig, found) = errors(controlled(Some(POINTS as u32), None));
     let mut missed = 0.0_f64;
     for (k, d) in rig.robot.drives.iter().enumerate() {
@@ -69,17 +87,36 @@ fn the_motor_is_to_be_where_the_table_says() {
             assert!((found[k] - exact).abs() < 1e-9, "{}: {}, {exact}", d.name, found[k]);
             continue;
         }
-        let range = |i: usize| {
-            let [lo, hi] = rig.robot.joints[d.joints[i]].range;
-            [lo - MARGIN, hi + MARGIN]
-        };
-        let ranges = if d.joints.len() == 3 { [range(1), range(2)] } else { [range(0); 2] };
-        let table = Table::new(&d.transmission, ranges, [POINTS; 2]).unwrap();
-        let wanted = table.at(joints(&rig, k, STEP)).unwrap().0 - motor(&rig, k, 0.0);
+        let wanted = table(&rig, k).at(joints(&rig, k, STEP)).unwrap().0 - motor(&rig, k, 0.0);
         assert!((found[k] - wanted).abs() < 5e-6, "{}: {}, {wanted}", d.name, found[k]);
         missed = missed.max((wanted - exact).abs());
     }
     assert!(missed > 1e-3, "17 points are seen: {missed} rad");
+}
+
+/// The speed wanted is that of the table's ratios where the joints are to be.
+#[test]
+fn the_motor_is_to_turn_as_the_table_says() {
+    let (speed, cycle) = (1.0, 1e-3);
+    let moving = |q| {
+        let from = Motion { angle: q, speed, ..Motion::default() };
+        Drive::follow(from, q + speed * cycle, speed, cycle)
+    };
+    let (rig, found) = voltages(controlled(Some(POINTS as u32), None), moving);
+    let mut missed = 0.0_f64;
+    for (k, d) in rig.robot.drives.iter().enumerate() {
+        if matches!(d.transmission, Transmission::Harmonic { .. }) {
+            continue;
+        }
+        let at = joints(&rig, k, 0.0);
+        let (angle, ratio) = table(&rig, k).at(at).unwrap();
+        let constant = d.motor.torque_constant;
+        let of = |ratio: [f64; 3]| constant * speed * ratio.iter().sum::<f64>();
+        let wanted = GAIN * (angle - motor(&rig, k, 0.0)) + of(ratio);
+        assert!((found[k] - wanted).abs() < 5e-5, "{}: {} V, {wanted}", d.name, found[k]);
+        missed = missed.max((of(ratio) - of(d.transmission.at(at, [0.0; 3]).unwrap().ratio)).abs());
+    }
+    assert!(missed > 1e-3, "17 points are seen: {missed} V");
 }
 
 /// Counts: the error is that of the angle's whole counts, for gears and linkages.

@@ -37,34 +37,17 @@ pub fn run(config: &Path, tell: impl Fn(&str)) -> Result<Report, Box<dyn Error>>
     Ok(Report { linkages: linkage::all(config, &tell)?, walks: walking::all(config, &tell)? })
 }
 
+/// Heads of the columns.
+const SIZES: &str = "                       angle of the motor [rad]                                ratio [1]       joint       time [ns]
+  points      bytes    integers         f64  rounding    predicted   integers        f64       [rad]    int.     f64";
+const WALKS: &str = "                                                                         hip and knee, largest      root mean square   inclination
+                                                                 cycle        link       motor       knee      ankle       largest";
+
 /// The report as lines for people.
 pub fn table(report: &Report) -> String {
     let mut text = String::new();
     for linkage in &report.linkages {
-        text += &format!(
-            "{}: without a table {:.0} ns\n{:>8}{:>11}{:>34}{:>13}{:>22}{:>12}{:>16}\n{:>8}{:>11}{:>12}{:>12}{:>10}{:>13}\
-             {:>11}{:>11}{:>12}{:>8}{:>8}\n",
-            linkage.name,
-            linkage.direct_ns,
-            "",
-            "",
-            "angle of the motor [rad]",
-            "",
-            "ratio [1]",
-            "joint",
-            "time [ns]",
-            "points",
-            "bytes",
-            "integers",
-            "f64",
-            "rounding",
-            "predicted",
-            "integers",
-            "f64",
-            "[rad]",
-            "int.",
-            "f64"
-        );
+        text += &format!("{}: without a table {:.0} ns\n{SIZES}\n", linkage.name, linkage.direct_ns);
         for s in &linkage.sizes {
             text += &format!(
                 "{:>8}{:>11}{:>12.2e}{:>12.2e}{:>10.0e}{:>13.2e}{:>11.1e}{:>11.1e}{:>12.1e}{:>8.1}{:>8.1}\n",
@@ -83,11 +66,7 @@ pub fn table(report: &Report) -> String {
         }
         text.push('\n');
     }
-    text += &format!(
-        "walks, tracking errors and inclination [mrad]\n{:60}{:>10}{:>24}{:>22}{:>14}\n{:60}{:>10}{:>12}{:>12}{:>11}{:>11}{:>14}",
-        "", "", "hip and knee, largest", "root mean square", "inclination", "", "cycle", "link", "motor", "knee",
-        "ankle", "largest"
-    );
+    text += &format!("walks, tracking errors and inclination [mrad]\n{WALKS}");
     for w in &report.walks {
         let fell = if w.fell { ", FELL" } else { "" };
         let milli = |x: f64| 1e3 * x;

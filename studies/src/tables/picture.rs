@@ -65,17 +65,15 @@ fn over_bytes(
 }
 
 fn over_time(report: &Report) -> Chart {
-    let mut chart = Chart::new("time", "one evaluation [ns]", "error of the angle [rad]")
-        .logarithmic()
-        .height(420.0);
+    let mut chart =
+        Chart::new("time", "one evaluation [ns]", "error of the angle [rad]").logarithmic().height(420.0);
     let errors = report.linkages.iter().flat_map(|l| &l.sizes).flat_map(|s| s.angle_rad);
     let (least, most) = errors.fold((f64::INFINITY, 0.0_f64), |(lo, hi), e| (lo.min(e), hi.max(e)));
     for linkage in &report.linkages {
         let color = color(linkage);
         let direct = vec![[linkage.direct_ns, least], [linkage.direct_ns, most]];
         chart.line(&format!("{}, no table", linkage.name), direct, color.faint(90));
-        let curve =
-            |k: usize| linkage.sizes.iter().map(|s| [s.ns[k], s.angle_rad[k]]).collect::<Vec<_>>();
+        let curve = |k: usize| linkage.sizes.iter().map(|s| [s.ns[k], s.angle_rad[k]]).collect::<Vec<_>>();
         let pen = Pen { color, width: 2.0, dashed: true };
         chart.styled(&format!("{}, f64", linkage.name), curve(1), pen);
         let pen = Pen { dashed: false, ..pen };
