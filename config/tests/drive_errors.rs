@@ -22,6 +22,14 @@ impl Spoilt {
         fs::write(to.join(from.file_name().unwrap()), text).unwrap();
         Self(to)
     }
+
+    /// Beside Lola's file the others that it names.
+    fn with_files_named(&self) {
+        fs::create_dir_all(self.0.join("can")).unwrap();
+        for file in ["lola.urdf", "can/lola.dbc", "can/lola_fd.dbc"] {
+            fs::copy(config::root(None).join("robots/lola").join(file), self.0.join(file)).unwrap();
+        }
+    }
 }
 
 impl Drop for Spoilt {
@@ -137,7 +145,7 @@ fn robot_without_drives_loads() {
     let rows = text.find("[[drive]]").unwrap();
     let end = text[rows..].find("\n[sensors").map_or(text.len(), |at| rows + at);
     let spoilt = Spoilt::new("none", "robots/lola/robot.toml", &[(&text[rows..end], "")]);
-    fs::copy(config::root(None).join("robots/lola/lola.urdf"), spoilt.0.join("lola.urdf")).unwrap();
+    spoilt.with_files_named();
     assert!(Robot::load(&spoilt.0).unwrap().drives.is_empty());
 }
 
@@ -207,8 +215,7 @@ fn joint_control_of_one_drive() {
     let own = "stator = \"right_thigh\"\njoint_control = { law = \"voltage\", position = 8.0, speed = 0.1, \
                sampling = \"cycle\", delay = 1, speed_from = \"state\" }";
     let spoilt = Spoilt::new("own", "robots/lola/robot.toml", &[("stator = \"right_thigh\"", own)]);
-    let urdf = config::root(None).join("robots/lola/lola.urdf");
-    fs::copy(urdf, spoilt.0.join("lola.urdf")).unwrap();
+    spoilt.with_files_named();
     let robot = Robot::load(&spoilt.0).unwrap();
     let differ = robot.drives.iter().filter(|d| matches!(d.control.law, drives::Law::Voltage(_)));
     assert_eq!(differ.map(|d| d.name.as_str()).collect::<Vec<_>>(), ["right_knee_flexion"]);
