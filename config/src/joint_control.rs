@@ -18,7 +18,6 @@ const TABLE_POINTS: RangeInclusive<u64> = 2..=1025;
 /// Counts in a turn of a motor.
 const ENCODER_COUNTS: RangeInclusive<u64> = 2..=1 << 24;
 
-
 pub(crate) fn build(table: &Section<'_, '_>) -> JointControl {
     let law = match table.word("law", &["cascade", "voltage"]) {
         0 => Law::Cascade(cascade(table)),

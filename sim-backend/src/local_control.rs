@@ -91,9 +91,8 @@ impl Shaft {
     /// What a controller with coarse numbers sees.
     fn look(&mut self, given: &Given<'_>) -> Result<(), OutOfDomain> {
         let Some(mut coarse) = self.coarse.take() else { return Ok(()) };
-        let angles = |of: &dyn Fn(usize) -> f64| {
-            [0, 1, 2].map(|i| if i < self.coupled { of(i) } else { 0.0 })
-        };
+        let angles =
+            |of: &dyn Fn(usize) -> f64| [0, 1, 2].map(|i| if i < self.coupled { of(i) } else { 0.0 });
         let at = Angles {
             reference: angles(&|i| given.reference[self.joints[i]].angle),
             measured: [Side::Link, Side::Motor].map(|side| angles(&|i| self.at(side, i, given).0)),

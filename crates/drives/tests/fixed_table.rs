@@ -52,7 +52,8 @@ fn table(transmission: &Transmission, ranges: [[f64; 2]; 3], points: usize) -> F
 #[test]
 fn order_two() {
     for (transmission, ranges) in linkages() {
-        let [coarse, fine] = [17, 65].map(|n| errors(&transmission, ranges, &table(&transmission, ranges, n)));
+        let [coarse, fine] =
+            [17, 65].map(|n| errors(&transmission, ranges, &table(&transmission, ranges, n)));
         for k in 0..2 {
             let order = (coarse[k] / fine[k]).ln() / 4.0_f64.ln();
             assert!((order - 2.0).abs() < 0.15, "order {order}: {coarse:?}, {fine:?}");
@@ -76,7 +77,8 @@ fn error_of_the_angle_is_the_predicted_one() {
                         let q = q.map(|q| f64::from(q) * UNIT);
                         transmission.at(q, speed).unwrap().bias.abs()
                     };
-                    h * h / 8.0 * places(transmission.joints(), ranges).into_iter().map(bend).fold(0.0, f64::max)
+                    h * h / 8.0
+                        * places(transmission.joints(), ranges).into_iter().map(bend).fold(0.0, f64::max)
                 })
                 .sum();
             let [angle, _] = errors(&transmission, ranges, &table(&transmission, ranges, points));
@@ -124,7 +126,8 @@ fn agrees_with_floating_point() {
     for (transmission, ranges) in linkages() {
         let joints = transmission.joints();
         let pair = if joints == 3 { [ranges[1], ranges[2]] } else { [ranges[0]; 2] };
-        let (fixed, real) = (table(&transmission, ranges, 33), Table::new(&transmission, pair, [33; 2]).unwrap());
+        let (fixed, real) =
+            (table(&transmission, ranges, 33), Table::new(&transmission, pair, [33; 2]).unwrap());
         let inside = places(joints, ranges.map(|[lo, hi]| [lo + 1e-6, hi - 1e-6]));
         for q in inside.into_iter().map(|q| q.map(|q| f64::from(q) * UNIT)) {
             let ((angle, ratio), (wanted, ratios)) = (fixed.at_angles(q).unwrap(), real.at(q).unwrap());

@@ -13,8 +13,8 @@ use std::f64::consts::PI;
 
 use ::drives::elastic_joint::{ElasticJoint, Gains};
 use ::drives::{
-    Cascade, Elasticity, Feedback, Friction, HarmonicFriction, JointControl, Law, Motor, Resolution, Sampled, Sampling,
-    ScrewFriction, Transmission,
+    Cascade, Elasticity, Feedback, Friction, HarmonicFriction, JointControl, Law, Motor, Resolution, Sampled,
+    Sampling, ScrewFriction, Transmission,
 };
 use config::Robot;
 use config::robot::Drive as Description;
