@@ -1,5 +1,6 @@
 //! What the command `gangwerk` is made of, for the command itself and for tests and studies.
 
+pub mod can;
 pub mod choose;
 pub mod fit_friction;
 pub mod param;

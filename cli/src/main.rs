@@ -67,6 +67,9 @@ enum Task {
         /// Write a log.
         #[arg(long, value_name = "FILE")]
         log: Option<PathBuf>,
+        /// Write the traffic of the bus: candump log, or MCAP if it ends in .mcap.
+        #[arg(long, value_name = "FILE")]
+        can: Option<PathBuf>,
     },
     /// Look at the topics of a running robot, or send it commands.
     Topic {
@@ -83,6 +86,11 @@ enum Task {
         /// Where the processes meet.
         #[arg(long, global = true, value_name = "DIR", default_value = cli::RUN_DIR)]
         dir: PathBuf,
+    },
+    /// Traffic of the joint loop's bus: record, replay, look at it, hold it against a log.
+    Can {
+        #[command(subcommand)]
+        what: cli::can::Task,
     },
     /// Draw the pictures of a log.
     Plot {
@@ -248,7 +256,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             let robot = !no_robot;
             run(Order { mode, scene, method: None, config, bus, robot, dir, log, progress: true }, no_plots)
         }
-        Task::Sim { scene, json, log } => sim(&config, &scene, json, log),
+        Task::Sim { scene, json, log, can } => sim(&config, &scene, json, log, can),
         Task::Topic { what, dir } => {
             realtime::end_with_reader();
             match what {
@@ -266,6 +274,10 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
                 ParamTask::Get { name } => cli::param::get(&dir, &name)?,
                 ParamTask::Set { name, value } => cli::param::set(&dir, &name, value)?,
             }
+            Ok(ExitCode::SUCCESS)
+        }
+        Task::Can { what } => {
+            cli::can::run(&config, what)?;
             Ok(ExitCode::SUCCESS)
         }
         Task::Plot { log, out } => {
@@ -356,6 +368,7 @@ fn sim(
     scene: &str,
     json: bool,
     log: Option<PathBuf>,
+    can: Option<PathBuf>,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let (setup, choice) = cli::choose::load(config, scene, !json)?;
     let bar = if json {
@@ -363,7 +376,7 @@ fn sim(
     } else {
         indicatif::ProgressBar::new(setup.scene.duration as u64)
     };
-    let mut figures = cli::sim::run(&setup, log.as_deref(), |t| bar.set_position(t as u64))?;
+    let mut figures = cli::sim::run(&setup, log.as_deref(), can.as_deref(), |t| bar.set_position(t as u64))?;
     figures.depth_reason = choice.map(|choice| choice.reason());
     bar.finish_and_clear();
     if json {

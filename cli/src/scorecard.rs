@@ -24,7 +24,7 @@ pub fn main(order: &Order<'_>, json: bool, out: Option<&Path>) -> Result<(), Box
         write(&report, out).map_err(problem)?;
         for setup in pictured(order)? {
             let log = out.join(format!("{}.mcap", setup.scene.name));
-            crate::sim::run(&setup, Some(&log), |_| ())?;
+            crate::sim::run(&setup, Some(&log), None, |_| ())?;
             crate::plot::run(&log, &out.join(&setup.scene.name))?;
         }
     }

@@ -11,10 +11,12 @@ use messages::topics::{
 use messages::{Event, EventCode, Header, Process, Record, Topic};
 use recording::Recorder;
 
+use crate::can::record::Traffic;
 use crate::chain::{Chain, Cycle};
 use crate::figures::{Figures, Gatherer};
 
-/// Runs a scene to its end, or until the robot has fallen and lies still; writes a log if asked to.
+/// Runs a scene to its end, or until the robot has fallen and lies still; writes a log, and the traffic of the bus, if
+/// asked to.
 ///
 /// `progress` is told the simulated time \[s\] once per simulated second.
 ///
@@ -23,9 +25,14 @@ use crate::figures::{Figures, Gatherer};
 pub fn run(
     setup: &Setup,
     log: Option<&Path>,
+    traffic: Option<&Path>,
     mut progress: impl FnMut(f64),
 ) -> Result<Figures, Box<dyn Error>> {
     let mut chain = Chain::new(setup)?;
+    let mut traffic = traffic.map(Traffic::create).transpose()?;
+    if let Some(traffic) = &mut traffic {
+        traffic.write(chain.answer())?; // where the joints are before the first cycle
+    }
     let mut record = log.map(|path| LogWriter::create(path, setup, &chain)).transpose()?;
     let mut gatherer = Gatherer::default();
     let cycles = (setup.scene.duration / setup.scene.cycle).round() as u64;
@@ -37,6 +44,10 @@ pub fn run(
         if let Some(record) = &mut record {
             record.write(cycle)?;
         }
+        if let Some(traffic) = &mut traffic {
+            traffic.write(chain.told())?;
+            traffic.write(chain.answer())?;
+        }
         if i % per_second == 0 {
             progress(i as f64 * setup.scene.cycle);
         }
@@ -44,6 +55,9 @@ pub fn run(
     let cpu = (realtime::clock::processor_time() - begun) as f64 * 1e-9;
     if let Some(record) = record {
         record.finish()?;
+    }
+    if let Some(traffic) = traffic {
+        traffic.finish()?;
     }
     Ok(gatherer.figures(setup, cpu, log.map(|p| p.display().to_string())))
 }

@@ -69,6 +69,11 @@ impl JointLoop {
         self.state
     }
 
+    /// What the drives were told in the last cycle.
+    pub fn told(&self) -> &BusFrames {
+        &self.frames
+    }
+
     /// Something worth a line in the log, since the last call.
     pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
         self.event.take().or_else(|| self.guard.take_event())

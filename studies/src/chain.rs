@@ -96,6 +96,16 @@ impl Chain {
         self.sim.push(push);
     }
 
+    /// What the drives were told in the last cycle.
+    pub fn told(&self) -> &BusFrames {
+        self.joint_loop.told()
+    }
+
+    /// What they answered; before the first cycle: where the joints are.
+    pub fn answer(&self) -> &BusFrames {
+        &self.answer
+    }
+
     /// The simulated robot.
     pub fn robot(&self) -> &SimBackend {
         &self.sim

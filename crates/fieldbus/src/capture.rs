@@ -1,5 +1,7 @@
 //! Recorded traffic: what was on which line, and when.
 
+use messages::Frame;
+
 /// Bit of an identifier: 29 bits long (CAN_EFF_FLAG of SocketCAN).
 pub const EXTENDED: u32 = 0x8000_0000;
 /// Bit of an identifier: a request without data (CAN_RTR_FLAG).
@@ -67,6 +69,17 @@ pub struct Captured {
 }
 
 impl Captured {
+    /// A frame of a bus cycle: classic or with the flags of CAN FD.
+    pub fn of(frame: &Frame, time_ns: u64, form: Form) -> Self {
+        let len = frame.len.min(64) as u8;
+        Self { time_ns, line: frame.line, id: frame.id, len, data: frame.data, form, way: None }
+    }
+
+    /// The same as a frame of a bus cycle, on line `line`.
+    pub fn frame(&self, line: u32) -> Frame {
+        Frame { line, id: self.id, len: self.len.into(), data: self.data }
+    }
+
     /// The payload; empty for a remote frame.
     pub fn payload(&self) -> &[u8] {
         if self.id & (REMOTE | ERROR) == REMOTE { &[] } else { &self.data[..usize::from(self.len).min(64)] }

@@ -4,6 +4,7 @@
 //!
 //! - [`capture`]: recorded traffic. [`candump`]: the files of can-utils. [`bits`]: how long a frame occupies its line.
 //! - [`address`]: which bus a run uses. [`lines`]: one end of all lines of a robot. [`load`]: how full they are.
+//! - [`owners`], [`cycles`]: recorded frames by local controller and bus cycle. [`statistics`]: how often, how regular.
 //! - [`interface`]: interfaces by name, and what is wrong with them. [`tap`]: listening and playing, for tools.
 //! - [`injector`]: faults between the two ends; with [`error_counters`] and [`error_frame`], as CAN has them.
 
@@ -12,12 +13,15 @@ pub mod bits;
 pub mod candump;
 pub mod candump_line;
 pub mod capture;
+pub mod cycles;
 pub mod error_counters;
 pub mod error_frame;
 pub mod injector;
 pub mod interface;
 pub mod lines;
 pub mod load;
+pub mod owners;
+pub mod statistics;
 pub mod tap;
 
 pub use address::Address;

@@ -1,0 +1,86 @@
+//! What the frames of a robot carry.
+
+use std::error::Error;
+use std::fmt::Write;
+use std::path::Path;
+
+use config::Robot;
+use fieldbus::capture::{Captured, Form};
+use fieldbus::owners::Owners;
+use messages::layout::{Carries, Layout, Message};
+
+use super::Only;
+
+/// The layouts of a robot, and which node is behind which interface.
+pub(super) struct Decoder {
+    pub(super) robot: Robot,
+    /// Whether a frame of CAN FD was seen: then the layout is that of CAN FD, also for frames of up to 8 bytes.
+    fd: bool,
+    pub(super) owners: Owners,
+}
+
+impl Decoder {
+    /// The robot of that name.
+    pub(super) fn load(config: &Path, name: &str) -> Result<Self, Box<dyn Error>> {
+        let place = config.join("robots").join(name);
+        let robot = Robot::load(&place)?;
+        Ok(Self { robot, fd: false, owners: Owners::default() })
+    }
+
+    /// Learns from frames: all of a recording before it is looked at, or each as it comes.
+    pub(super) fn learn(&mut self, frame: &Captured) {
+        self.fd |= matches!(frame.form, Form::Fd { .. });
+        let layout = if self.fd { &self.robot.layout } else { &self.robot.classic };
+        self.owners.learn(layout, frame);
+    }
+
+    /// The layout in use.
+    pub(super) fn layout(&self) -> &Layout {
+        if self.fd { &self.robot.layout } else { &self.robot.classic }
+    }
+
+    /// The message of a frame.
+    pub(super) fn message(&self, frame: &Captured) -> Option<&Message> {
+        self.owners.message(self.layout(), frame)
+    }
+
+    /// Whether a frame goes the way asked for; error frames and unknown ones come from the line.
+    pub(super) fn goes(&self, frame: &Captured, only: Option<Only>) -> bool {
+        let to_drives = self.message(frame).is_some_and(|m| m.to_drives);
+        only.is_none_or(|only| (only == Only::ToDrives) == to_drives)
+    }
+}
+
+/// Unit of what a signal carries; empty for numbers without one.
+pub(super) fn unit(carries: Carries) -> &'static str {
+    match carries {
+        Carries::Target(_) | Carries::Angle(_) | Carries::Motor(_) => "rad",
+        Carries::Feed(_) | Carries::Speed(_) | Carries::MotorSpeed(_) | Carries::Rate(_) => "rad/s",
+        Carries::Current(_) => "A",
+        Carries::Temperature(_) => "deg C",
+        Carries::Force(..) => "N",
+        Carries::Moment(..) => "N m",
+        Carries::Acceleration(_) => "m/s^2",
+        Carries::Counter
+        | Carries::Mode
+        | Carries::Control(_)
+        | Carries::Supply
+        | Carries::Status(_)
+        | Carries::Error(_)
+        | Carries::Orientation(_) => "",
+    }
+}
+
+/// One line for each signal: name, value, unit; words of bits in hex digits.
+pub(super) fn signals(message: &Message, frame: &Captured) -> String {
+    let mut text = String::new();
+    for signal in &message.signals {
+        let raw = signal.get(&frame.data);
+        let value = match signal.carries {
+            Carries::Control(_) | Carries::Status(_) | Carries::Error(_) => format!("0x{raw:04X}"),
+            _ => signal.value(raw).to_string(),
+        };
+        let _ = writeln!(text, "    {} = {value} {}", signal.name, unit(signal.carries));
+    }
+    text.lines().map(|line| format!("{}\n", line.trim_end())).collect()
+}

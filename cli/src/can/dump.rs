@@ -1,0 +1,93 @@
+//! `gangwerk can dump`: frames as text, and what they carry.
+
+use std::error::Error;
+use std::path::Path;
+
+use fieldbus::candump_line;
+use fieldbus::capture::Captured;
+
+use super::decoder::{Decoder, signals};
+use super::{Only, file, source};
+
+/// What to print.
+#[derive(clap::Args)]
+pub struct Order {
+    /// A recording, or interfaces: can0 or can0,can1 or vcan0-8.
+    pub source: String,
+    /// Robot whose frames these are: prints what they carry.
+    #[arg(long, value_name = "NAME")]
+    pub robot: Option<String>,
+    /// Only one direction; needs --robot.
+    #[arg(long, requires = "robot")]
+    pub only: Option<Only>,
+    /// End after this time \[s\]; interfaces only.
+    #[arg(long, value_name = "S", value_parser = source::seconds)]
+    pub seconds: Option<f64>,
+    /// Leave broken lines out, and tell how many.
+    #[arg(long)]
+    pub lenient: bool,
+}
+
+/// Prints frames.
+///
+/// # Errors
+/// The source cannot be read.
+pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
+    let decoder = order.robot.as_deref().map(|name| Decoder::load(config, name)).transpose()?;
+    let mut page = Page { decoder, only: order.only, unknown: 0, wrong_length: 0 };
+    if source::is_file(&order.source) {
+        let capture = file::read(Path::new(&order.source), order.lenient)?;
+        if let Some(decoder) = &mut page.decoder {
+            capture.frames.iter().for_each(|frame| decoder.learn(frame));
+        }
+        capture.frames.iter().for_each(|frame| page.print(&capture.lines[frame.line as usize], frame));
+    } else {
+        let names = source::names(&order.source)?;
+        source::listen(&names, order.seconds, |frame| {
+            if let Some(frame) = frame {
+                if let Some(decoder) = &mut page.decoder {
+                    decoder.learn(frame);
+                }
+                page.print(&names[frame.line as usize], frame);
+            }
+            Ok(())
+        })?;
+    }
+    if page.unknown + page.wrong_length > 0 {
+        eprintln!(
+            "{} frames with identifiers that the robot's DBC file does not know, {} of another length than their message",
+            page.unknown, page.wrong_length
+        );
+    }
+    Ok(())
+}
+
+struct Page {
+    decoder: Option<Decoder>,
+    only: Option<Only>,
+    unknown: u64,
+    wrong_length: u64,
+}
+
+impl Page {
+    fn print(&mut self, name: &str, frame: &Captured) {
+        let mut text = String::new();
+        candump_line::write(&mut text, name, 0, frame);
+        let Some(decoder) = &self.decoder else { return println!("{text}") };
+        if !decoder.goes(frame, self.only) {
+            return;
+        }
+        match decoder.message(frame) {
+            _ if frame.is_error() => println!("{text}  error frame"),
+            None => {
+                self.unknown += 1;
+                println!("{text}  unknown");
+            }
+            Some(m) if u32::from(frame.len) != m.len => {
+                self.wrong_length += 1;
+                println!("{text}  {}: {} bytes, but its message has {}", m.name, frame.len, m.len);
+            }
+            Some(m) => print!("{text}  {}\n{}", m.name, signals(m, frame)),
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! `gangwerk can`: traffic of the joint loop's bus, recorded, replayed, looked at and held against logs.
+
+pub mod check;
+mod decoder;
+pub mod dump;
+mod file;
+pub mod record;
+pub mod replay;
+mod source;
+pub mod stat;
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use clap::Subcommand;
+
+/// What to do with the traffic of a bus.
+#[derive(Subcommand)]
+pub enum Task {
+    /// Record interfaces to a file: candump log, or MCAP if it ends in .mcap. Ctrl-C ends it.
+    Record(record::Order),
+    /// Play a recording on interfaces of this machine.
+    Replay(replay::Order),
+    /// Print the frames of a file or of interfaces; with a robot also what they carry.
+    Dump(dump::Order),
+    /// Count the frames of a file or of interfaces: rates, periods, bus load, gaps.
+    Stat(stat::Order),
+    /// Hold a recording against the log of the run it was made in: same sensor data, same target frames, bit for bit.
+    Check(check::Order),
+    /// Write a recording as another file: candump log, or MCAP if it ends in .mcap.
+    Convert {
+        /// A candump log or an MCAP file.
+        from: PathBuf,
+        /// The other one.
+        to: PathBuf,
+        /// Leave broken lines out, and tell how many.
+        #[arg(long)]
+        lenient: bool,
+    },
+}
+
+/// Which frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub enum Only {
+    /// What lowlevel sends.
+    ToDrives,
+    /// What the local controllers answer.
+    FromDrives,
+}
+
+/// Does it.
+///
+/// # Errors
+/// A file, an interface or the configuration cannot be used.
+pub fn run(config: &Path, task: Task) -> Result<(), Box<dyn Error>> {
+    match task {
+        Task::Record(order) => record::run(config, &order),
+        Task::Replay(order) => replay::run(config, &order),
+        Task::Dump(order) => {
+            realtime::end_with_reader();
+            dump::run(config, &order)
+        }
+        Task::Stat(order) => {
+            realtime::end_with_reader();
+            stat::run(config, &order)
+        }
+        Task::Check(order) => check::run(config, &order),
+        Task::Convert { from, to, lenient } => {
+            let capture = file::read(&from, lenient)?;
+            file::write(&to, &capture)?;
+            println!("{}: {} frames of {}", to.display(), capture.frames.len(), capture.lines.join(", "));
+            Ok(())
+        }
+    }
+}

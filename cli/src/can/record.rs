@@ -1,0 +1,180 @@
+//! `gangwerk can record INTERFACES FILE`: what is on the lines, into a file.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use fieldbus::capture::{Captured, Form};
+use ipc::{Reader, Run, Space};
+use messages::topics::{BUS_RX, BUS_TX};
+use messages::{BusFrames, Process};
+use realtime::{Stop, clock};
+
+use super::decoder::Decoder;
+use super::file::Writer;
+use super::{Only, source};
+
+/// Frames are held back this long \[ns\] and written in the order of time: lines are read one by one.
+const HELD: u64 = 200_000_000;
+/// The bus in shared memory has the frames of CAN FD: bit rate switch, FD.
+const SHARED_MEMORY: Form = Form::Fd { flags: 5 };
+
+/// What to record.
+#[derive(clap::Args)]
+pub struct Order {
+    /// Interfaces: can0 or can0,can1 or vcan0-8; or shm: the bus of a running robot in shared memory.
+    pub interfaces: String,
+    /// Candump log, or MCAP if it ends in .mcap; an existing file is overwritten.
+    pub file: PathBuf,
+    /// End after this time \[s\].
+    #[arg(long, value_name = "S", value_parser = source::seconds)]
+    pub seconds: Option<f64>,
+    /// Only one direction; needs --robot.
+    #[arg(long, requires = "robot")]
+    pub only: Option<Only>,
+    /// Robot whose frames these are.
+    #[arg(long, value_name = "NAME")]
+    pub robot: Option<String>,
+    /// Where the processes of the robot meet, for shm.
+    #[arg(long, value_name = "DIR", default_value = crate::RUN_DIR)]
+    pub dir: PathBuf,
+}
+
+/// Records until Ctrl-C or the end of the time.
+///
+/// # Errors
+/// An interface or the file cannot be used; what was recorded until then is kept.
+pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
+    let decoder = order.robot.as_deref().map(|name| Decoder::load(config, name)).transpose()?;
+    if order.interfaces == "shm" {
+        return shared_memory(order);
+    }
+    let names = source::names(&order.interfaces)?;
+    let mut sorted = Sorted { writer: None, names, file: &order.file, waiting: Vec::new(), count: 0 };
+    let (names, mut decoder) = (sorted.names.clone(), decoder);
+    let heard = source::listen(&names, order.seconds, |frame| {
+        let wanted = frame.filter(|frame| match &mut decoder {
+            Some(decoder) => {
+                decoder.learn(frame);
+                decoder.goes(frame, order.only)
+            }
+            None => true,
+        });
+        sorted.take(wanted)
+    });
+    let count = sorted.finish()?;
+    println!("{}: {count} frames of {}", order.file.display(), names.join(", "));
+    heard
+}
+
+/// Writes frames of several lines in the order of time.
+struct Sorted<'a> {
+    /// Made with the first call: an interface that cannot be used leaves an old recording alone.
+    writer: Option<Writer>,
+    names: Vec<String>,
+    file: &'a Path,
+    waiting: Vec<Captured>,
+    count: u64,
+}
+
+impl Sorted<'_> {
+    fn take(&mut self, frame: Option<&Captured>) -> Result<(), Box<dyn Error>> {
+        if self.writer.is_none() {
+            self.writer = Some(Writer::create(self.file, &self.names)?);
+        }
+        self.waiting.extend(frame);
+        // Sorted in batches: now and then, not with every frame.
+        let newest = self.waiting.iter().map(|f| f.time_ns).max().unwrap_or(0);
+        let oldest = self.waiting.first().map_or(newest, |f| f.time_ns);
+        if newest > oldest + 2 * HELD { self.write_until(newest - HELD) } else { Ok(()) }
+    }
+
+    /// Writes what is not newer.
+    fn write_until(&mut self, time_ns: u64) -> Result<(), Box<dyn Error>> {
+        self.waiting.sort_by_key(|frame| frame.time_ns);
+        let ready = self.waiting.partition_point(|frame| frame.time_ns <= time_ns);
+        for frame in self.waiting.drain(..ready) {
+            if let Some(writer) = &mut self.writer {
+                writer.write(&self.names[frame.line as usize], &frame)?;
+                self.count += 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<u64, Box<dyn Error>> {
+        self.write_until(u64::MAX)?;
+        if let Some(writer) = self.writer.take() {
+            writer.finish()?;
+        }
+        Ok(self.count)
+    }
+}
+
+/// The frames of bus cycles as a recording: an interface `shmN` for each node.
+pub struct Traffic {
+    writer: Writer,
+    /// Frames so far.
+    pub count: u64,
+}
+
+impl Traffic {
+    /// Makes the file; an existing one is overwritten.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn create(path: &Path) -> Result<Self, Box<dyn Error>> {
+        Ok(Self { writer: Writer::create(path, &[])?, count: 0 })
+    }
+
+    /// Appends one direction of a cycle, at the stamp of its header.
+    ///
+    /// # Errors
+    /// The file can no longer be written.
+    pub fn write(&mut self, frames: &BusFrames) -> Result<(), Box<dyn Error>> {
+        for frame in frames.as_slice() {
+            let captured = Captured::of(frame, frames.header.stamp_ns, SHARED_MEMORY);
+            self.writer.write(&format!("shm{}", frame.line), &captured)?;
+            self.count += 1;
+        }
+        Ok(())
+    }
+
+    /// Closes the file.
+    ///
+    /// # Errors
+    /// The file can no longer be written.
+    pub fn finish(self) -> Result<(), Box<dyn Error>> {
+        self.writer.finish()
+    }
+}
+
+/// The bus between lowlevel and the simulated robot, from its topics.
+fn shared_memory(order: &Order) -> Result<(), Box<dyn Error>> {
+    let stop = Stop::on_signals()?;
+    let run = Run::load(&order.dir)?;
+    let space = Space::open(&run.dir, Process::Observer)?;
+    let mut to: Reader<BusFrames> = space.reader(&BUS_TX)?;
+    let mut from: Reader<BusFrames> = space.reader(&BUS_RX)?;
+    let mut traffic = Traffic::create(&order.file)?;
+    eprintln!("listening on the bus of scene {}; Ctrl-C ends it", run.scene);
+    let end = order.seconds.map(|s| clock::now() + (s * 1e9) as u64);
+    while !stop.asked() && end.is_none_or(|end| clock::now() < end) {
+        let mut quiet = true;
+        for (reader, only) in [(&mut to, Only::ToDrives), (&mut from, Only::FromDrives)] {
+            while let Some(frames) = reader.follow() {
+                quiet = false;
+                if order.only.is_none_or(|wanted| wanted == only) {
+                    traffic.write(frames)?;
+                }
+            }
+        }
+        if quiet {
+            std::thread::park_timeout(Duration::from_micros(200));
+        }
+    }
+    let count = traffic.count;
+    traffic.finish()?;
+    println!("{}: {count} frames, {} cycles lost", order.file.display(), to.lost() + from.lost());
+    Ok(())
+}

@@ -1,0 +1,248 @@
+//! `gangwerk can replay FILE`: recorded frames on the lines of this machine.
+//!
+//! | how | when a frame is sent |
+//! |---|---|
+//! | original timing | its time after the first one, slept absolutely: lateness does not add up |
+//! | `--speed X` | the same, X times as fast |
+//! | `--as-fast-as-consumed` | the answers to a cycle as soon as the peer's SYNC of this cycle was seen on the line |
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use fieldbus::Capture;
+use fieldbus::capture::Captured;
+use fieldbus::cycles::{Cycles, Unwrapped, counter};
+use fieldbus::interface::InterfaceError;
+use fieldbus::tap::{Player, Tap};
+use realtime::{Stop, clock};
+
+use super::decoder::Decoder;
+use super::{Only, file};
+
+/// Between two looks whether to end.
+const LOOK: Duration = Duration::from_millis(50);
+/// A peer that consumes sends its next SYNC within this time \[ns\].
+const PATIENCE: u64 = 10 * clock::SECOND;
+
+/// What to replay and how.
+#[derive(clap::Args)]
+pub struct Order {
+    /// A candump log or an MCAP file.
+    pub file: PathBuf,
+    /// Play what was recorded on A on the interface B; without it every frame goes to the interface of its name.
+    #[arg(long, value_name = "A=B")]
+    pub map: Vec<String>,
+    /// So many times as fast as it was.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed, conflicts_with = "as_fast_as_consumed")]
+    pub speed: f64,
+    /// What the drives said, cycle by cycle, as the peer's SYNC frames ask for it; for a joint loop in lockstep.
+    #[arg(long, requires = "robot")]
+    pub as_fast_as_consumed: bool,
+    /// Only one direction; needs --robot.
+    #[arg(long, requires = "robot", conflicts_with = "as_fast_as_consumed")]
+    pub only: Option<Only>,
+    /// Robot whose frames these are.
+    #[arg(long, value_name = "NAME")]
+    pub robot: Option<String>,
+    /// Begin when the first frame of somebody else is heard.
+    #[arg(long)]
+    pub wait: bool,
+    /// Leave broken lines out, and tell how many.
+    #[arg(long)]
+    pub lenient: bool,
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    let speed: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    let sensible = (1e-3..=1e3).contains(&speed);
+    sensible.then_some(speed).ok_or_else(|| format!("{speed}: 0.001 to 1000 times as fast"))
+}
+
+/// Replays to the end of the recording, or until Ctrl-C.
+///
+/// # Errors
+/// The recording is broken, an interface cannot be used, nobody consumes.
+pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
+    let mut capture = file::read(&order.file, order.lenient)?;
+    let mut decoder = order.robot.as_deref().map(|name| Decoder::load(config, name)).transpose()?;
+    if let Some(decoder) = &mut decoder {
+        capture.frames.iter().for_each(|frame| decoder.learn(frame));
+        if !order.as_fast_as_consumed {
+            capture.frames.retain(|frame| decoder.goes(frame, order.only));
+        }
+    }
+    if capture.frames.is_empty() {
+        return Err(format!("{}: no frame of it goes that way", order.file.display()).into());
+    }
+    let names = mapped(&capture, &order.map)?;
+    let stop = Stop::on_signals()?;
+    let tap = (order.wait || order.as_fast_as_consumed).then(|| Tap::open(&names)).transpose()?;
+    let player = Player::open(&names)?;
+    if order.as_fast_as_consumed
+        && let (Some(decoder), Some(tap)) = (&decoder, &tap)
+    {
+        return Answering::new(decoder, &capture, &player).run(tap, &stop);
+    }
+    if let Some(tap) = tap {
+        eprintln!("waiting for a frame on {}", names.join(", "));
+        while tap.next(LOOK)?.is_none() {
+            if stop.asked() {
+                return Ok(());
+            }
+        }
+    }
+    timed(&capture, &player, order.speed, &stop)
+}
+
+/// The interface of this machine for every line of the recording.
+fn mapped(capture: &Capture, map: &[String]) -> Result<Vec<String>, Box<dyn Error>> {
+    let mut names = capture.lines.clone();
+    for pair in map {
+        let (from, to) = pair
+            .split_once('=')
+            .filter(|(from, to)| !from.is_empty() && !to.is_empty())
+            .ok_or_else(|| format!("--map {pair}: it must be RECORDED=INTERFACE"))?;
+        let line = capture.lines.iter().position(|line| line == from).ok_or_else(|| {
+            format!("--map {pair}: nothing was recorded on {from}; there is {}", capture.lines.join(", "))
+        })?;
+        names[line] = to.to_owned();
+    }
+    Ok(names)
+}
+
+/// Every frame at its time.
+fn timed(capture: &Capture, player: &Player, speed: f64, stop: &Stop) -> Result<(), Box<dyn Error>> {
+    let first = capture.frames.first().map_or(0, |frame| frame.time_ns);
+    let begun = clock::now();
+    let (mut sent, mut latest) = (0u64, 0u64);
+    for frame in &capture.frames {
+        let due = begun + ((frame.time_ns - first) as f64 / speed) as u64;
+        if !sleep_until(due, stop) {
+            break;
+        }
+        player.send(frame.line as usize, frame)?;
+        latest = latest.max(clock::now().saturating_sub(due));
+        sent += 1;
+    }
+    let seconds = (clock::now() - begun) as f64 * 1e-9;
+    println!("{sent} frames in {seconds:.3} s, at most {:.3} ms late", latest as f64 * 1e-6);
+    Ok(())
+}
+
+/// `false` if somebody asked to end meanwhile.
+fn sleep_until(due_ns: u64, stop: &Stop) -> bool {
+    loop {
+        if stop.asked() {
+            return false;
+        }
+        let now = clock::now();
+        if now >= due_ns {
+            return true;
+        }
+        clock::sleep_until(due_ns.min(now + LOOK.as_nanos() as u64));
+    }
+}
+
+/// Answers the SYNC frames of a peer with what the drives answered in the recording.
+struct Answering<'a> {
+    decoder: &'a Decoder,
+    capture: &'a Capture,
+    cycles: Cycles,
+    player: &'a Player,
+    /// By node: tick of its newest SYNC.
+    ticks: Vec<Unwrapped>,
+    answered: Vec<Option<u64>>,
+    sent: u64,
+}
+
+impl<'a> Answering<'a> {
+    fn new(decoder: &'a Decoder, capture: &'a Capture, player: &'a Player) -> Self {
+        let nodes = decoder.layout().nodes.len();
+        let cycles = Cycles::of(decoder.layout(), &decoder.owners, capture);
+        let (ticks, answered) = (vec![Unwrapped::default(); nodes], vec![None; nodes]);
+        Self { decoder, capture, cycles, player, ticks, answered, sent: 0 }
+    }
+
+    fn run(mut self, tap: &Tap, stop: &Stop) -> Result<(), Box<dyn Error>> {
+        let (first, ticks) = (self.cycles.first(), self.cycles.ticks());
+        if ticks == 0 {
+            return Err("there is no SYNC frame of this robot in the recording: its cycles cannot be told apart; \
+                        replay it in its original timing, or record both directions"
+                .into());
+        }
+        eprintln!("ready: cycles {first} to {} wait for the peer's SYNC frames", ticks - 1);
+        let mut heard = clock::now();
+        while !stop.asked() && !self.done() {
+            match tap.next(LOOK)? {
+                Some(frame) => {
+                    if self.answer(&frame)? {
+                        heard = clock::now();
+                    }
+                }
+                // Before its first SYNC the peer may take as long as it likes.
+                None if self.sent > 0 && clock::now() > heard + PATIENCE => {
+                    return Err(self.silence(ticks).into());
+                }
+                None => {}
+            }
+        }
+        let last = self.answered.iter().flatten().max().copied().unwrap_or(0);
+        println!("{} frames; cycles {first} to {last} of {}", self.sent, ticks - 1);
+        Ok(())
+    }
+
+    fn silence(&self, ticks: u64) -> String {
+        let last = self.answered.iter().flatten().max().copied().unwrap_or(0);
+        format!(
+            "the peer sent no SYNC for 10 s: it was answered up to cycle {last} of {}; its own messages say why it ended",
+            ticks - 1
+        )
+    }
+
+    /// Whether every node was answered to the end of the recording.
+    fn done(&self) -> bool {
+        let last = self.cycles.ticks() - 1;
+        let over = |(node, answered): (usize, &Option<u64>)| {
+            self.cycles.exchange(node, last).is_none() || answered.is_some_and(|tick| tick >= last)
+        };
+        self.answered.iter().enumerate().all(over)
+    }
+
+    /// Answers a frame if it is a SYNC; `true` if it was one.
+    fn answer(&mut self, frame: &Captured) -> Result<bool, InterfaceError> {
+        let layout = self.decoder.layout();
+        let mut was_sync = false;
+        for node in self.decoder.owners.nodes(layout, frame.line, frame.id) {
+            let Some(m) = layout.find(node as u32, frame.id).map(|i| &layout.messages[i]) else { continue };
+            let Some((counter, bits)) = m.is_sync().then(|| counter(m, frame)).flatten() else { continue };
+            was_sync = true;
+            let tick = self.ticks[node].next(counter, bits);
+            if self.answered[node].replace(tick) == Some(tick) {
+                continue; // one SYNC of several for the same cycle
+            }
+            for i in self.cycles.exchange(node, tick).map_or(&[][..], |exchange| &exchange.answered) {
+                let recorded = &self.capture.frames[*i as usize];
+                self.player.send(recorded.line as usize, recorded)?;
+                self.sent += 1;
+            }
+        }
+        Ok(was_sync)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_of_interfaces_name_what_is_wrong() {
+        let capture = Capture { lines: vec!["vcan0".into(), "vcan1".into()], frames: Vec::new() };
+        let names = |map: &[&str]| {
+            mapped(&capture, &map.iter().map(|m| m.to_string()).collect::<Vec<_>>()).map_err(|e| e.to_string())
+        };
+        assert_eq!(names(&["vcan1=can3"]).unwrap(), ["vcan0", "can3"]);
+        assert!(names(&["vcan2=can3"]).unwrap_err().contains("there is vcan0, vcan1"));
+        assert!(names(&["vcan2"]).unwrap_err().contains("RECORDED=INTERFACE"));
+    }
+}
