@@ -40,7 +40,7 @@ pub enum Task {
 }
 
 /// Which frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub enum Only {
     /// What lowlevel sends.

@@ -1,5 +1,6 @@
 //! `gangwerk can record INTERFACES FILE`: what is on the lines, into a file.
 
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -16,6 +17,8 @@ use super::{Only, source};
 
 /// Frames are held back this long \[ns\] and written in the order of time: lines are read one by one.
 const HELD: u64 = 200_000_000;
+/// Cycles of the bus in shared memory that are held back for the same reason.
+const HELD_CYCLES: usize = 64;
 /// The bus in shared memory has the frames of CAN FD: bit rate switch, FD.
 const SHARED_MEMORY: Form = Form::Fd { flags: 5 };
 
@@ -159,22 +162,38 @@ fn shared_memory(order: &Order) -> Result<(), Box<dyn Error>> {
     let mut traffic = Traffic::create(&order.file)?;
     eprintln!("listening on the bus of scene {}; Ctrl-C ends it", run.scene);
     let end = order.seconds.map(|s| clock::now() + (s * 1e9) as u64);
+    // By tick, and what was told before what was answered.
+    let mut waiting: BTreeMap<(u64, Only), BusFrames> = BTreeMap::new();
     while !stop.asked() && end.is_none_or(|end| clock::now() < end) {
-        let mut quiet = true;
+        let before = waiting.len();
         for (reader, only) in [(&mut to, Only::ToDrives), (&mut from, Only::FromDrives)] {
             while let Some(frames) = reader.follow() {
-                quiet = false;
-                if order.only.is_none_or(|wanted| wanted == only) {
-                    traffic.write(frames)?;
-                }
+                waiting.insert((frames.header.tick, only), *frames);
             }
         }
-        if quiet {
+        if waiting.len() == before {
             std::thread::park_timeout(Duration::from_micros(200));
         }
+        while waiting.len() > HELD_CYCLES {
+            put(&mut traffic, order.only, waiting.pop_first())?;
+        }
+    }
+    while !waiting.is_empty() {
+        put(&mut traffic, order.only, waiting.pop_first())?;
     }
     let count = traffic.count;
     traffic.finish()?;
     println!("{}: {count} frames, {} cycles lost", order.file.display(), to.lost() + from.lost());
     Ok(())
+}
+
+fn put(
+    traffic: &mut Traffic,
+    wanted: Option<Only>,
+    cycle: Option<((u64, Only), BusFrames)>,
+) -> Result<(), Box<dyn Error>> {
+    match cycle {
+        Some(((_, only), frames)) if wanted.is_none_or(|wanted| wanted == only) => traffic.write(&frames),
+        _ => Ok(()),
+    }
 }

@@ -133,10 +133,10 @@ topics! {
         1000 Hz, stale 3, depth 256, logged true;
     /// Frames to the drives.
     BUS_TX: BusFrames = "bus_tx", Lowlevel -> [SimBackend], wakes [SimBackend],
-        1000 Hz, stale 5, depth 4, logged false;
+        1000 Hz, stale 5, depth 64, logged false;
     /// Frames from the drives.
     BUS_RX: BusFrames = "bus_rx", SimBackend -> [Lowlevel], wakes [Lowlevel],
-        1000 Hz, stale 5, depth 4, logged false;
+        1000 Hz, stale 5, depth 64, logged false;
     /// Truth about the simulated robot.
     SIM_STATE: SimState = "sim_state", SimBackend -> [], wakes [],
         1000 Hz, stale 0, depth 256, logged true;

@@ -1,0 +1,26 @@
+#!/bin/sh
+# Candump logs of ours in other programs, and theirs in ours: python-can reads and writes them, can-utils' log2asc reads
+# them. Every form of frame. can-utils' share is left out, and said so, where it is not installed.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+python=$(sh "$here/setup.sh")
+directory=$(mktemp -d)
+trap 'rm -rf "$directory"' EXIT
+example() {
+    (cd "$here/../.." && cargo run --quiet --package fieldbus --example peers_candump -- "$@")
+}
+example "$directory"
+"$python" "$here/candump.py" "$directory"
+example "$directory" "$directory/theirs.log" >"$directory/theirs_by_us.txt"
+cmp "$directory/ours.txt" "$directory/theirs_by_us.txt"
+echo "python-can's log: read here the same"
+if command -v log2asc >/dev/null; then
+    # The list of interfaces numbers them from 1: both must have all their frames.
+    log2asc -I "$directory/ours.log" -O "$directory/ours.asc" vcan0 vcan1
+    "$python" "$here/candump.py" "$directory" "$directory/ours.asc"
+elif [ "${CI:-}" = true ]; then
+    echo "log2asc of can-utils is not installed" >&2
+    exit 1
+else
+    echo "log2asc of can-utils is not installed: left out"
+fi
