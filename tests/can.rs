@@ -142,8 +142,14 @@ fn frames_that_are_missing_or_do_not_belong_there_are_named() {
     let cycle = "(0000000000.100000)";
     let of_cycle: Vec<&str> = text.lines().filter(|line| line.starts_with(cycle)).collect();
     let (first, last) = (of_cycle[0], of_cycle[of_cycle.len() - 1]);
-    refused(&walk.check(&walk.other(&text.replacen(&format!("{first}\n"), "", 1))), &["cycle 100", "is missing"]);
-    refused(&walk.check(&walk.other(&text.replacen(&format!("{last}\n"), "", 1))), &["cycle 101", "is missing"]);
+    refused(
+        &walk.check(&walk.other(&text.replacen(&format!("{first}\n"), "", 1))),
+        &["cycle 100", "is missing"],
+    );
+    refused(
+        &walk.check(&walk.other(&text.replacen(&format!("{last}\n"), "", 1))),
+        &["cycle 101", "is missing"],
+    );
     // The begin of the run is not there.
     let late: String = text.lines().skip(2000).map(|line| format!("{line}\n")).collect();
     refused(&walk.check(&walk.other(&late)), &["cycle 1, from the drives"]);
@@ -157,20 +163,29 @@ fn dump_names_signals_with_units_and_tells_what_it_does_not_know() {
     let dump = walk.can(&["dump", &walk.traffic, "--robot", "lola", "--only", "from_drives"]).well();
     assert_eq!(dump.err, "");
     let frames = frames_of(&dump.out);
-    let knee = frames.iter().flat_map(|(_, signals)| signals).find(|s| s.contains("right_knee_flexion_angle"));
+    let knee =
+        frames.iter().flat_map(|(_, signals)| signals).find(|s| s.contains("right_knee_flexion_angle"));
     let words: Vec<&str> = knee.unwrap().split_whitespace().collect();
-    assert!((words[1], words[3]) == ("=", "rad") && words[2].parse::<f64>().unwrap().is_finite(), "{words:?}");
+    assert!(
+        (words[1], words[3]) == ("=", "rad") && words[2].parse::<f64>().unwrap().is_finite(),
+        "{words:?}"
+    );
     assert!(!dump.out.contains("_target"), "only what comes from the drives");
     // Unknown identifiers, wrong lengths and error frames are told apart.
     let more = "(0000000009.000000) shm0 7FE##500\n(0000000009.000001) shm0 20000040#0000000000000000\n";
     let first = walk.text().lines().find(|l| l.contains("##5")).unwrap().to_owned();
     let (head, data) = first.rsplit_once("##").unwrap();
     let cut = format!("(0000000009.000002) {}##{}\n", head.split_once(") ").unwrap().1, &data[..3]);
-    let said = walk.can(&["dump", &walk.other(&format!("{}{more}{cut}", walk.text())), "--robot", "lola"]).well();
+    let said =
+        walk.can(&["dump", &walk.other(&format!("{}{more}{cut}", walk.text())), "--robot", "lola"]).well();
     let tail: Vec<&str> = said.out.lines().rev().take(3).collect();
     assert!(tail[2].ends_with("unknown") && tail[1].ends_with("error frame"), "{tail:?}");
     assert!(tail[0].contains("1 bytes, but its message has"), "{tail:?}");
-    assert!(said.err.contains("1 frames with identifiers") && said.err.contains("1 of another length"), "{}", said.err);
+    assert!(
+        said.err.contains("1 frames with identifiers") && said.err.contains("1 of another length"),
+        "{}",
+        said.err
+    );
     // Without a robot: the lines as they are.
     let plain = walk.can(&["dump", &walk.traffic]).well().out;
     assert_eq!(squeeze(&plain), squeeze(&walk.text()));

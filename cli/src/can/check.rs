@@ -53,7 +53,9 @@ pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
         "\nThe configuration is another one than that of the run; that may be the reason."
     };
     let Equal { cycles, answers, told } = outcome.map_err(|different| format!("{different}{other}"))?;
-    println!("{cycles} cycles: sensors of {answers} frames and {told} frames to the drives are the same, bit for bit");
+    println!(
+        "{cycles} cycles: sensors of {answers} frames and {told} frames to the drives are the same, bit for bit"
+    );
     Ok(())
 }
 
@@ -79,7 +81,9 @@ impl<'a> Comparison<'a> {
         let cycles = Cycles::of(layout, &Owners::of(layout, capture), capture);
         if cycles.ticks() == 0 {
             let robot = &setup.robot.name;
-            return Err(format!("there is no SYNC frame of {robot} in the recording: is it of this robot?").into());
+            return Err(
+                format!("there is no SYNC frame of {robot} in the recording: is it of this robot?").into()
+            );
         }
         let sensors = log.records::<Sensors>(&SENSORS)?;
         if sensors.is_empty() {
@@ -112,7 +116,9 @@ impl<'a> Comparison<'a> {
             let newest = self.targets.range(..=tick).next_back().map(|(_, targets)| targets);
             let (frames, _) = self.joints.send(newest, None);
             let told = self.cycles.told(self.capture, tick);
-            if let Some(different) = differs(self.layout, "the log's targets give", frames, "recorded is", &told) {
+            if let Some(different) =
+                differs(self.layout, "the log's targets give", frames, "recorded is", &told)
+            {
                 return Err(format!("cycle {tick}, to the drives: {different}"));
             }
             equal.cycles += 1;
@@ -132,9 +138,13 @@ impl<'a> Comparison<'a> {
         let frames_missed = if found.frames_missed == logged.frames_missed {
             String::new()
         } else {
-            format!("; frames missed: {} by the recording, {} by the log", found.frames_missed, logged.frames_missed)
+            format!(
+                "; frames missed: {} by the recording, {} by the log",
+                found.frames_missed, logged.frames_missed
+            )
         };
-        let different = different.unwrap_or_else(|| "no frame differs, but what the joint loop made of them".into());
+        let different =
+            different.unwrap_or_else(|| "no frame differs, but what the joint loop made of them".into());
         format!("cycle {tick}, from the drives: {different}{frames_missed}")
     }
 }

@@ -51,7 +51,9 @@ fn read_mcap(path: &Path, lenient: bool) -> Result<Capture, Box<dyn Error>> {
         (true, _) => {}
         (false, true) => eprintln!("{path}: {wrong}"),
         (false, false) => {
-            return Err(format!("{path}: {wrong}. Nothing was done; --lenient takes what can be read.").into());
+            return Err(
+                format!("{path}: {wrong}. Nothing was done; --lenient takes what can be read.").into()
+            );
         }
     }
     capture.sort();

@@ -167,9 +167,11 @@ impl<'a> Answering<'a> {
     fn run(mut self, tap: &Tap, stop: &Stop) -> Result<(), Box<dyn Error>> {
         let (first, ticks) = (self.cycles.first(), self.cycles.ticks());
         if ticks == 0 {
-            return Err("there is no SYNC frame of this robot in the recording: its cycles cannot be told apart; \
+            return Err(
+                "there is no SYNC frame of this robot in the recording: its cycles cannot be told apart; \
                         replay it in its original timing, or record both directions"
-                .into());
+                    .into(),
+            );
         }
         eprintln!("ready: cycles {first} to {} wait for the peer's SYNC frames", ticks - 1);
         let mut heard = clock::now();
@@ -239,7 +241,8 @@ mod tests {
     fn maps_of_interfaces_name_what_is_wrong() {
         let capture = Capture { lines: vec!["vcan0".into(), "vcan1".into()], frames: Vec::new() };
         let names = |map: &[&str]| {
-            mapped(&capture, &map.iter().map(|m| m.to_string()).collect::<Vec<_>>()).map_err(|e| e.to_string())
+            mapped(&capture, &map.iter().map(|m| m.to_string()).collect::<Vec<_>>())
+                .map_err(|e| e.to_string())
         };
         assert_eq!(names(&["vcan1=can3"]).unwrap(), ["vcan0", "can3"]);
         assert!(names(&["vcan2=can3"]).unwrap_err().contains("there is vcan0, vcan1"));

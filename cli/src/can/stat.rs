@@ -170,7 +170,17 @@ fn name(decoder: Option<&Decoder>, line: u32, id: u32) -> String {
 fn table(r: &Report) -> String {
     let mut text = format!(
         "{:12} {:>8} {:28} {:>8} {:>9} {:>10} {:>10} {:>10} {:>10} {:>8} {:>8}\n",
-        "interface", "id", "message", "frames", "rate/Hz", "min/ms", "mean/ms", "max/ms", "bytes", "missing", "repeated"
+        "interface",
+        "id",
+        "message",
+        "frames",
+        "rate/Hz",
+        "min/ms",
+        "mean/ms",
+        "max/ms",
+        "bytes",
+        "missing",
+        "repeated"
     );
     for m in &r.messages {
         let ms = |seconds: f64| format!("{:.3}", 1e3 * seconds);
