@@ -95,7 +95,7 @@ pub fn encode_sensors(layout: &Layout, sensors: &Sensors, frames: &mut BusFrames
 /// of the link sides.
 pub fn decode_sensors(layout: &Layout, frames: &BusFrames, sensors: &mut Sensors) -> Received {
     let s = sensors;
-    let received = decode(layout, false, frames, |carries, value| match carries {
+    decode(layout, false, frames, |carries, value| match carries {
         Carries::Supply => s.power = value as u64,
         Carries::Angle(j) => {
             s.joint_angle[j] = value;
@@ -121,8 +121,7 @@ pub fn decode_sensors(layout: &Layout, frames: &BusFrames, sensors: &mut Sensors
         Carries::Rate(k) => s.imu.angular_velocity[k] = value,
         Carries::Acceleration(k) => s.imu.acceleration[k] = value,
         _ => {}
-    });
-    received
+    })
 }
 
 /// What became of the frames of their header's cycle, without reading any number.

@@ -32,6 +32,9 @@ pub fn draw(report: &Report, out: &Path) -> Result<String, String> {
     Ok(path.display().to_string())
 }
 
+/// A number of a walk.
+type OfWalk = fn(&Walk) -> f64;
+
 fn color(linkage: &Linkage) -> Color {
     if linkage.name == "knee" { BLUE } else { VERMILION }
 }
@@ -96,7 +99,7 @@ fn over_points(walks: &[Walk]) -> Chart {
     .height(420.0);
     let tables = || walks.iter().filter_map(|w| w.table_points.filter(|n| *n > 0).map(|n| (n, w)));
     let ends = tables().fold([f64::INFINITY, 0.0], |[lo, hi], (n, _)| [lo.min(n.into()), hi.max(n.into())]);
-    let parts: [(&str, Color, fn(&Walk) -> f64); 3] = [
+    let parts: [(&str, Color, OfWalk); 3] = [
         ("hip and knee, largest", GREEN, |w| 1e3 * w.hip_knee_rad),
         ("knee, rms", BLUE, |w| 1e3 * w.rms_rad[0]),
         ("ankle, rms", VERMILION, |w| 1e3 * w.rms_rad[1]),
