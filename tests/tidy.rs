@@ -29,7 +29,7 @@ const ONLY: [(&str, &[&str]); 10] = [
     ("tokio", &["broker"]),
     ("socketcan", &["fieldbus"]),
     ("can-dbc", &["config"]),
-    ("libc", &["ipc", "realtime"]),
+    ("libc", &["ipc", "realtime", "sercos"]),
 ];
 
 /// Folders that hold no source of ours.

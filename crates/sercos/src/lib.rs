@@ -1,1 +1,43 @@
-//! Sercos III, cyclic part: telegrams, communication phases, a master and simulated slaves.
+//! Sercos III, cyclic part: telegrams, communication phases, a master and simulated slaves, a raw Ethernet socket.
+//!
+//! Public facts only; which, and what was chosen where they are silent: `docs/sercos.md`.
+//!
+//! | part | where |
+//! |---|---|
+//! | bytes | [`header`], [`telegram`], [`device`], [`idn`], [`layout`] |
+//! | service channel and parameters | [`service`], [`parameters`], [`programme`] |
+//! | master, ring | [`master`], [`ring`], [`trouble`] |
+//! | simulated slaves | [`slave`], [`chain`] |
+//! | frames of a robot as data of connections | [`packing`] |
+//! | interfaces | [`socket`], [`near`] (master), [`far`] (slaves) |
+//!
+//! All but the last row are pure: no clock, no socket. Nothing allocates once a cycle has begun.
+
+pub mod chain;
+pub mod crc;
+pub mod device;
+pub mod far;
+pub mod header;
+pub mod idn;
+pub mod layout;
+pub mod master;
+pub mod near;
+pub mod packing;
+pub mod parameters;
+pub mod programme;
+pub mod ring;
+pub mod service;
+pub mod slave;
+pub mod socket;
+pub mod telegram;
+pub mod trouble;
+
+pub use chain::Chain;
+pub use far::Far;
+pub use header::Phase;
+pub use layout::Station;
+pub use master::{Master, Setup, Stage};
+pub use near::Near;
+pub use slave::{Side, Slave};
+pub use socket::{Socket, SocketError};
+pub use trouble::{Event, Trouble};

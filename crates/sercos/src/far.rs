@@ -1,0 +1,92 @@
+//! Simulated slaves on real interfaces: a chain whose ends are the far ends of the master's cables.
+
+use crate::chain::Chain;
+use crate::header::MAX_FRAME;
+use crate::slave::{Side, Slave};
+use crate::socket::{Socket, SocketError};
+
+const ROOM: usize = MAX_FRAME + 8;
+const BURST: usize = 64;
+
+/// A chain of slaves with its two ends.
+pub struct Far {
+    chain: Chain,
+    ends: [Option<Socket>; 2],
+    buffer: Box<[u8; ROOM]>,
+}
+
+impl Far {
+    /// Slaves between these interfaces; without a second one they are a line. With `hold`, ATs of CP4 wait for
+    /// [`Far::answer`].
+    ///
+    /// # Errors
+    /// An interface that cannot be used.
+    pub fn open(
+        first: &str,
+        second: Option<&str>,
+        slaves: Vec<Slave>,
+        hold: bool,
+    ) -> Result<Self, SocketError> {
+        let ends = [Some(Socket::open(first)?), second.map(Socket::open).transpose()?];
+        let mut far = Self { chain: Chain::new(slaves, hold), ends, buffer: Box::new([0; ROOM]) };
+        far.look_at_links();
+        Ok(far)
+    }
+
+    /// The slaves.
+    pub fn chain(&self) -> &Chain {
+        &self.chain
+    }
+
+    /// The slaves.
+    pub fn chain_mut(&mut self) -> &mut Chain {
+        &mut self.chain
+    }
+
+    /// A cable at an end of the chain is pulled, or its far side switched off: the slave there notices.
+    fn look_at_links(&mut self) {
+        let last = self.chain.slaves().len();
+        for (cable, end) in [(0, 0), (last, 1)] {
+            self.chain.set_cable(cable, self.ends[end].as_ref().is_some_and(Socket::has_link));
+        }
+    }
+
+    /// Passes on all telegrams that have come in.
+    pub fn pass(&mut self) {
+        self.look_at_links();
+        // Turn by turn: the telegrams of both channels go round at the same time.
+        for _ in 0..BURST {
+            let mut any = false;
+            for (end, side) in [(0, Side::Left), (1, Side::Right)] {
+                let Some(socket) = &self.ends[end] else { continue };
+                let Some(frame) = socket.receive(&mut self.buffer[..]) else { continue };
+                any = true;
+                let (ends, chain) = (&self.ends, &mut self.chain);
+                chain.take(side, frame, &mut |side, frame| send(ends, side, frame));
+            }
+            if !any {
+                break;
+            }
+        }
+    }
+
+    /// The slaves have their new data: lets the ATs go that wait for them.
+    pub fn answer(&mut self) {
+        let ends = &self.ends;
+        self.chain.release(&mut |side, frame| send(ends, side, frame));
+    }
+
+    /// Waits for telegrams, for at most so long \[ns\], and passes them on; whether there were any.
+    pub fn wait(&mut self, nanoseconds: u64) -> bool {
+        let any = Socket::wait(self.ends.each_ref().map(Option::as_ref), nanoseconds);
+        self.pass();
+        any
+    }
+}
+
+/// What the kernel does not take is lost, as on a pulled cable: the master counts it.
+fn send(ends: &[Option<Socket>; 2], side: Side, frame: &[u8]) {
+    if let Some(socket) = &ends[side as usize] {
+        socket.send(frame);
+    }
+}

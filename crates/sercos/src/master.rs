@@ -1,0 +1,647 @@
+//! The master: from NRT to CP4, then the exchange of data in every cycle. No clock, no socket, nothing allocated in a
+//! cycle.
+//!
+//! A cycle is [`Master::begin`], sending what [`Master::telegrams`] gives for each port, [`Master::take`] for every
+//! frame that comes in, and [`Master::end`].
+//!
+//! | stage | left when |
+//! |---|---|
+//! | CP0: who is there | the addresses were the expected ones, in the same order, for 100 cycles |
+//! | CP1: device control | all device states are valid |
+//! | CP2: parameters | every request is answered, S-0-0127 by every slave with success |
+//! | CP3: application | S-0-0128 by every slave with success |
+//! | CP4: operation | |
+//!
+//! Between two phases: [`ANNOUNCED`] beats that announce the next one, then a pause without telegrams.
+
+use crate::device::{Connection, Control, Status};
+use crate::header::{CYCLES, Channel, Header, Kind, Mac, Malformed, Phase, TELEGRAMS};
+use crate::layout::{CONNECTION, Layout, Places, Station};
+use crate::programme::{Timing, requests};
+use crate::ring::{Repair, STABLE, Seen, Shape};
+use crate::service::{Client, Progress, Request};
+use crate::telegram::{Telegram, cp0, cp12, early_len, long, set_long, set_word, word};
+use crate::trouble::{Event, Trouble};
+use std::collections::VecDeque;
+
+/// Cycles of CP0 without the expected ring after which the master gives up.
+pub const GIVE_UP: u32 = 1000;
+/// Beats that announce a phase.
+pub const ANNOUNCED: u32 = 3;
+/// Pause before a phase \[ns\]; a fast switch takes 20 ms at most.
+const PAUSE: u32 = 10_000_000;
+/// How long a slave may take for a step in the service channel \[ns\].
+const SERVICE_TIME: u32 = 1_000_000_000;
+/// Cycles in CP1 in a row in which everybody must be valid.
+const VALID: u32 = 10;
+const EVENTS: usize = 32;
+
+/// What a master needs to know.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// Cycle time \[ns\].
+    pub cycle: u32,
+    /// Cycles in a row in which a station's data may be missing.
+    pub losses: u16,
+    /// The slaves that must be there, in any order.
+    pub stations: Vec<Station>,
+    /// Hardware address of port 1, and of port 2 if there is one: then the slaves form a ring.
+    pub ports: [Option<Mac>; 2],
+}
+
+/// What the master is at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// CP0 to CP3.
+    Starting(Phase),
+    /// CP4.
+    Running,
+    /// Given up.
+    Failed(Trouble),
+}
+
+/// What the master counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Cycles begun.
+    pub cycles: u64,
+    /// Frames that are no telegrams.
+    pub malformed: u64,
+    /// Frames of other protocols.
+    pub foreign: u64,
+    /// Telegrams of another cycle, or of another master.
+    pub late: u64,
+    /// Cycles of CP4 in which the data of a station were missing, summed over the stations.
+    pub missed: u64,
+    /// The longest run of them at one station.
+    pub longest: u32,
+    /// Cycles in which telegrams did not come back as from a closed ring.
+    pub open: u64,
+}
+
+enum State {
+    /// CP0: cycles, and how many of them the addresses have been the same.
+    Identify { cycles: u32, stable: u32 },
+    /// Beats that announce the next phase.
+    Announce(u32),
+    /// No telegrams.
+    Pause(u32),
+    /// CP1: cycles, and in how many everybody was valid.
+    Validate { cycles: u32, valid: u32 },
+    /// CP2, CP3: requests.
+    Ask,
+    Run,
+    Failed(Trouble),
+}
+
+/// One station as the master sees it.
+struct Node {
+    station: Station,
+    topology: u16,
+    control: Control,
+    status: Option<Status>,
+    service: Client,
+    requests: [Vec<Request>; 2],
+    asked: usize,
+    busy: bool,
+    command: Box<[u8]>,
+    command_control: Connection,
+    feedback: Box<[u8]>,
+    feedback_control: Connection,
+    fresh: bool,
+    missed: u32,
+    lost: bool,
+}
+
+/// The master of one ring or line.
+pub struct Master {
+    setup: Setup,
+    layout: Layout,
+    phase: Phase,
+    state: State,
+    nodes: Vec<Node>,
+    cycle: u8,
+    sent: Box<[[Telegram; 2 * TELEGRAMS]; 2]>,
+    in_use: usize,
+    received: Box<[[Telegram; TELEGRAMS]; 2]>,
+    got: [[bool; TELEGRAMS]; 2],
+    got_before: [[bool; TELEGRAMS]; 2],
+    seen: [Seen; 2],
+    found: Vec<u16>,
+    repair: Repair,
+    states: Vec<Option<Status>>,
+    controls: Vec<Control>,
+    open: u32,
+    broken: bool,
+    counts: Counts,
+    events: VecDeque<Event>,
+}
+
+impl Master {
+    /// A master in front of its first cycle.
+    ///
+    /// # Errors
+    /// A cycle time or stations that Sercos III cannot have.
+    pub fn new(setup: Setup) -> Result<Self, Trouble> {
+        Trouble::check_cycle_time(setup.cycle)?;
+        let layout = Layout::new(&setup.stations).map_err(Trouble::Layout)?;
+        let timing = Timing { cycle: setup.cycle, losses: setup.losses };
+        let node = |(i, station): (usize, &Station)| Node {
+            station: *station,
+            topology: 0,
+            control: Control::default(),
+            status: None,
+            service: Client::new(SERVICE_TIME / setup.cycle),
+            requests: [Phase::Cp2, Phase::Cp3].map(|p| requests(p, timing, &setup.stations, &layout, i)),
+            asked: 0,
+            busy: false,
+            command: vec![0; station.command].into(),
+            command_control: Connection::default(),
+            feedback: vec![0; station.feedback].into(),
+            feedback_control: Connection::default(),
+            fresh: false,
+            missed: 0,
+            lost: false,
+        };
+        let nodes: Vec<_> = setup.stations.iter().enumerate().map(node).collect();
+        let count = nodes.len();
+        Ok(Self {
+            layout,
+            phase: Phase::Cp0,
+            state: State::Identify { cycles: 0, stable: 0 },
+            nodes,
+            cycle: 0,
+            sent: Box::new([[Telegram::EMPTY; 2 * TELEGRAMS]; 2]),
+            in_use: 0,
+            received: Box::new([[Telegram::EMPTY; TELEGRAMS]; 2]),
+            got: [[false; TELEGRAMS]; 2],
+            got_before: [[false; TELEGRAMS]; 2],
+            seen: [Seen::default(); 2],
+            found: Vec::with_capacity(cp0::SLAVES),
+            repair: Repair::new(count),
+            states: vec![None; count],
+            controls: vec![Control::default(); count],
+            open: 0,
+            broken: false,
+            counts: Counts::default(),
+            events: VecDeque::with_capacity(EVENTS),
+            setup,
+        })
+    }
+
+    /// What it is at.
+    pub fn stage(&self) -> Stage {
+        match self.state {
+            State::Failed(trouble) => Stage::Failed(trouble),
+            State::Run => Stage::Running,
+            _ => Stage::Starting(self.phase),
+        }
+    }
+
+    /// What it counted.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Something worth a line in the log.
+    pub fn take_event(&mut self) -> Option<Event> {
+        self.events.pop_front()
+    }
+
+    /// Whether the ring is open; never for a line.
+    pub fn is_broken(&self) -> bool {
+        self.broken
+    }
+
+    /// New data for station `i`, sent from the next cycle on; of the length of its set-up, or ignored.
+    pub fn set_command(&mut self, i: usize, data: &[u8]) {
+        let node = &mut self.nodes[i];
+        if data.len() == node.command.len() {
+            node.command.copy_from_slice(data);
+            node.command_control = node.command_control.next();
+        }
+    }
+
+    /// Data of station `i` that came in the cycle that ended last; none if it sent no new ones.
+    pub fn feedback(&self, i: usize) -> Option<&[u8]> {
+        let node = &self.nodes[i];
+        node.fresh.then_some(&*node.feedback)
+    }
+
+    /// Cycles in a row without data of station `i`.
+    pub fn missed(&self, i: usize) -> u32 {
+        self.nodes[i].missed
+    }
+
+    /// Begins a cycle: writes its telegrams.
+    pub fn begin(&mut self) {
+        self.counts.cycles += 1;
+        self.cycle = (self.cycle + 1) % CYCLES;
+        self.got_before = std::mem::take(&mut self.got);
+        self.seen = [Seen::default(); 2];
+        self.in_use = 0;
+        match self.state {
+            State::Failed(_) | State::Pause(_) => {}
+            State::Announce(_) => self.add(Kind::Mdt, 0, crate::header::MIN_DATA),
+            _ => self.write_telegrams(),
+        }
+    }
+
+    /// The telegrams of this cycle for port 1 (0) or port 2 (1), in their order.
+    pub fn telegrams(&self, port: usize) -> impl Iterator<Item = &[u8]> {
+        let used = if self.setup.ports[port].is_some() { self.in_use } else { 0 };
+        self.sent[port][..used].iter().map(Telegram::bytes)
+    }
+
+    /// Takes a frame that came in at port 1 (0) or port 2 (1).
+    pub fn take(&mut self, port: usize, frame: &[u8]) {
+        let header = match Header::read(frame) {
+            Ok(header) => header,
+            Err(Malformed::Foreign) => return self.counts.foreign += 1,
+            Err(_) => return self.counts.malformed += 1,
+        };
+        let ours = self.setup.ports.contains(&Some(header.source));
+        if !ours || header.cycle != Some(self.cycle) || header.phase != self.phase || header.switching {
+            self.counts.late += u64::from(!header.switching);
+            return;
+        }
+        if header.kind == Kind::Mdt {
+            return;
+        }
+        let number = usize::from(header.number);
+        if number == 0 {
+            match header.channel {
+                Channel::P => self.seen[port].p = true,
+                Channel::S => self.seen[port].s = true,
+            }
+        }
+        // What an idle port lets out comes from the far side of an end: the end's own line has the data.
+        if self.got[port][number] && !self.adds_stations(port, number, frame) {
+            return;
+        }
+        self.got[port][number] = true;
+        self.received[port][number].copy_from(frame);
+    }
+
+    /// Whether a second telegram of the same number at a port has more stations than the first.
+    fn adds_stations(&self, port: usize, number: usize, frame: &[u8]) -> bool {
+        let valid = |data: &[u8]| {
+            let of = |i: usize| self.places(i).status;
+            let here = (0..self.nodes.len()).filter(|&i| of(i).telegram == number);
+            here.filter(|&i| Status(word(data, of(i).offset)).valid()).count()
+        };
+        self.phase > Phase::Cp0
+            && valid(&frame[crate::header::HEADER..]) > valid(self.received[port][number].data())
+    }
+
+    /// Whether all that came in the last cycle has come in this one: nothing more to wait for.
+    pub fn is_complete(&self) -> bool {
+        if self.in_use == 0 || matches!(self.state, State::Announce(_)) {
+            return true;
+        }
+        let last = (0..2 * TELEGRAMS).filter(|i| *i < self.in_use).count() / 2;
+        let same = (0..2).all(|port| (0..TELEGRAMS).all(|n| self.got[port][n] || !self.got_before[port][n]));
+        let any = (0..last).all(|n| self.got[0][n] || self.got[1][n]);
+        same && any
+    }
+
+    /// Whether any acknowledge telegram of this cycle has come in.
+    pub fn has_some(&self) -> bool {
+        self.got.as_flattened().contains(&true)
+    }
+
+    /// Ends the cycle: looks at what came in.
+    pub fn end(&mut self) -> Stage {
+        match self.state {
+            State::Identify { cycles, stable } => self.identify(cycles + 1, stable),
+            State::Announce(left) if left > 0 => self.state = State::Announce(left - 1),
+            State::Announce(_) => self.state = State::Pause(PAUSE / self.setup.cycle),
+            State::Pause(left) if left > 0 => self.state = State::Pause(left - 1),
+            State::Pause(_) => self.enter_next(),
+            State::Validate { cycles, valid } => self.validate(cycles + 1, valid),
+            State::Ask => self.ask(),
+            State::Run => self.run(),
+            State::Failed(_) => {}
+        }
+        self.stage()
+    }
+
+    fn tell(&mut self, event: Event) {
+        if self.events.len() < EVENTS {
+            self.events.push_back(event);
+        }
+    }
+
+    // Telegrams.
+
+    fn add(&mut self, kind: Kind, number: usize, len: usize) {
+        for (port, channel) in [Channel::P, Channel::S].into_iter().enumerate() {
+            let header = Header {
+                source: self.setup.ports[port].unwrap_or_default(),
+                channel,
+                kind,
+                number: number as u8,
+                phase: self.phase,
+                switching: matches!(self.state, State::Announce(_)),
+                cycle: Some(self.cycle),
+            };
+            self.sent[port][self.in_use].begin(&header, len);
+        }
+        self.in_use += 1;
+    }
+
+    fn write_telegrams(&mut self) {
+        let lengths = |kind| match (self.phase, kind) {
+            (Phase::Cp3 | Phase::Cp4, Kind::Mdt) => self.layout.mdt,
+            (Phase::Cp3 | Phase::Cp4, Kind::At) => self.layout.at,
+            (Phase::Cp0, kind) => [early_len(kind, self.phase), 0, 0, 0],
+            (_, kind) => [early_len(kind, self.phase), early_len(kind, self.phase), 0, 0],
+        };
+        let (mdt, at) = (lengths(Kind::Mdt), lengths(Kind::At));
+        for (kind, lengths) in [(Kind::Mdt, mdt), (Kind::At, at)] {
+            for (number, len) in lengths.into_iter().enumerate().filter(|(_, len)| *len > 0) {
+                self.add(kind, number, len);
+            }
+        }
+        for port in 0..2 {
+            match self.phase {
+                Phase::Cp0 => {
+                    set_long(self.sent[port][0].data_mut(), 0, cp0::VERSION);
+                    cp0::clear(self.sent[port][1].data_mut());
+                }
+                _ => (0..self.nodes.len()).for_each(|i| self.write_station(port, i)),
+            }
+        }
+    }
+
+    fn write_station(&mut self, port: usize, i: usize) {
+        let (places, closed) = (self.places(i), !self.broken && self.setup.ports[1].is_some());
+        let (node, sent) = (&mut self.nodes[i], &mut self.sent[port]);
+        node.control = node.control.with(true, closed);
+        set_word(sent[places.control.telegram].data_mut(), places.control.offset, node.control.0);
+        if self.phase >= Phase::Cp2 {
+            let (control, info) = node.service.give();
+            let data = sent[places.mdt_service.telegram].data_mut();
+            set_word(data, places.mdt_service.offset, control);
+            set_long(data, places.mdt_service.offset + 2, info);
+        }
+        if self.phase == Phase::Cp4 {
+            let (data, at) = (sent[places.command.telegram].data_mut(), places.command.offset);
+            set_word(data, at, node.command_control.0);
+            data[at + CONNECTION..at + CONNECTION + node.command.len()].copy_from_slice(&node.command);
+        }
+    }
+
+    fn places(&self, i: usize) -> Places {
+        if self.phase >= Phase::Cp3 {
+            return self.layout.places[i];
+        }
+        let topology = self.nodes[i].topology;
+        let place = |(telegram, offset)| crate::layout::Place { telegram, offset };
+        let (service, device) = (place(cp12::service(topology)), place(cp12::device(topology)));
+        Places {
+            mdt_service: service,
+            at_service: service,
+            control: device,
+            status: device,
+            ..Places::default()
+        }
+    }
+
+    // What came in.
+
+    fn shape(&self) -> Shape {
+        Shape::of(self.seen[0], self.seen[1])
+    }
+
+    fn wanted_shape(&self) -> Shape {
+        if self.setup.ports[1].is_some() { Shape::Ring } else { Shape::LineP }
+    }
+
+    fn identify(&mut self, cycles: u32, stable: u32) {
+        if cycles == 1 {
+            self.tell(Event::Phase(Phase::Cp0));
+        }
+        let port = if self.setup.ports[1].is_some() { 1 } else { 0 };
+        let trouble = self.check_ring(port);
+        let data = self.received[port][0].data();
+        let same = trouble.is_none() && cp0::addresses(data).eq(self.found.iter().copied());
+        let stable = if same { stable + 1 } else { 0 };
+        if trouble.is_none() && !same {
+            self.found.clear();
+            self.found.extend(cp0::addresses(data).take(cp0::SLAVES));
+        }
+        self.state = match trouble {
+            Some(trouble) if cycles >= GIVE_UP => State::Failed(trouble),
+            None if stable >= STABLE => {
+                self.number_nodes();
+                self.switch()
+            }
+            None if cycles >= GIVE_UP => State::Failed(Trouble::Unstable),
+            _ => State::Identify { cycles, stable },
+        };
+    }
+
+    /// What is wrong with the ring in this cycle of CP0.
+    fn check_ring(&self, port: usize) -> Option<Trouble> {
+        match self.shape() {
+            Shape::Nothing => return Some(Trouble::NoTelegrams),
+            shape if shape != self.wanted_shape() => return Some(Trouble::Shape(shape)),
+            _ => {}
+        }
+        let data = self.received[port][0].data();
+        let expected = |address| self.nodes.iter().any(|n| n.station.address == address);
+        let seen = |address| cp0::addresses(data).filter(|a| *a == address).count();
+        if let Some(address) = cp0::addresses(data).find(|a| !expected(*a) || seen(*a) > 1) {
+            return Some(Trouble::Stranger(address));
+        }
+        let (found, expected) = (cp0::addresses(data).count(), self.nodes.len());
+        if found == 0 {
+            return Some(Trouble::Count { found, expected });
+        }
+        self.nodes.iter().map(|n| n.station.address).find(|a| seen(*a) == 0).map(Trouble::Missing)
+    }
+
+    fn number_nodes(&mut self) {
+        for node in &mut self.nodes {
+            let place = self.found.iter().position(|a| *a == node.station.address);
+            node.topology = place.map_or(0, |i| i as u16 + 1);
+        }
+    }
+
+    /// The next phase is announced.
+    fn switch(&mut self) -> State {
+        self.phase = self.phase.next().unwrap_or(Phase::Cp4);
+        State::Announce(ANNOUNCED - 1)
+    }
+
+    fn enter_next(&mut self) {
+        self.tell(Event::Phase(self.phase));
+        for node in &mut self.nodes {
+            (node.asked, node.busy) = (0, false);
+        }
+        self.state = match self.phase {
+            Phase::Cp0 | Phase::Cp1 => State::Validate { cycles: 0, valid: 0 },
+            Phase::Cp2 | Phase::Cp3 => State::Ask,
+            Phase::Cp4 => State::Run,
+        };
+    }
+
+    /// The telegram of station `i` with its data, from the port where they are valid.
+    fn answer(&self, i: usize) -> Option<usize> {
+        let status = self.places(i).status;
+        (0..2).find(|&port| {
+            self.got[port][status.telegram]
+                && Status(word(self.received[port][status.telegram].data(), status.offset)).valid()
+        })
+    }
+
+    /// Device states of all stations, events and repair of the ring.
+    fn look(&mut self) {
+        for i in 0..self.nodes.len() {
+            let status = self.places(i).status;
+            let found = self
+                .answer(i)
+                .map(|port| Status(word(self.received[port][status.telegram].data(), status.offset)));
+            self.nodes[i].status = found;
+            (self.states[i], self.controls[i]) = (found, self.nodes[i].control);
+        }
+        self.watch_ring();
+        if self.setup.ports[1].is_some() {
+            self.repair.step(&self.states, &mut self.controls);
+            for (node, control) in self.nodes.iter_mut().zip(&self.controls) {
+                node.control = *control;
+            }
+        }
+    }
+
+    fn watch_ring(&mut self) {
+        if self.shape() == self.wanted_shape() {
+            self.open = 0;
+            if std::mem::take(&mut self.broken) {
+                self.tell(Event::RingClosed);
+            }
+            return;
+        }
+        self.open += 1;
+        self.counts.open += 1;
+        if self.setup.ports[1].is_some() && !self.broken && self.open > u32::from(self.setup.losses) {
+            self.broken = true;
+            let end = |topology| {
+                let is = |n: &&Node| n.status.and_then(Status::topology) == Some(topology);
+                self.nodes.iter().find(is).map(|n| n.station.address)
+            };
+            let ends = (end(crate::device::Topology::LoopP), end(crate::device::Topology::LoopS));
+            self.tell(Event::RingBroken(ends.0, ends.1));
+        }
+    }
+
+    fn validate(&mut self, cycles: u32, valid: u32) {
+        self.look();
+        let silent = self.nodes.iter().find(|n| n.status.is_none()).map(|n| n.station.address);
+        self.state = match silent {
+            None if valid >= VALID => self.switch(),
+            None => State::Validate { cycles, valid: valid + 1 },
+            Some(address) if cycles >= GIVE_UP => {
+                State::Failed(Trouble::Silent { address, phase: self.phase })
+            }
+            Some(_) => State::Validate { cycles, valid: 0 },
+        };
+    }
+
+    fn ask(&mut self) {
+        self.look();
+        let mut done = true;
+        for i in 0..self.nodes.len() {
+            match self.ask_station(i) {
+                Ok(finished) => done &= finished,
+                Err(trouble) => return self.state = State::Failed(trouble),
+            }
+        }
+        if done {
+            self.state = self.switch();
+        }
+    }
+
+    /// One step with station `i`; whether it has answered everything.
+    fn ask_station(&mut self, i: usize) -> Result<bool, Trouble> {
+        let (answer, place) = (self.answer(i), self.places(i).at_service);
+        let list = usize::from(self.phase == Phase::Cp3);
+        let node = &mut self.nodes[i];
+        if node.busy {
+            let progress = match answer {
+                Some(port) => {
+                    let data = self.received[port][place.telegram].data();
+                    node.service.take(word(data, place.offset), long(data, place.offset + 2))
+                }
+                None => node.service.wait(),
+            };
+            match progress {
+                Progress::Idle | Progress::Busy => return Ok(false),
+                Progress::Done => (node.busy, node.asked) = (false, node.asked + 1),
+                Progress::Refused(refusal) => {
+                    let (address, idn) = (node.station.address, node.requests[list][node.asked].idn());
+                    return Err(Trouble::Refused { address, idn, refusal });
+                }
+            }
+        }
+        let Some(request) = node.requests[list].get(node.asked) else {
+            return Ok(true);
+        };
+        node.service.ask(*request);
+        node.busy = true;
+        Ok(false)
+    }
+
+    fn run(&mut self) {
+        self.look();
+        for i in 0..self.nodes.len() {
+            self.nodes[i].fresh = self.take_feedback(i);
+            self.count(i);
+        }
+    }
+
+    /// New data of station `i`, if there are any.
+    fn take_feedback(&mut self, i: usize) -> bool {
+        let place = self.places(i).feedback;
+        let Some(port) = self.answer(i).filter(|port| self.got[*port][place.telegram]) else {
+            return false;
+        };
+        let (node, data) = (&mut self.nodes[i], self.received[port][place.telegram].data());
+        let control = Connection(word(data, place.offset));
+        let from = place.offset + CONNECTION;
+        let Some(payload) = data.get(from..from + node.feedback.len()) else {
+            return false;
+        };
+        if !control.ready() || control.counter() == node.feedback_control.counter() {
+            return false;
+        }
+        node.feedback.copy_from_slice(payload);
+        node.feedback_control = control;
+        true
+    }
+
+    fn count(&mut self, i: usize) {
+        let node = &mut self.nodes[i];
+        let address = node.station.address;
+        if node.fresh {
+            node.missed = 0;
+            if std::mem::take(&mut node.lost) {
+                self.tell(Event::Back(address));
+            }
+            return;
+        }
+        if !node.feedback_control.ready() {
+            return; // has not begun
+        }
+        node.missed += 1;
+        let (missed, before) = (node.missed, node.lost);
+        node.lost |= missed > u32::from(self.setup.losses);
+        let lost = node.lost && !before;
+        self.counts.missed += 1;
+        self.counts.longest = self.counts.longest.max(missed);
+        if lost {
+            self.tell(Event::Lost(address));
+        }
+    }
+}

@@ -1,0 +1,349 @@
+//! The service channel: six bytes each way, in which master and slave hand parameters to each other step by step.
+//!
+//! | | bits of the first two bytes | then |
+//! |---|---|---|
+//! | control, in the MDT | 0 MHS, 1 write, 2 last transmission, 5-3 element | four bytes |
+//! | status, in the AT | 0 AHS, 1 busy, 2 error, 3 valid | four bytes |
+//!
+//! The master begins a step by changing MHS; the slave ends it by making AHS equal.
+
+use crate::header::Phase;
+use crate::idn::{Attribute, Element, Idn, Shape, code};
+use crate::parameters::{COMMAND_DONE, COMMAND_FAILED, Parameters, VALUE, Value};
+use crate::telegram::word;
+
+const HANDSHAKE: u16 = 1;
+const WRITE: u16 = 1 << 1;
+const LAST: u16 = 1 << 2;
+const BUSY: u16 = 1 << 1;
+const ERROR: u16 = 1 << 2;
+const VALID: u16 = 1 << 3;
+
+/// The slave's side.
+#[derive(Default)]
+pub struct Server {
+    ahs: bool,
+    error: bool,
+    info: u32,
+    open: Option<usize>,
+    element: u16,
+    at: usize,
+    buffer: [u8; VALUE + 4],
+}
+
+impl Server {
+    /// Takes what the master sent. The same step twice, from both channels, is one step.
+    pub fn take(&mut self, control: u16, info: u32, parameters: &mut Parameters, phase: Phase) {
+        if (control & HANDSHAKE != 0) == self.ahs {
+            return;
+        }
+        self.ahs = !self.ahs;
+        let element = control >> 3 & 7;
+        if element != self.element {
+            (self.element, self.at) = (element, 0);
+        }
+        let answer = self.step(control, info, parameters, phase);
+        self.error = answer.is_err();
+        self.info = answer.unwrap_or_else(u32::from);
+        if self.error || control & LAST != 0 {
+            self.at = 0;
+        }
+    }
+
+    /// What the slave sends: status and four bytes.
+    pub fn give(&self) -> (u16, u32) {
+        let bits = if self.error { ERROR } else { 0 };
+        (u16::from(self.ahs) | bits | VALID, self.info)
+    }
+
+    fn step(
+        &mut self,
+        control: u16,
+        info: u32,
+        parameters: &mut Parameters,
+        phase: Phase,
+    ) -> Result<u32, u16> {
+        let write = control & WRITE != 0;
+        if self.element == Element::Close.number() {
+            self.open = None;
+            return Ok(0);
+        }
+        if self.element == Element::Idn.number() && write {
+            self.open = parameters.find(Idn(info));
+            return self.open.map(|_| info).ok_or(code::NO_IDN);
+        }
+        let open = self.open.ok_or(code::NOT_OPEN)?;
+        match (self.element, write) {
+            (1, false) => Ok(parameters.state(open).into()),
+            (3, false) => Ok(parameters.attribute(open).0),
+            (3, true) => Err(code::ATTRIBUTE_FIXED),
+            (7, false) => self.read(parameters.value(open)),
+            (7, true) => self.write(info, control & LAST != 0, open, parameters, phase),
+            (element, _) => Err(element << 12 | 1),
+        }
+    }
+
+    fn read(&mut self, value: Value) -> Result<u32, u16> {
+        let bytes = value.bytes().get(self.at..).filter(|rest| !rest.is_empty()).ok_or(code::TOO_LONG)?;
+        let mut four = [0; 4];
+        for (place, byte) in four.iter_mut().zip(bytes) {
+            *place = *byte;
+        }
+        self.at += 4;
+        Ok(u32::from_le_bytes(four))
+    }
+
+    fn write(
+        &mut self,
+        info: u32,
+        last: bool,
+        open: usize,
+        parameters: &mut Parameters,
+        phase: Phase,
+    ) -> Result<u32, u16> {
+        let place = self.buffer.get_mut(self.at..self.at + 4).ok_or(code::TOO_LONG)?;
+        place.copy_from_slice(&info.to_le_bytes());
+        self.at += 4;
+        if last {
+            let short = parameters.attribute(open).shape() == Some(Shape::Word) && self.at == 4;
+            let len = if short { 2 } else { self.at };
+            parameters.write(open, &self.buffer[..len], phase)?;
+        }
+        Ok(0)
+    }
+}
+
+/// What the master wants of a slave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// The parameter has this value, or the slave is another one.
+    Expect(Idn, Value),
+    /// The parameter takes this value.
+    Write(Idn, Value),
+    /// The procedure command is executed.
+    Execute(Idn),
+}
+
+impl Request {
+    /// The parameter.
+    pub fn idn(&self) -> Idn {
+        match *self {
+            Self::Expect(idn, _) | Self::Write(idn, _) | Self::Execute(idn) => idn,
+        }
+    }
+}
+
+/// How a request failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// The slave answered with this code.
+    Code(u16),
+    /// The parameter has another length than expected.
+    Shape,
+    /// The parameter has another value than expected.
+    Value(Value),
+    /// The procedure command ended with an error.
+    Command,
+    /// The slave did not end a step in time.
+    Timeout,
+}
+
+/// How far a request is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Nothing is asked for.
+    Idle,
+    /// A step is under way.
+    Busy,
+    /// Done; told once.
+    Done,
+    /// Not done; told once.
+    Refused(Refusal),
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Step {
+    None,
+    Open,
+    Attribute,
+    Read,
+    Write,
+    Acknowledge,
+    Clear,
+}
+
+/// The master's side.
+pub struct Client {
+    mhs: bool,
+    control: u16,
+    info: u32,
+    request: Option<Request>,
+    step: Step,
+    at: usize,
+    buffer: [u8; VALUE + 4],
+    waited: u32,
+    patience: u32,
+}
+
+impl Client {
+    /// A client that waits so many cycles for a step to end.
+    pub fn new(patience: u32) -> Self {
+        Self {
+            mhs: false,
+            control: 0,
+            info: 0,
+            request: None,
+            step: Step::None,
+            at: 0,
+            buffer: [0; VALUE + 4],
+            waited: 0,
+            patience,
+        }
+    }
+
+    /// Begins a request.
+    pub fn ask(&mut self, request: Request) {
+        self.request = Some(request);
+        (self.step, self.at) = (Step::Open, 0);
+        self.send(Element::Idn, true, true, request.idn().0);
+    }
+
+    /// What the master sends: control and four bytes.
+    pub fn give(&self) -> (u16, u32) {
+        (self.control, self.info)
+    }
+
+    fn send(&mut self, element: Element, write: bool, last: bool, info: u32) {
+        self.mhs = !self.mhs;
+        self.waited = 0;
+        self.control = u16::from(self.mhs)
+            | if write { WRITE } else { 0 }
+            | if last { LAST } else { 0 }
+            | element.number() << 3;
+        self.info = info;
+    }
+
+    /// Takes what the slave sent in this cycle, and goes on.
+    pub fn take(&mut self, status: u16, info: u32) -> Progress {
+        let Some(request) = self.request else {
+            return Progress::Idle;
+        };
+        if status & VALID == 0 || (status & HANDSHAKE != 0) != self.mhs || status & BUSY != 0 {
+            return self.wait();
+        }
+        if status & ERROR != 0 {
+            return self.end(Err(Refusal::Code(info as u16)));
+        }
+        match self.next(request, info) {
+            Ok(true) => self.end(Ok(())),
+            Ok(false) => Progress::Busy,
+            Err(refusal) => self.end(Err(refusal)),
+        }
+    }
+
+    /// A cycle without an answer.
+    pub fn wait(&mut self) -> Progress {
+        if self.request.is_none() {
+            return Progress::Idle;
+        }
+        self.waited += 1;
+        if self.waited > self.patience { self.end(Err(Refusal::Timeout)) } else { Progress::Busy }
+    }
+
+    fn end(&mut self, how: Result<(), Refusal>) -> Progress {
+        (self.request, self.step) = (None, Step::None);
+        how.map_or_else(Progress::Refused, |()| Progress::Done)
+    }
+
+    /// The step after the one that ended; whether that was the last one.
+    fn next(&mut self, request: Request, info: u32) -> Result<bool, Refusal> {
+        match (self.step, request) {
+            (Step::None, _) => return Ok(true),
+            (Step::Open, _) => {
+                self.step = Step::Attribute;
+                self.send(Element::Attribute, false, true, 0);
+            }
+            (Step::Attribute, _) => self.check_attribute(request, Attribute(info))?,
+            (Step::Write, Request::Execute(_)) => {
+                self.step = Step::Acknowledge;
+                self.send(Element::Idn, false, true, 0);
+            }
+            (Step::Write, Request::Write(_, value)) => return Ok(self.write_more(value)),
+            (Step::Read, Request::Expect(_, value)) => return self.read_more(value, info),
+            (Step::Acknowledge, _) => match info as u16 {
+                COMMAND_DONE => {
+                    self.step = Step::Clear;
+                    self.send(Element::Data, true, true, 0);
+                }
+                COMMAND_FAILED => return Err(Refusal::Command),
+                _ => {
+                    let waited = self.waited;
+                    self.send(Element::Idn, false, true, 0); // still at it: ask again
+                    self.waited = waited + 1;
+                    if self.waited > self.patience {
+                        return Err(Refusal::Timeout);
+                    }
+                }
+            },
+            (Step::Clear, _) => return Ok(true),
+            (Step::Write | Step::Read, _) => return Err(Refusal::Shape),
+        }
+        Ok(false)
+    }
+
+    /// The attribute is known: does the value fit?
+    fn check_attribute(&mut self, request: Request, attribute: Attribute) -> Result<(), Refusal> {
+        let shape = match request {
+            Request::Expect(_, value) | Request::Write(_, value) => value.shape(),
+            Request::Execute(_) => Shape::Word,
+        };
+        if attribute.shape() != Some(shape)
+            || attribute.is_command() != matches!(request, Request::Execute(_))
+        {
+            return Err(Refusal::Shape);
+        }
+        match request {
+            Request::Expect(_, value) => {
+                self.step = Step::Read;
+                self.send(Element::Data, false, value.bytes().len() <= 4, 0);
+            }
+            Request::Write(_, value) => {
+                self.step = Step::Write;
+                self.write_more(value);
+            }
+            Request::Execute(_) => {
+                self.step = Step::Write;
+                self.send(Element::Data, true, true, COMMAND_DONE.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Sends the next four bytes of a value; whether all had been sent.
+    fn write_more(&mut self, value: Value) -> bool {
+        let bytes = value.bytes();
+        if self.at >= bytes.len() {
+            return true;
+        }
+        let info = u32::from(word(bytes, self.at)) | u32::from(word(bytes, self.at + 2)) << 16;
+        self.at += 4;
+        self.send(Element::Data, true, self.at >= bytes.len(), info);
+        false
+    }
+
+    /// Takes four bytes of a value; whether it is whole and as expected.
+    fn read_more(&mut self, value: Value, info: u32) -> Result<bool, Refusal> {
+        let bytes = value.bytes();
+        self.buffer[self.at..self.at + 4].copy_from_slice(&info.to_le_bytes());
+        self.at += 4;
+        if self.at < bytes.len() {
+            self.send(Element::Data, false, self.at + 4 >= bytes.len(), 0);
+            return Ok(false);
+        }
+        let found = &self.buffer[..bytes.len()];
+        if found == bytes {
+            return Ok(true);
+        }
+        Err(Value::received(found).map_or(Refusal::Shape, Refusal::Value))
+    }
+}
