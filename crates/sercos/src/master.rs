@@ -41,8 +41,10 @@ const EVENTS: usize = 32;
 pub struct Setup {
     /// Cycle time \[ns\].
     pub cycle: u32,
-    /// Cycles in a row in which a station's data may be missing.
+    /// Cycles in a row in which a station's data, or the data for a station, may be missing.
     pub losses: u16,
+    /// Beats in a row that may be missing before the slaves go to NRT.
+    pub beat_losses: u16,
     /// The slaves that must be there, in any order.
     pub stations: Vec<Station>,
     /// Hardware address of port 1, and of port 2 if there is one: then the slaves form a ring.
@@ -145,7 +147,7 @@ impl Master {
     pub fn new(setup: Setup) -> Result<Self, Trouble> {
         Trouble::check_cycle_time(setup.cycle)?;
         let layout = Layout::new(&setup.stations).map_err(Trouble::Layout)?;
-        let timing = Timing { cycle: setup.cycle, losses: setup.losses };
+        let timing = Timing { cycle: setup.cycle, losses: setup.losses, beat_losses: setup.beat_losses };
         let node = |(i, station): (usize, &Station)| Node {
             station: *station,
             topology: 0,

@@ -11,8 +11,10 @@ use crate::service::Request;
 pub struct Timing {
     /// Cycle time \[ns\].
     pub cycle: u32,
-    /// Losses in a row that are permitted: of beats, and of the data of a connection.
+    /// Losses in a row that are permitted: of the data of a connection.
     pub losses: u16,
+    /// Losses in a row that are permitted: of beats.
+    pub beat_losses: u16,
 }
 
 /// Requests of a phase for station `i`.
@@ -37,7 +39,7 @@ fn communication(timing: Timing, station: &Station, layout: &Layout, i: usize) -
         Request::Write(idn::CYCLE_TIME, Value::long(timing.cycle)),
         // The ATs follow the MDTs at once: nothing waits for a time within the cycle.
         Request::Write(idn::AT_TIME, Value::long(0)),
-        Request::Write(idn::BEAT_LOSSES, Value::word(timing.losses)),
+        Request::Write(idn::BEAT_LOSSES, Value::word(timing.beat_losses)),
         Request::Write(idn::CONTROL_OFFSET, Value::word(places.control.word(Kind::Mdt))),
         Request::Write(idn::MDT_LENGTHS, lengths(layout.mdt)),
         Request::Write(idn::STATUS_OFFSET, Value::word(places.status.word(Kind::At))),

@@ -94,4 +94,6 @@ fn a_corrupted_head_loses_nothing_in_a_ring() {
         assert_eq!(wire.chain.slaves_mut()[0].take_command(), Some(&[number; 8][..]));
     }
     assert_eq!(wire.chain.slaves()[0].counts().malformed, 100);
+    wire.exchange(99);
+    assert_eq!(wire.master.counts().longest, 0);
 }

@@ -25,6 +25,7 @@ pub(crate) fn setup(addresses: &[u16], two_ports: bool) -> Setup {
     Setup {
         cycle: 1_000_000,
         losses: LOSSES,
+        beat_losses: LOSSES,
         stations: stations(addresses),
         ports: [Some(MACS[0]), two_ports.then_some(MACS[1])],
     }
