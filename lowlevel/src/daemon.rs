@@ -34,6 +34,9 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
     let scene = &d.setup.scene;
     let last = (scene.duration / scene.cycle).round() as u64;
     let mut joints = JointLoop::new(&d.setup.robot, &d.setup.system, scene.cycle);
+    if !ports.bus.start(&d)? {
+        return Ok(());
+    }
     d.report(Header::default(), EventCode::Started, 0);
     let header = match d.mode {
         Mode::Lockstep => lockstep(&mut d, &mut ports, &mut joints, last)?,
@@ -90,7 +93,7 @@ fn lockstep(
         if !p.bus.wait(d, &p.waiter, tick)? || !wait_for_log(d, p, tick)? {
             break;
         }
-        report(d, joints, header);
+        report(d, p.bus.as_mut(), joints, header);
         d.end(header, 0);
     }
     Ok(header)
@@ -127,7 +130,7 @@ fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -
         p.bus.send(frames);
         d.ring(p.bell_bus);
         p.reset.write(reset);
-        report(d, joints, header);
+        report(d, p.bus.as_mut(), joints, header);
         let verdict = period.finish(clock::now());
         if let Verdict::TooMany { .. } = verdict {
             cause = Some(EventCode::TooManyOverruns);
@@ -151,8 +154,11 @@ fn wait_for_targets(p: &mut Ports, tick: u64, until_ns: u64) {
     }
 }
 
-fn report(d: &mut Daemon, joints: &mut JointLoop, header: Header) {
+fn report(d: &mut Daemon, bus: &mut dyn Fieldbus, joints: &mut JointLoop, header: Header) {
     d.count_bus(joints.bus_counters());
+    while let Some((code, detail)) = bus.take_event() {
+        d.report(header, code, detail);
+    }
     while let Some((code, detail)) = joints.take_event() {
         d.report(header, code, detail);
     }

@@ -5,14 +5,28 @@ use std::error::Error;
 use ::fieldbus::Address;
 use daemon::Daemon;
 use ipc::Waiter;
-use messages::BusFrames;
+use messages::{BusFrames, EventCode};
 
 use crate::can_bus::CanBus;
+use crate::sercos_bus::SercosBus;
 use crate::simulated_bus::SimulatedBus;
 
 /// A field bus that exchanges the frames of one cycle. Implementations neither allocate nor block in [`Fieldbus::send`] and
 /// [`Fieldbus::receive`].
 pub trait Fieldbus {
+    /// Brings the bus into operation, before the first cycle and before anything is armed. `Ok(false)`: asked to end.
+    ///
+    /// # Errors
+    /// Somebody on the bus is missing, or not what the configuration says.
+    fn start(&mut self, _: &Daemon) -> Result<bool, Box<dyn Error>> {
+        Ok(true)
+    }
+
+    /// Something that the bus itself wants in the log.
+    fn take_event(&mut self) -> Option<(EventCode, u64)> {
+        None
+    }
+
     /// Sends the frames of this cycle to the drives.
     fn send(&mut self, frames: &BusFrames);
 
@@ -32,6 +46,6 @@ pub(crate) fn open(d: &Daemon) -> Result<Box<dyn Fieldbus>, Box<dyn Error>> {
     match &d.bus {
         Address::Shared => Ok(Box::new(SimulatedBus::new(d)?)),
         Address::Can { fd, interfaces } => Ok(Box::new(CanBus::new(d, *fd, interfaces)?)),
-        Address::Sercos(_) => Err("lowlevel: no Sercos master is built in".into()),
+        Address::Sercos(place) => Ok(Box::new(SercosBus::new(d, place)?)),
     }
 }

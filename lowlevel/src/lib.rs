@@ -19,6 +19,7 @@ pub mod joint_loop;
 pub mod limits;
 mod line_guard;
 mod reading;
+mod sercos_bus;
 mod simulated_bus;
 
 pub use fieldbus::Fieldbus;

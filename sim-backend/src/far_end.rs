@@ -10,6 +10,7 @@ use messages::BusFrames;
 use messages::topics::{BUS_RX, BUS_TX, Process};
 
 use crate::can_end::CanEnd;
+use crate::sercos_end::SercosEnd;
 
 /// One end of a bus. But for the two that wait, nothing blocks or allocates.
 pub(crate) trait FarEnd {
@@ -37,7 +38,7 @@ pub(crate) fn open(d: &mut Daemon) -> Result<Box<dyn FarEnd>, Box<dyn Error>> {
     match d.bus.clone() {
         Address::Shared => Ok(Box::new(SharedEnd::new(d)?)),
         Address::Can { fd, interfaces } => Ok(Box::new(CanEnd::new(d, fd, &interfaces)?)),
-        Address::Sercos(_) => Err("sim-backend: no Sercos slaves are built in".into()),
+        Address::Sercos(place) => Ok(Box::new(SercosEnd::new(d, &place)?)),
     }
 }
 

@@ -30,6 +30,7 @@ pub mod power;
 mod resolution;
 mod robot;
 pub mod sensors;
+mod sercos_end;
 pub mod stiff;
 pub mod terrain;
 pub mod train;

@@ -117,6 +117,11 @@ pub enum EventCode {
     BusActive = 51,
     /// A local controller heard no targets for so long that it brought its joints to rest by itself; detail: the node.
     NodeStopped = 52,
+    /// The ring of the field bus is open; detail: address of the station before the gap << 16 | of the one behind it; 0: the
+    /// master.
+    RingBroken = 53,
+    /// The ring of the field bus is closed again.
+    RingClosed = 54,
 }
 
 /// Why a frame or a reading was refused, in the detail of [`EventCode::FrameRefused`].
@@ -136,7 +141,7 @@ pub enum Refused {
 
 impl EventCode {
     /// All codes, in order of their numbers.
-    pub const ALL: [Self; 53] = [
+    pub const ALL: [Self; 55] = [
         Self::None,
         Self::Started,
         Self::Ended,
@@ -190,6 +195,8 @@ impl EventCode {
         Self::BusOff,
         Self::BusActive,
         Self::NodeStopped,
+        Self::RingBroken,
+        Self::RingClosed,
     ];
 
     /// The code of a number from a record.

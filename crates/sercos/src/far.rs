@@ -76,9 +76,14 @@ impl Far {
         self.chain.release(&mut |side, frame| send(ends, side, frame));
     }
 
+    /// Waits for telegrams, for at most so long \[ns\]; whether there are any.
+    pub fn await_telegrams(&self, nanoseconds: u64) -> bool {
+        Socket::wait(self.ends.each_ref().map(Option::as_ref), nanoseconds)
+    }
+
     /// Waits for telegrams, for at most so long \[ns\], and passes them on; whether there were any.
     pub fn wait(&mut self, nanoseconds: u64) -> bool {
-        let any = Socket::wait(self.ends.each_ref().map(Option::as_ref), nanoseconds);
+        let any = self.await_telegrams(nanoseconds);
         self.pass();
         any
     }

@@ -82,6 +82,11 @@ impl Near {
     /// Ends a cycle with what has come in so far.
     pub fn receive(&mut self) -> Stage {
         self.drain();
+        self.end()
+    }
+
+    /// Ends a cycle with what was taken.
+    pub fn end(&mut self) -> Stage {
         self.master.end()
     }
 

@@ -1,0 +1,181 @@
+//! The near end of a Sercos ring: the master.
+
+use std::error::Error;
+use std::time::Duration;
+
+use daemon::Daemon;
+use ipc::{Mode, Waiter};
+use messages::layout::Layout;
+use messages::{BusFrames, EventCode};
+use realtime::clock;
+use sercos::packing::{Interfaces, Packing, stations};
+use sercos::{Event, Near, Setup, Stage};
+
+use crate::Fieldbus;
+
+/// In lockstep: between two looks whether to end.
+const LOOK: u64 = clock::SECOND / 50;
+/// In lockstep: telegrams that go another way than in the cycle before are not waited for longer than this \[ns\].
+const GRACE: u64 = clock::SECOND / 10;
+/// While starting: how long a telegram may be under way \[ns\].
+const UNDER_WAY: u64 = clock::SECOND / 200;
+
+/// A ring or line of slaves, one for each local controller.
+pub(crate) struct SercosBus {
+    near: Near,
+    layout: Layout,
+    commands: Packing,
+    feedback: Packing,
+    rx: BusFrames,
+    /// Cycle that is to be answered.
+    asked: u64,
+    /// Telegrams have been sent, and the cycle has not been ended.
+    open: bool,
+    period_ns: u64,
+    /// \[ns\] How long the first answer is waited for in lockstep.
+    patience: u64,
+    lockstep: bool,
+}
+
+impl SercosBus {
+    /// Opens the interfaces. Nothing is sent.
+    pub(crate) fn new(d: &Daemon, place: &str) -> Result<Self, Box<dyn Error>> {
+        let Interfaces { near: (first, second), .. } = place.parse()?;
+        let layout = d.setup.robot.layout.clone();
+        let losses = d.setup.system.targets_missed as u16;
+        let setup = Setup {
+            cycle: u32::try_from(d.period_ns())?,
+            losses,
+            beat_losses: losses,
+            stations: stations(&layout),
+            ports: [None; 2],
+        };
+        let near = Near::open(&first, second.as_deref(), setup)?;
+        Ok(Self {
+            near,
+            commands: Packing::new(&layout, true),
+            feedback: Packing::new(&layout, false),
+            layout,
+            rx: BusFrames::default(),
+            asked: 0,
+            open: false,
+            period_ns: d.period_ns(),
+            patience: d.patience().as_nanos() as u64,
+            lockstep: d.mode == Mode::Lockstep,
+        })
+    }
+
+    fn nodes(&self) -> usize {
+        self.layout.nodes.len()
+    }
+
+    /// The frames of the cycle that has just ended.
+    fn unpack(&mut self) {
+        self.open = false;
+        self.rx.count = 0;
+        self.rx.header.tick = self.asked;
+        for node in 0..self.nodes() {
+            if let Some(data) = self.near.master().feedback(node) {
+                self.feedback.unpack(&self.layout, node, data, &mut self.rx);
+            }
+        }
+    }
+
+    /// One cycle of the start.
+    fn start_cycle(&mut self, begun: u64) -> Stage {
+        if !self.lockstep {
+            clock::sleep_until(begun + self.period_ns);
+        }
+        self.near.send();
+        self.near.receive_all(UNDER_WAY)
+    }
+}
+
+impl Fieldbus for SercosBus {
+    fn start(&mut self, d: &Daemon) -> Result<bool, Box<dyn Error>> {
+        let mut heard = vec![false; self.nodes()];
+        let begun = clock::now();
+        while !d.stop.asked() {
+            match self.start_cycle(clock::now()) {
+                Stage::Failed(trouble) => return Err(format!("lowlevel: {trouble}").into()),
+                Stage::Starting(_) => continue,
+                Stage::Running => {}
+            }
+            for (node, heard) in heard.iter_mut().enumerate() {
+                if let Some(data) = self.near.master().feedback(node).filter(|_| !*heard) {
+                    self.feedback.unpack(&self.layout, node, data, &mut self.rx);
+                    *heard = true;
+                }
+            }
+            if heard.iter().all(|heard| *heard) {
+                return Ok(true);
+            }
+            if clock::now() - begun > self.patience + 10 * clock::SECOND {
+                let silent = heard.iter().position(|heard| !heard).unwrap_or(0);
+                return Err(format!(
+                    "lowlevel: sercos: slave {} ({}) is in CP4 and sends no data; switch it off and on",
+                    silent + 1,
+                    self.layout.nodes[silent]
+                )
+                .into());
+            }
+        }
+        Ok(false)
+    }
+
+    fn send(&mut self, frames: &BusFrames) {
+        self.asked = frames.header.tick;
+        self.commands.pack(&self.layout, frames);
+        for node in 0..self.nodes() {
+            if let Some(data) = self.commands.data(node) {
+                self.near.master_mut().set_command(node, data);
+            }
+        }
+        self.near.send();
+        self.open = true;
+    }
+
+    fn receive(&mut self) -> Option<&BusFrames> {
+        if self.open {
+            self.near.receive();
+            self.unpack();
+        }
+        (self.asked > 0 || self.rx.count > 0).then_some(&self.rx)
+    }
+
+    fn wait(&mut self, d: &Daemon, _: &Waiter, _: u64) -> Result<bool, Box<dyn Error>> {
+        let begun = clock::now();
+        while self.open && !d.stop.asked() {
+            let waited = clock::now() - begun;
+            if self.near.drain() || self.near.master().has_some() && waited > GRACE {
+                self.near.end();
+                self.unpack();
+                return Ok(true);
+            }
+            if waited > self.patience {
+                let seconds = Duration::from_nanos(self.patience).as_secs_f64();
+                return Err(format!(
+                    "lowlevel: no telegram came back from the Sercos slaves within {seconds} s; are they running, and \
+                     their cables plugged?"
+                )
+                .into());
+            }
+            self.near.wait(LOOK);
+        }
+        Ok(!d.stop.asked())
+    }
+
+    fn take_event(&mut self) -> Option<(EventCode, u64)> {
+        let address = |address: Option<u16>| u64::from(address.unwrap_or(0));
+        loop {
+            match self.near.master_mut().take_event()? {
+                Event::RingBroken(left, right) => {
+                    return Some((EventCode::RingBroken, address(left) << 16 | address(right)));
+                }
+                Event::RingClosed => return Some((EventCode::RingClosed, 0)),
+                // Silent nodes are told by the joint loop, on every bus the same.
+                Event::Phase(_) | Event::Lost(_) | Event::Back(_) => {}
+            }
+        }
+    }
+}
