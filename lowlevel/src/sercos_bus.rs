@@ -4,7 +4,7 @@ use std::error::Error;
 use std::time::Duration;
 
 use daemon::Daemon;
-use ipc::{Mode, Waiter};
+use ipc::Waiter;
 use messages::layout::Layout;
 use messages::{BusFrames, EventCode};
 use realtime::clock;
@@ -18,7 +18,7 @@ const LOOK: u64 = clock::SECOND / 50;
 /// In lockstep: telegrams that go another way than in the cycle before are not waited for longer than this \[ns\].
 const GRACE: u64 = clock::SECOND / 10;
 /// While starting: how long a telegram may be under way \[ns\].
-const UNDER_WAY: u64 = clock::SECOND / 200;
+const UNDER_WAY: u64 = 3 * clock::SECOND / 1000;
 
 /// A ring or line of slaves, one for each local controller.
 pub(crate) struct SercosBus {
@@ -34,7 +34,6 @@ pub(crate) struct SercosBus {
     period_ns: u64,
     /// \[ns\] How long the first answer is waited for in lockstep.
     patience: u64,
-    lockstep: bool,
 }
 
 impl SercosBus {
@@ -61,7 +60,6 @@ impl SercosBus {
             open: false,
             period_ns: d.period_ns(),
             patience: d.patience().as_nanos() as u64,
-            lockstep: d.mode == Mode::Lockstep,
         })
     }
 
@@ -81,11 +79,9 @@ impl SercosBus {
         }
     }
 
-    /// One cycle of the start.
+    /// One cycle of the start; of real time in lockstep, too: whoever is switched on needs it.
     fn start_cycle(&mut self, begun: u64) -> Stage {
-        if !self.lockstep {
-            clock::sleep_until(begun + self.period_ns);
-        }
+        clock::sleep_until(begun + self.period_ns);
         self.near.send();
         self.near.receive_all(UNDER_WAY)
     }

@@ -13,7 +13,7 @@ command -v tshark >/dev/null || leave "tshark is not installed (apt-get install 
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 (cd "$here/../.." && cargo run --quiet --package sercos --example ring -- \
-    --seconds 2 --break --capture "$directory/ring.pcap" >"$directory/ring.txt") || {
+    --seconds 4 --break --capture "$directory/ring.pcap" >"$directory/ring.txt") || {
     cat "$directory/ring.txt"
     exit 1
 }

@@ -2,7 +2,7 @@
 //! round, how much is lost, beside cyclictest in the same run.
 //!
 //! `cargo run --release -p sercos --example ring -- --seconds 60 [--break] [--capture FILE]`. Needs root.
-//! `--break` pulls and plugs a cable half way; `--capture` records port 1 with dumpcap. Prints one figure per line.
+//! `--break` pulls and plugs a cable on the way; `--capture` records port 1 with dumpcap. Prints one figure per line.
 
 #[path = "../tests/veth/mod.rs"]
 mod veth;
@@ -63,7 +63,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         Ok(child) => report_cyclictest(child)?,
         Err(error) => println!("cyclictest: {error}"),
     }
-    println!("slaves_malformed {}", slaves.malformed.load(Ordering::Relaxed));
+    for (name, count) in [("malformed", &slaves.malformed), ("foreign", &slaves.foreign)] {
+        println!("slaves_{name} {}", count.load(Ordering::Relaxed));
+    }
     result
 }
 
@@ -122,7 +124,7 @@ fn run(veth: &Veth, options: &Options) -> Result<(), Box<dyn Error>> {
     let last = options.seconds * 1_000_000_000 / CYCLE;
     while running < last {
         clock::sleep_until(period.planned());
-        lateness.record(clock::now().saturating_sub(period.planned()));
+        let late = clock::now().saturating_sub(period.planned());
         number = number.wrapping_add(1);
         for i in 0..ADDRESSES.len() {
             near.master_mut().set_command(i, &[number; DATA]);
@@ -132,19 +134,19 @@ fn run(veth: &Veth, options: &Options) -> Result<(), Box<dyn Error>> {
         while clock::now() < begun + CYCLE * 7 / 10 && !near.drain() {
             near.wait(CYCLE / 10);
         }
-        round.record(clock::now() - begun);
+        if running > 0 {
+            lateness.record(late);
+            round.record(clock::now() - begun);
+        }
         match near.receive() {
             Stage::Running => running += 1,
-            Stage::Starting(_) => {
-                started += 1;
-                (lateness, round) = (Histogram::new(), Histogram::new());
-            }
+            Stage::Starting(_) => started += 1,
             Stage::Failed(trouble) => return Err(trouble.into()),
         }
-        if options.pull && running == last / 2 {
-            veth.set_far(FAR[1], "down");
-        } else if options.pull && running == last / 2 + last / 8 {
-            veth.set_far(FAR[1], "up");
+        if options.pull && running == last / 4 {
+            veth.set(FAR[1], "down");
+        } else if options.pull && running == last / 4 + last / 8 {
+            veth.set(FAR[1], "up");
         }
         while let Some(event) = near.master_mut().take_event() {
             if !matches!(event, Event::Phase(_)) {

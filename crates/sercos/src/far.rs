@@ -1,18 +1,22 @@
 //! Simulated slaves on real interfaces: a chain whose ends are the far ends of the master's cables.
 
 use crate::chain::Chain;
-use crate::header::MAX_FRAME;
+use crate::header::{Header, MAX_FRAME};
 use crate::slave::{Side, Slave};
 use crate::socket::{Socket, SocketError};
 
 const ROOM: usize = MAX_FRAME + 8;
 const BURST: usize = 64;
+/// Beats at the other end after which an end without any is taken for unplugged: Linux may tell of a lost link a second late.
+const SILENT: u32 = 2;
 
 /// A chain of slaves with its two ends.
 pub struct Far {
     chain: Chain,
     ends: [Option<Socket>; 2],
     buffer: Box<[u8; ROOM]>,
+    /// For each end: beats at the other one since its own last beat.
+    silent: [u32; 2],
 }
 
 impl Far {
@@ -28,7 +32,7 @@ impl Far {
         hold: bool,
     ) -> Result<Self, SocketError> {
         let ends = [Some(Socket::open(first)?), second.map(Socket::open).transpose()?];
-        let mut far = Self { chain: Chain::new(slaves, hold), ends, buffer: Box::new([0; ROOM]) };
+        let mut far = Self { chain: Chain::new(slaves, hold), ends, buffer: Box::new([0; ROOM]), silent: [0; 2] };
         far.look_at_links();
         Ok(far)
     }
@@ -47,7 +51,8 @@ impl Far {
     fn look_at_links(&mut self) {
         let last = self.chain.slaves().len();
         for (cable, end) in [(0, 0), (last, 1)] {
-            self.chain.set_cable(cable, self.ends[end].as_ref().is_some_and(Socket::has_link));
+            let linked = self.ends[end].as_ref().is_some_and(Socket::has_link);
+            self.chain.set_cable(cable, linked && self.silent[end] <= SILENT);
         }
     }
 
@@ -61,6 +66,10 @@ impl Far {
                 let Some(socket) = &self.ends[end] else { continue };
                 let Some(frame) = socket.receive(&mut self.buffer[..]) else { continue };
                 any = true;
+                if Header::read(frame).is_ok_and(|h| h.is_beat()) {
+                    self.silent[end] = 0;
+                    self.silent[1 - end] += 1;
+                }
                 let (ends, chain) = (&self.ends, &mut self.chain);
                 chain.take(side, frame, &mut |side, frame| send(ends, side, frame));
             }

@@ -165,6 +165,10 @@ impl Slave {
     /// A cable was plugged or pulled.
     pub fn set_link(&mut self, side: Side, up: bool) {
         self.links[side as usize] = up;
+        if up && self.phase <= Some(Phase::Cp0) && self.idle == Some(side) {
+            // Nobody can command it yet.
+            self.idle = [Side::Left, Side::Right].into_iter().find(|side| !self.links[*side as usize]);
+        }
         if !up && self.idle.is_none() {
             self.idle = Some(side);
             self.seen_on_idle = None;

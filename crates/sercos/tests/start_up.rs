@@ -93,6 +93,22 @@ fn an_open_ring_does_not_start() {
     }
 }
 
+/// Cables that are plugged while the master is looking for slaves: the ring closes by itself.
+#[test]
+fn a_ring_that_is_closed_in_cp0_starts() {
+    for cable in 0..3 {
+        let mut wire = Wire::new(&[3, 7], true);
+        wire.chain.set_cable(cable, false);
+        for _ in 0..50 {
+            wire.cycle();
+        }
+        wire.chain.set_cable(cable, true);
+        wire.start(2000);
+        wire.exchange(1);
+        assert!(!wire.events.iter().any(|e| !matches!(e, Event::Phase(_))), "cable {cable}: {:?}", wire.events);
+    }
+}
+
 #[test]
 fn other_slaves_than_the_configured_ones_are_named() {
     for (expected, trouble) in [

@@ -1,5 +1,6 @@
 //! Two network namespaces, joined by two veth pairs: the master's side and the slaves' side of a ring.
 
+use realtime::clock;
 use rustix::thread::{LinkNameSpaceType, move_into_link_name_space};
 use sercos::{Far, Near, Setup, Slave, Station};
 use std::fs::File;
@@ -44,12 +45,24 @@ impl Veth {
                 ip(&["-n", namespace, "link", "set", link, "up"])?;
             }
         }
-        Ok(veth)
+        let linked = |(namespace, link): (&String, &&str)| {
+            let said = Command::new("ip").args(["-n", namespace, "-br", "link", "show", link]).output();
+            said.is_ok_and(|o| String::from_utf8_lossy(&o.stdout).contains(" UP "))
+        };
+        let ends = || NEAR.iter().map(|l| (&veth.near, l)).chain(FAR.iter().map(|l| (&veth.far, l)));
+        for _ in 0..300 {
+            if ends().all(linked) {
+                return Ok(veth);
+            }
+            clock::sleep_until(clock::now() + 10_000_000); // Linux takes up to a second to see a link
+        }
+        Err("the links did not come up within 3 s".into())
     }
 
-    /// Switches an interface of the slaves' side on or off: both sides see the cable pulled.
-    pub(crate) fn set_far(&self, link: &str, state: &str) {
-        ip(&["-n", &self.far, "link", "set", link, state]).unwrap();
+    /// Switches an interface of either side on or off: as a cable that is pulled.
+    pub(crate) fn set(&self, link: &str, state: &str) {
+        let namespace = if FAR.contains(&link) { &self.far } else { &self.near };
+        ip(&["-n", namespace, "link", "set", link, state]).unwrap();
     }
 
     /// Name of the master's namespace.
