@@ -127,9 +127,13 @@ pub struct Master {
     cycle: u8,
     sent: Box<[[Telegram; 2 * TELEGRAMS]; 2]>,
     in_use: usize,
+    /// How many of them are ATs.
+    ats: usize,
     received: Box<[[Telegram; TELEGRAMS]; 2]>,
     got: [[bool; TELEGRAMS]; 2],
-    got_before: [[bool; TELEGRAMS]; 2],
+    /// Ports at which any acknowledge telegram of ours came in, late ones included: in this cycle and in the last one.
+    heard: [bool; 2],
+    heard_before: [bool; 2],
     seen: [Seen; 2],
     found: Vec<u16>,
     repair: Repair,
@@ -177,9 +181,11 @@ impl Master {
             cycle: 0,
             sent: Box::new([[Telegram::EMPTY; 2 * TELEGRAMS]; 2]),
             in_use: 0,
+            ats: 0,
             received: Box::new([[Telegram::EMPTY; TELEGRAMS]; 2]),
             got: [[false; TELEGRAMS]; 2],
-            got_before: [[false; TELEGRAMS]; 2],
+            heard: [false; 2],
+            heard_before: [false; 2],
             seen: [Seen::default(); 2],
             found: Vec::with_capacity(cp0::SLAVES),
             repair: Repair::new(count),
@@ -241,7 +247,8 @@ impl Master {
     pub fn begin(&mut self) {
         self.counts.cycles += 1;
         self.cycle = (self.cycle + 1) % CYCLES;
-        self.got_before = std::mem::take(&mut self.got);
+        self.got = Default::default();
+        self.heard_before = std::mem::take(&mut self.heard);
         self.seen = [Seen::default(); 2];
         self.in_use = 0;
         match self.state {
@@ -265,6 +272,7 @@ impl Master {
             Err(_) => return self.counts.malformed += 1,
         };
         let ours = self.setup.ports.contains(&Some(header.source));
+        self.heard[port] |= ours && header.kind == Kind::At;
         if !ours || header.cycle != Some(self.cycle) || header.phase != self.phase || header.switching {
             self.counts.late += u64::from(!header.switching);
             return;
@@ -298,15 +306,16 @@ impl Master {
             && valid(&frame[crate::header::HEADER..]) > valid(self.received[port][number].data())
     }
 
-    /// Whether all that came in the last cycle has come in this one: nothing more to wait for.
+    /// Whether nothing more is to be waited for: every telegram is back at both ports of a closed ring; of an open one, at
+    /// the ports where telegrams came in the last cycle.
     pub fn is_complete(&self) -> bool {
         if self.in_use == 0 || matches!(self.state, State::Announce(_)) {
             return true;
         }
-        let last = (0..2 * TELEGRAMS).filter(|i| *i < self.in_use).count() / 2;
-        let same = (0..2).all(|port| (0..TELEGRAMS).all(|n| self.got[port][n] || !self.got_before[port][n]));
-        let any = (0..last).all(|n| self.got[0][n] || self.got[1][n]);
-        same && any
+        let all = |port: usize| self.got[port][..self.ats].iter().all(|got| *got);
+        let ring = self.setup.ports[1].is_some() && !self.broken;
+        let done = |port: usize| all(port) || !(ring || self.heard_before[port]);
+        done(0) && done(1) && (all(0) || all(1))
     }
 
     /// Whether any acknowledge telegram of this cycle has come in.
@@ -362,6 +371,7 @@ impl Master {
             (_, kind) => [early_len(kind, self.phase), early_len(kind, self.phase), 0, 0],
         };
         let (mdt, at) = (lengths(Kind::Mdt), lengths(Kind::At));
+        self.ats = at.iter().filter(|len| **len > 0).count();
         for (kind, lengths) in [(Kind::Mdt, mdt), (Kind::At, at)] {
             for (number, len) in lengths.into_iter().enumerate().filter(|(_, len)| *len > 0) {
                 self.add(kind, number, len);

@@ -2,10 +2,11 @@
 
 mod wire;
 
+use sercos::header::{Header, Kind};
 use sercos::idn::{self, connection};
 use sercos::layout::LayoutError;
 use sercos::service::Refusal;
-use sercos::{Chain, Event, Master, Phase, Slave, Stage, Trouble};
+use sercos::{Chain, Event, Master, Phase, Side, Slave, Stage, Trouble};
 use wire::{Wire, setup};
 
 /// Cycles until the master is in CP4 or has given up.
@@ -203,4 +204,33 @@ fn slaves_without_a_master_end_in_nrt() {
         wire.exchange(1);
     }
     assert!(wire.events.contains(&Event::Lost(3)) && wire.events.contains(&Event::Lost(7)));
+}
+
+/// What is waited for: all acknowledge telegrams, at both ports of a ring, however many data telegrams there are.
+#[test]
+fn a_cycle_is_complete_when_everything_is_back() {
+    let mut wire = Wire::new(&[3, 7], true);
+    let mut setup = setup(&[3, 7], true);
+    setup.stations[1].feedback = 1480; // two ATs, one MDT
+    let slaves = setup.stations.iter().map(|s| Slave::new(s.address, s.command, s.feedback)).collect();
+    wire.chain = Chain::new(slaves, false);
+    wire.master = Master::new(setup).unwrap();
+    wire.start(2000);
+    for _ in 0..3 {
+        wire.master.begin();
+        let mut back = Vec::new();
+        for (port, end) in [(0, Side::Left), (1, Side::Right)] {
+            for frame in wire.master.telegrams(port) {
+                wire.chain.take(end, frame, &mut |side, frame| back.push((side, frame.to_vec())));
+            }
+        }
+        let telegrams = back.iter().filter(|(_, frame)| Header::read(frame).unwrap().kind == Kind::At).count();
+        assert_eq!((back.len(), telegrams), (6, 4));
+        for (i, (side, frame)) in back.iter().enumerate() {
+            assert!(!wire.master.is_complete(), "{i} of 6");
+            wire.master.take(if *side == Side::Left { 0 } else { 1 }, frame);
+        }
+        assert!(wire.master.is_complete());
+        wire.master.end();
+    }
 }
