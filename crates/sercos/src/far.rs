@@ -32,7 +32,8 @@ impl Far {
         hold: bool,
     ) -> Result<Self, SocketError> {
         let ends = [Some(Socket::open(first)?), second.map(Socket::open).transpose()?];
-        let mut far = Self { chain: Chain::new(slaves, hold), ends, buffer: Box::new([0; ROOM]), silent: [0; 2] };
+        let mut far =
+            Self { chain: Chain::new(slaves, hold), ends, buffer: Box::new([0; ROOM]), silent: [0; 2] };
         far.look_at_links();
         Ok(far)
     }

@@ -156,8 +156,7 @@ impl Header {
             | u8::from(self.kind == Kind::At) << 6
             | u8::from(self.cycle.is_some()) << 5
             | self.number & 0x0F;
-        frame[15] =
-            u8::from(self.switching) << 7 | (self.cycle.unwrap_or(0) & 7) << 4 | self.phase as u8;
+        frame[15] = u8::from(self.switching) << 7 | (self.cycle.unwrap_or(0) & 7) << 4 | self.phase as u8;
         let crc = crc32(&frame[..16]);
         frame[16..HEADER].copy_from_slice(&crc.to_le_bytes());
     }

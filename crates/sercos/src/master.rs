@@ -85,13 +85,19 @@ pub struct Counts {
 
 enum State {
     /// CP0: cycles, and how many of them the addresses have been the same.
-    Identify { cycles: u32, stable: u32 },
+    Identify {
+        cycles: u32,
+        stable: u32,
+    },
     /// Beats that announce the next phase.
     Announce(u32),
     /// No telegrams.
     Pause(u32),
     /// CP1: cycles, and in how many everybody was valid.
-    Validate { cycles: u32, valid: u32 },
+    Validate {
+        cycles: u32,
+        valid: u32,
+    },
     /// CP2, CP3: requests.
     Ask,
     Run,

@@ -74,8 +74,7 @@ impl Packing {
             let Some(at) = place.filter(|_| message.node == node) else { continue };
             let len = message.len as usize;
             let Some(payload) = data.get(at..at + len) else { return };
-            let mut frame =
-                Frame { line: node as u32, id: message.id, len: message.len, ..Frame::default() };
+            let mut frame = Frame { line: node as u32, id: message.id, len: message.len, ..Frame::default() };
             frame.data[..len].copy_from_slice(payload);
             frames.push(&frame);
         }

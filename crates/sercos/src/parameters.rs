@@ -130,7 +130,14 @@ impl Parameters {
         for idn in [idn::CHECK_CP3, idn::CHECK_CP4] {
             let (cp2, cp3) = (idn == idn::CHECK_CP3, idn == idn::CHECK_CP4);
             let attribute = Attribute::new(Shape::Word, true, cp2, cp3, false);
-            all.push(Parameter { idn, attribute, value: Value::word(0), state: 0, passed: false, fixed: false });
+            all.push(Parameter {
+                idn,
+                attribute,
+                value: Value::word(0),
+                state: 0,
+                passed: false,
+                fixed: false,
+            });
         }
         Self { all, command, feedback }
     }
@@ -248,7 +255,6 @@ impl Parameters {
         self.get(idn::connection(idn::COMMAND, idn::LOSSES)).number()
     }
 }
-
 
 /// Whether this is a cycle time of Sercos III \[ns\]: 31.25, 62.5, 125 µs, or a multiple of 250 µs up to 65 ms.
 pub fn is_cycle_time(ns: u32) -> bool {

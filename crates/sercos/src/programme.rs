@@ -18,7 +18,13 @@ pub struct Timing {
 }
 
 /// Requests of a phase for station `i`.
-pub fn requests(phase: Phase, timing: Timing, stations: &[Station], layout: &Layout, i: usize) -> Vec<Request> {
+pub fn requests(
+    phase: Phase,
+    timing: Timing,
+    stations: &[Station],
+    layout: &Layout,
+    i: usize,
+) -> Vec<Request> {
     match phase {
         Phase::Cp2 => {
             let mut all = communication(timing, &stations[i], layout, i);

@@ -53,7 +53,9 @@ impl fmt::Display for SocketError {
             Self::Down(name) => {
                 write!(f, "sercos: the interface {name} is switched off; ip link set {name} up")
             }
-            Self::Kind(name) => write!(f, "sercos: {name} is no Ethernet interface; see `ip link` for one that is"),
+            Self::Kind(name) => {
+                write!(f, "sercos: {name} is no Ethernet interface; see `ip link` for one that is")
+            }
             Self::Other(name, call, error) => write!(f, "sercos: {name}: {call}: {error}"),
         }
     }

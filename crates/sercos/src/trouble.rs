@@ -133,13 +133,17 @@ fn refused(f: &mut fmt::Formatter, address: u16, idn: Idn, refusal: Refusal) -> 
         Refusal::Code(code) => {
             write!(f, "refused with the code {code:#06x}; look it up in the slave's manual")
         }
-        Refusal::Shape => write!(f, "has another type than expected; see that the right device is at this address"),
+        Refusal::Shape => {
+            write!(f, "has another type than expected; see that the right device is at this address")
+        }
         Refusal::Value(value) => write!(
             f,
             "has the value {}, not the configured one; see that the right device is at this address",
             value.number()
         ),
-        Refusal::Command => write!(f, "the check failed; compare the slave's connections with the configuration"),
+        Refusal::Command => {
+            write!(f, "the check failed; compare the slave's connections with the configuration")
+        }
         Refusal::Timeout => write!(f, "the service channel does not answer; switch the slave off and on"),
     }
 }

@@ -24,7 +24,8 @@ fn longest_loss(wire: &mut Wire, cycles: u32) -> u32 {
     for number in 0..cycles {
         assert_eq!(wire.exchange(number as u8), Stage::Running);
         for (i, run) in runs.iter_mut().enumerate() {
-            let got = [wire.master.feedback(i).is_some(), wire.chain.slaves_mut()[i].take_command().is_some()];
+            let got =
+                [wire.master.feedback(i).is_some(), wire.chain.slaves_mut()[i].take_command().is_some()];
             for (count, got) in run.iter_mut().zip(got) {
                 *count = if got { 0 } else { *count + 1 };
                 longest = longest.max(*count);

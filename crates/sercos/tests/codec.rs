@@ -126,7 +126,12 @@ fn words_of_devices_and_connections() {
     assert_eq!(control.0, 0x6900);
     assert_eq!(control.command(Topology::Through).0, 0x0900, "the toggle goes back");
     let mut connection = Connection::default();
-    let words: Vec<_> = (0..17).map(|_| { connection = connection.next(); connection.0 }).collect();
+    let words: Vec<_> = (0..17)
+        .map(|_| {
+            connection = connection.next();
+            connection.0
+        })
+        .collect();
     assert_eq!(words[..3], [0x1003, 0x2001, 0x3003]);
     assert_eq!(words[15..], [0x0001, 0x1003], "the counter counts modulo 16");
 }

@@ -13,7 +13,8 @@ fn a_cycle_allocates_nothing() {
     let slaves = stations.iter().map(|s| Slave::new(s.address, s.command, s.feedback)).collect();
     let mut chain = Chain::new(slaves, true);
     let ports = [Some([2, 0, 0, 0, 0, 1]), Some([2, 0, 0, 0, 0, 2])];
-    let mut master = Master::new(Setup { cycle: 1_000_000, losses: 2, beat_losses: 2, stations, ports }).unwrap();
+    let mut master =
+        Master::new(Setup { cycle: 1_000_000, losses: 2, beat_losses: 2, stations, ports }).unwrap();
     let mut sent = vec![(Side::Left, [0; 1514], 0); 16];
     let mut cycle = |master: &mut Master, chain: &mut Chain| {
         master.begin();
@@ -25,8 +26,7 @@ fn a_cycle_allocates_nothing() {
                 count += 1;
             }
         }
-        let mut take =
-            |side: Side, frame: &[u8]| master.take(if side == Side::Left { 0 } else { 1 }, frame);
+        let mut take = |side: Side, frame: &[u8]| master.take(if side == Side::Left { 0 } else { 1 }, frame);
         for (end, frame, len) in &sent[..count] {
             chain.take(*end, &frame[..*len], &mut take);
         }

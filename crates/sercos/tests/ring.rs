@@ -116,9 +116,14 @@ fn a_ring_between_namespaces_breaks_and_is_closed_again() {
 fn each_thing_wrong_with_an_interface_has_its_message() {
     let Some(veth) = namespaces("errors") else { return };
     drop(veth.master(false));
-    let opened = |first: &str| Near::open(first, None, setup()).err().map_or(String::new(), |e| e.to_string());
+    let opened =
+        |first: &str| Near::open(first, None, setup()).err().map_or(String::new(), |e| e.to_string());
     assert_eq!(opened(NEAR[0]), "", "this one is all right");
-    assert!(opened("nobody0").contains("there is no interface nobody0; see `ip link`"), "{}", opened("nobody0"));
+    assert!(
+        opened("nobody0").contains("there is no interface nobody0; see `ip link`"),
+        "{}",
+        opened("nobody0")
+    );
     assert!(opened("").contains("is no name of an interface"));
     assert!(opened("a_name_that_is_far_too_long").contains("1 to 15 bytes"));
     assert!(opened("lo").contains("the interface lo is switched off; ip link set lo up"), "{}", opened("lo"));

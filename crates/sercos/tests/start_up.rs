@@ -106,17 +106,19 @@ fn a_ring_that_is_closed_in_cp0_starts() {
         wire.chain.set_cable(cable, true);
         wire.start(2000);
         wire.exchange(1);
-        assert!(!wire.events.iter().any(|e| !matches!(e, Event::Phase(_))), "cable {cable}: {:?}", wire.events);
+        assert!(
+            !wire.events.iter().any(|e| !matches!(e, Event::Phase(_))),
+            "cable {cable}: {:?}",
+            wire.events
+        );
     }
 }
 
 #[test]
 fn other_slaves_than_the_configured_ones_are_named() {
-    for (expected, trouble) in [
-        (&[3, 7, 8][..], Trouble::Missing(8)),
-        (&[3], Trouble::Stranger(7)),
-        (&[3, 8], Trouble::Stranger(7)),
-    ] {
+    for (expected, trouble) in
+        [(&[3, 7, 8][..], Trouble::Missing(8)), (&[3], Trouble::Stranger(7)), (&[3, 8], Trouble::Stranger(7))]
+    {
         let mut wire = Wire::new(&[3, 7], true);
         wire.master = Master::new(setup(expected, true)).unwrap();
         assert_eq!(ends(&mut wire), trouble);
@@ -151,10 +153,7 @@ fn a_slave_that_falls_silent_in_cp2_is_named() {
     }
     wire.chain.set_cable(1, false);
     let trouble = ends(&mut wire);
-    assert!(
-        matches!(trouble, Trouble::Refused { address: 7, refusal: Refusal::Timeout, .. }),
-        "{trouble}"
-    );
+    assert!(matches!(trouble, Trouble::Refused { address: 7, refusal: Refusal::Timeout, .. }), "{trouble}");
 }
 
 #[test]
@@ -224,7 +223,8 @@ fn a_cycle_is_complete_when_everything_is_back() {
                 wire.chain.take(end, frame, &mut |side, frame| back.push((side, frame.to_vec())));
             }
         }
-        let telegrams = back.iter().filter(|(_, frame)| Header::read(frame).unwrap().kind == Kind::At).count();
+        let telegrams =
+            back.iter().filter(|(_, frame)| Header::read(frame).unwrap().kind == Kind::At).count();
         assert_eq!((back.len(), telegrams), (6, 4));
         for (i, (side, frame)) in back.iter().enumerate() {
             assert!(!wire.master.is_complete(), "{i} of 6");
