@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use daemon::Daemon;
 use fieldbus::{End, Lines};
-use ipc::Waiter;
-use messages::frames::{self, DriveCommand, encode_targets};
+use ipc::{Mode, Waiter};
+use messages::frames::{self, DriveCommand, Received, encode_targets};
 use messages::layout::Layout;
 use messages::{BusFrames, MAX_FRAMES};
 use realtime::clock;
@@ -15,8 +15,8 @@ use crate::Fieldbus;
 
 /// In lockstep: between two looks whether to end.
 const LOOK: Duration = Duration::from_millis(20);
-/// In lockstep: the drives of a line that is broken do not answer; the others are not kept waiting longer than this \[ns\].
-const GRACE: u64 = clock::SECOND / 10;
+/// In lockstep: the drives of a line that is broken do not answer; nothing has come for this long \[ns\].
+const GRACE: u64 = clock::SECOND;
 /// The drives are asked for their first answer so often \[ns\].
 const ASK: u64 = clock::SECOND / 4;
 
@@ -30,6 +30,9 @@ pub(crate) struct CanBus {
     asked: u64,
     /// \[ns\] How long the first answer is waited for in lockstep.
     patience: u64,
+    lockstep: bool,
+    /// In lockstep: nodes (bits) that are waited for.
+    alive: u32,
 }
 
 impl CanBus {
@@ -38,7 +41,9 @@ impl CanBus {
         let layout = d.setup.robot.layout.clone();
         let lines = Lines::open(interfaces, &layout, fd, End::Near)?;
         let patience = d.patience().as_nanos() as u64;
-        Ok(Self { lines, layout, rx: BusFrames::default(), asked: 0, patience })
+        let lockstep = d.mode == Mode::Lockstep;
+        let alive = ((1u64 << layout.nodes.len()) - 1) as u32;
+        Ok(Self { lines, layout, rx: BusFrames::default(), asked: 0, patience, lockstep, alive })
     }
 
     /// Asks the drives for where they are: no targets, no torque.
@@ -46,6 +51,20 @@ impl CanBus {
         let mut nothing = BusFrames::default();
         encode_targets(&self.layout, &DriveCommand::default(), &mut nothing);
         self.lines.send(&nothing);
+    }
+
+    /// Whether the cycle is answered as far as it will be, after so many nanoseconds without a frame. A node that let one
+    /// pass is not waited for until it speaks again.
+    fn answered(&mut self, received: &Received, quiet_ns: u64) -> bool {
+        let nodes = (0..self.layout.nodes.len()).filter(|&node| received.complete(node));
+        let complete = nodes.fold(0u32, |bits, node| bits | 1 << node);
+        let all = complete & self.alive == self.alive;
+        if all {
+            self.alive |= complete;
+        } else if complete != 0 && quiet_ns > GRACE {
+            self.alive = complete;
+        }
+        all || quiet_ns > GRACE && complete != 0
     }
 }
 
@@ -57,28 +76,34 @@ impl Fieldbus for CanBus {
     }
 
     fn receive(&mut self) -> Option<&BusFrames> {
-        self.lines.receive(&mut self.rx);
+        if !self.lockstep {
+            self.lines.receive(&mut self.rx);
+        }
         self.rx.header.tick = self.asked;
         (self.asked > 0 || self.rx.count > 0).then_some(&self.rx)
     }
 
     fn wait(&mut self, d: &Daemon, _: &Waiter, tick: u64) -> Result<bool, Box<dyn Error>> {
         let begun = clock::now();
-        let mut asked = None;
+        let (mut asked, mut last) = (None, begun);
+        self.rx.header.tick = tick;
+        let mut received = frames::look(&self.layout, false, &self.rx);
         while !d.stop.asked() {
-            let waited = clock::now() - begun;
-            if tick == 0 && asked.is_none_or(|at| waited - at > ASK) {
-                asked = Some(waited);
+            let now = clock::now();
+            if tick == 0 && asked.is_none_or(|at| now - at > ASK) {
+                asked = Some(now);
                 self.ask();
             }
-            self.lines.receive(&mut self.rx);
-            self.rx.header.tick = tick;
-            let received = frames::look(&self.layout, false, &self.rx);
-            let some = (0..self.layout.nodes.len()).any(|node| received.complete(node));
-            if received.missed() == 0 || some && waited > GRACE {
+            // No more than what is missing: a recording that is played back does not wait for us.
+            let came = self.lines.receive_missing(&received.missing, &mut self.rx) > 0;
+            if came {
+                last = now;
+                received = frames::look(&self.layout, false, &self.rx);
+            }
+            if self.answered(&received, now - last) {
                 return Ok(true);
             }
-            if waited > self.patience && d.robot {
+            if now - begun > self.patience && d.robot {
                 let down = self.lines.take_trouble().down;
                 let why = if down == 0 { "" } else { "; an interface is down, see `ip link`" };
                 let seconds = self.patience as f64 * 1e-9;
@@ -89,9 +114,11 @@ impl Fieldbus for CanBus {
             if self.rx.as_slice().len() == MAX_FRAMES {
                 frames::keep_current(&self.layout, false, &mut self.rx); // else there is no room for the rest
             }
-            // Lines are answered in their order: the last one that is missing is worth waking up for.
-            let last = (0..self.layout.nodes.len()).rfind(|&node| !received.complete(node));
-            self.lines.wait(last, LOOK);
+            if !came {
+                // Lines are answered in their order: the last one that is missing is worth waking up for.
+                let missing = |&node: &usize| self.alive >> node & 1 == 1 && !received.complete(node);
+                self.lines.wait((0..self.layout.nodes.len()).rfind(missing), LOOK);
+            }
         }
         Ok(false)
     }

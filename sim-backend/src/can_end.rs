@@ -16,7 +16,7 @@ use crate::far_end::FarEnd;
 /// In lockstep: between two looks whether to end.
 const LOOK: Duration = Duration::from_millis(20);
 /// In lockstep: a line may be this much later than the first \[ns\].
-const GRACE: u64 = clock::SECOND / 20;
+const GRACE: u64 = clock::SECOND;
 
 /// Drives on CAN lines.
 pub(crate) struct CanEnd {

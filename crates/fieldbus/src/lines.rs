@@ -108,24 +108,53 @@ impl Lines {
     pub fn receive(&mut self, frames: &mut BusFrames) -> usize {
         let before = frames.count;
         for line in 0..self.sockets.len() {
-            loop {
-                match self.sockets[line].read_frame() {
-                    Ok(CanAnyFrame::Remote(_)) => {}
-                    Ok(read) => {
-                        let frame = self.frame(line as u32, &read);
-                        if !frames.push(&frame) {
-                            return (frames.count - before) as usize; // the rest waits in the socket
-                        }
-                    }
-                    Err(e) if e.kind() == ErrorKind::Interrupted => {}
-                    Err(e) => {
-                        self.note(line, &e);
-                        break;
-                    }
-                }
+            if !self.receive_line(line, u32::MAX, frames) {
+                break;
             }
         }
         (frames.count - before) as usize
+    }
+
+    /// Appends what has come, of each line no more than is missing of it: what belongs to later cycles stays in the
+    /// sockets. Returns how many frames.
+    pub fn receive_missing(&mut self, missing: &[u8; MAX_NODES], frames: &mut BusFrames) -> usize {
+        let before = frames.count;
+        for line in 0..self.sockets.len() {
+            if !self.receive_line(line, self.wanted(line, missing), frames) {
+                break;
+            }
+        }
+        (frames.count - before) as usize
+    }
+
+    /// `false`: there is no more room, the rest waits in the sockets.
+    fn receive_line(&mut self, line: usize, mut at_most: u32, frames: &mut BusFrames) -> bool {
+        while at_most > 0 {
+            match self.sockets[line].read_frame() {
+                Ok(CanAnyFrame::Remote(_)) => {}
+                Ok(read) => {
+                    let frame = self.frame(line as u32, &read);
+                    if !frames.push(&frame) {
+                        return false;
+                    }
+                    at_most -= 1;
+                }
+                Err(e) if e.kind() == ErrorKind::Interrupted => {}
+                Err(e) => {
+                    self.note(line, &e);
+                    break;
+                }
+            }
+        }
+        true
+    }
+
+    /// Of what is missing of each node, how much comes through this socket.
+    fn wanted(&self, line: usize, missing: &[u8; MAX_NODES]) -> u32 {
+        match self.shared {
+            Some(_) => missing.iter().map(|&n| u32::from(n)).sum(),
+            None => u32::from(missing[line]),
+        }
     }
 
     /// Waits until a frame is there, at most that long; on one line, if it is known which one will speak last.
