@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crate::interface::{self, InterfaceError};
 use messages::layout::{Layout, MAX_NODES};
-use messages::{BusFrames, ERROR_FLAG, Frame};
+use messages::{BusFrames, ERROR_FLAG, Frame, MAX_FRAMES};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use socketcan::{
     CanAnyFrame, CanDataFrame, CanFdFrame, CanFdSocket, CanFilter, EmbeddedFrame, Frame as _, Socket,
@@ -130,13 +130,13 @@ impl Lines {
     /// `false`: there is no more room, the rest waits in the sockets.
     fn receive_line(&mut self, line: usize, mut at_most: u32, frames: &mut BusFrames) -> bool {
         while at_most > 0 {
+            if frames.as_slice().len() == MAX_FRAMES {
+                return false;
+            }
             match self.sockets[line].read_frame() {
                 Ok(CanAnyFrame::Remote(_)) => {}
                 Ok(read) => {
-                    let frame = self.frame(line as u32, &read);
-                    if !frames.push(&frame) {
-                        return false;
-                    }
+                    frames.push(&self.frame(line as u32, &read));
                     at_most -= 1;
                 }
                 Err(e) if e.kind() == ErrorKind::Interrupted => {}
