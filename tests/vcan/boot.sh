@@ -1,16 +1,19 @@
 #!/bin/sh
-# Runs a command in a virtual machine that has CAN: tests/vcan/boot.sh [-t SECONDS] [-i] COMMAND...
+# Runs a command in a virtual machine that has CAN: tests/vcan/boot.sh [-t SECONDS] [-k DIR] [-i] COMMAND...
 #
 # The machine is emulated (no KVM is needed, none is used), runs Debian's kernel, and sees all files of this one at their
 # places; what it writes stays in its memory and is gone at the end. The command runs as root in this folder, its output is
 # shown as it comes, its exit code is returned. 124: the time limit (-t, 600 s) was reached; 125: the machine itself failed.
+# -k: what is written to /run/kept is kept in that folder.
 # -i: with the keyboard, for a shell: tests/vcan/boot.sh -i bash
 set -u
 limit=600
 keyboard=
-while getopts t:i option; do
+kept=
+while getopts t:k:i option; do
     case $option in
     t) limit=$OPTARG ;;
+    k) kept=$OPTARG ;;
     i) keyboard=yes ;;
     *) exit 2 ;;
     esac
@@ -23,10 +26,11 @@ fail() {
     exit 125
 }
 
-[ $# -gt 0 ] || fail "no command; usage: boot.sh [-t SECONDS] [-i] COMMAND..."
+[ $# -gt 0 ] || fail "no command; usage: boot.sh [-t SECONDS] [-k DIR] [-i] COMMAND..."
 for tool in qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio; do
     command -v "${tool%%:*}" >/dev/null || fail "${tool%%:*} is missing: apt-get install ${tool##*:}"
 done
+[ -z "$kept" ] || mkdir -p "$kept" || fail "no folder $kept"
 kernel=$("$here/kernel.sh") || exit 125
 work=$(mktemp -d) || exit 125
 trap 'rm -rf "$work"' EXIT
@@ -46,6 +50,7 @@ cp -r "$kernel/modules" "$work/first/modules"
 cp "$here/init" "$work/first/init"
 chmod +x "$work/first/init"
 [ -z "$keyboard" ] || : >"$work/first/keyboard"
+[ -z "$kept" ] || : >"$work/first/kept"
 {
     echo "cd $(quoted "$PWD") || exit 125"
     for name in HOME PATH LANG TERM GANGWERK CI; do
@@ -60,12 +65,15 @@ chmod +x "$work/first/init"
 signal=off
 [ -n "$keyboard" ] || { exec </dev/null; signal=on; }
 
+set --
+[ -z "$kept" ] || set -- -virtfs "local,path=$kept,mount_tag=kept,security_model=none"
+
 # All files of the host at their places: one tree, whatever is mounted in it.
 timeout --foreground "$limit" qemu-system-x86_64 \
     -accel tcg,thread=multi -cpu max -smp 2 -m 3G -no-reboot -nodefaults -display none \
     -kernel "$kernel/vmlinuz" -initrd "$work/initramfs" \
     -append "console=ttyS0 quiet panic=-1 mitigations=off random.trust_cpu=on tsc=reliable" \
-    -virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap \
+    -virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap "$@" \
     -serial "file:$work/console" -chardev "stdio,id=out,signal=$signal" -serial chardev:out -serial "file:$work/code"
 code=$?
 [ "$code" -ne 124 ] || { echo "boot.sh: not finished within $limit s (-t)" >&2; exit 124; }

@@ -7,15 +7,15 @@ lines="vcan0 vcan1 vcan2 vcan3 vcan4 vcan5 vcan6 vcan7 vcan8"
 
 # step NAME COMMAND...: one asserted step, counted. What it measures stands on its output; a failure says why.
 step() {
-    name=$1
+    step_name=$1
     shift
-    began=$(date +%s)
+    step_began=$(date +%s)
     if "$@"; then
-        echo "passed $name" >>"$work/steps"
-        echo "ok      $name ($(($(date +%s) - began)) s)"
+        echo "passed $step_name" >>"$work/steps"
+        echo "ok      $step_name ($(($(date +%s) - step_began)) s)"
     else
-        echo "failed $name" >>"$work/steps"
-        echo "FAILED  $name"
+        echo "failed $step_name" >>"$work/steps"
+        echo "FAILED  $step_name"
     fi
 }
 

@@ -1,0 +1,26 @@
+#!/bin/sh
+# Lola walks at 2 km/h for 20 s over nine lines, in lockstep; candump hears everything, and python-can and cantools find in
+# it what our log says.
+. "$(dirname "$0")/step.sh"
+. "$here/walking.sh"
+
+walks() {
+    recorded walk can_2kmh --lockstep --bus can:vcan0-8 || return 1
+    grep -E '^(fell|duration|walking speed)' "$work/walk/said" | sed 's/^/        /'
+    grep -qE '^fell +no' "$work/walk/said" || because "fell"
+}
+
+# 20 s in cycles of 3.5 ms.
+every_frame() {
+    awk -v CYCLES=5715 -v PREFIX=vcan -f "$here/every_frame.awk" "$dbc" "$work/walk.log"
+}
+
+decode() {
+    awk -v TICKS="$work/sample.ticks" -f "$here/sample.awk" "$dbc" "$work/walk.log" >"$work/sample.log"
+    "$python" "$here/decode.py" "$dbc" "$work/sample.log" "$work/sample.ticks" "$work/walk/can_2kmh.mcap"
+}
+
+dbc="$here/../../config/robots/lola/can/lola.dbc"
+step "Lola walks 2 km/h over nine lines" walks
+step "candump heard each message of the DBC once per cycle, on its line" every_frame
+step "cantools decodes to the values of the log" decode
