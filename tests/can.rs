@@ -243,7 +243,9 @@ fn broken_recordings_are_refused_by_every_command_and_nothing_is_written() {
 fn interfaces_that_cannot_be_used_are_one_error_each() {
     let walk = Walk::new(0.05);
     let before = walk.text();
-    refused(&walk.can(&["record", "gangwerk_none", &walk.traffic]), &["gangwerk_none: ", "`"]);
+    let said = walk.can(&["record", "gangwerk_none", &walk.traffic]);
+    refused(&said, &["gangwerk_none: ", "`"]);
+    assert_eq!(said.out, "", "nothing was recorded");
     refused(&walk.can(&["dump", "gangwerk_none"]), &["gangwerk_none: "]);
     refused(&walk.can(&["stat", "gangwerk_none", "--seconds", "1"]), &["gangwerk_none: "]);
     refused(&walk.can(&["replay", &walk.traffic]), &["shm0: "]);

@@ -11,3 +11,4 @@ directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 (cd "$here/../.." && cargo run --quiet --package recording --example peers_log -- "$directory")
 "$python" "$here/rosbags_read.py" "$directory/peers.mcap" "$directory/peers.txt"
+"$python" "$here/traffic_read.py" "$directory/traffic.mcap" "$directory/traffic.txt"

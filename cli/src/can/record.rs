@@ -65,8 +65,9 @@ pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
         });
         sorted.take(wanted)
     });
-    let count = sorted.finish()?;
-    println!("{}: {count} frames of {}", order.file.display(), names.join(", "));
+    if let Some(count) = sorted.finish()? {
+        println!("{}: {count} frames of {}", order.file.display(), names.join(", "));
+    }
     heard
 }
 
@@ -105,12 +106,12 @@ impl Sorted<'_> {
         Ok(())
     }
 
-    fn finish(mut self) -> Result<u64, Box<dyn Error>> {
+    /// Number of frames; none if there was nothing to record from.
+    fn finish(mut self) -> Result<Option<u64>, Box<dyn Error>> {
         self.write_until(u64::MAX)?;
-        if let Some(writer) = self.writer.take() {
-            writer.finish()?;
-        }
-        Ok(self.count)
+        let Some(writer) = self.writer.take() else { return Ok(None) };
+        writer.finish()?;
+        Ok(Some(self.count))
     }
 }
 

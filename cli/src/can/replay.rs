@@ -82,7 +82,8 @@ pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
     if order.as_fast_as_consumed
         && let (Some(decoder), Some(tap)) = (&decoder, &tap)
     {
-        return Answering::new(decoder, &capture, &player).run(tap, &stop);
+        let send = |frame: &Captured| player.send(frame.line as usize, frame);
+        return Answering::new(decoder, &capture, send).run(tap, &stop);
     }
     if let Some(tap) = tap {
         eprintln!("waiting for a frame on {}", names.join(", "));
@@ -145,23 +146,23 @@ fn sleep_until(due_ns: u64, stop: &Stop) -> bool {
 }
 
 /// Answers the SYNC frames of a peer with what the drives answered in the recording.
-struct Answering<'a> {
+struct Answering<'a, S> {
     decoder: &'a Decoder,
     capture: &'a Capture,
     cycles: Cycles,
-    player: &'a Player,
+    send: S,
     /// By node: tick of its newest SYNC.
     ticks: Vec<Unwrapped>,
     answered: Vec<Option<u64>>,
     sent: u64,
 }
 
-impl<'a> Answering<'a> {
-    fn new(decoder: &'a Decoder, capture: &'a Capture, player: &'a Player) -> Self {
+impl<'a, S: FnMut(&Captured) -> Result<(), InterfaceError>> Answering<'a, S> {
+    fn new(decoder: &'a Decoder, capture: &'a Capture, send: S) -> Self {
         let nodes = decoder.layout().nodes.len();
         let cycles = Cycles::of(decoder.layout(), &decoder.owners, capture);
         let (ticks, answered) = (vec![Unwrapped::default(); nodes], vec![None; nodes]);
-        Self { decoder, capture, cycles, player, ticks, answered, sent: 0 }
+        Self { decoder, capture, cycles, send, ticks, answered, sent: 0 }
     }
 
     fn run(mut self, tap: &Tap, stop: &Stop) -> Result<(), Box<dyn Error>> {
@@ -224,8 +225,7 @@ impl<'a> Answering<'a> {
                 continue; // one SYNC of several for the same cycle
             }
             for i in self.cycles.exchange(node, tick).map_or(&[][..], |exchange| &exchange.answered) {
-                let recorded = &self.capture.frames[*i as usize];
-                self.player.send(recorded.line as usize, recorded)?;
+                (self.send)(&self.capture.frames[*i as usize])?;
                 self.sent += 1;
             }
         }
@@ -236,6 +236,77 @@ impl<'a> Answering<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use config::Setup;
+    use fieldbus::Form;
+    use lowlevel::JointLoop;
+    use messages::{BusFrames, Sensors};
+    use studies::chain::Chain;
+
+    /// A walk's traffic on nine lines, what lowlevel made of it, and the targets it was given.
+    fn recorded(setup: &Setup, ticks: u64) -> (Capture, Vec<Sensors>, Vec<messages::JointTargets>) {
+        let mut chain = Chain::new(setup).unwrap();
+        let mut capture = Capture::default();
+        let mut add = |frames: &BusFrames| {
+            for frame in frames.as_slice() {
+                let mut one = Captured::of(frame, frames.header.stamp_ns, Form::Fd { flags: 5 });
+                one.line = capture.line(&format!("vcan{}", frame.line));
+                capture.frames.push(one);
+            }
+        };
+        let (mut sensors, mut targets) = (Vec::new(), Vec::new());
+        add(chain.answer());
+        for _ in 0..ticks {
+            let cycle = chain.step();
+            sensors.push(cycle.sensors);
+            targets.push(cycle.joint_targets);
+            add(chain.told());
+            add(chain.answer());
+        }
+        (capture, sensors, targets)
+    }
+
+    /// A joint loop whose far end is the replay reads the same sensor data and sends the same frames as in the recording.
+    #[test]
+    fn a_replay_as_fast_as_consumed_is_for_the_joint_loop_what_the_robot_was() {
+        let root = config::root(None);
+        let setup = Setup::load(&root, "walk_2kmh").unwrap().with_method(None).unwrap();
+        let (capture, sensors, targets) = recorded(&setup, 300);
+        let mut decoder = Decoder::load(&root, "lola").unwrap();
+        capture.frames.iter().for_each(|frame| decoder.learn(frame));
+        let sent = std::cell::RefCell::new(Vec::new());
+        let mut replay = Answering::new(&decoder, &capture, |frame: &Captured| {
+            sent.borrow_mut().push(*frame);
+            Ok(())
+        });
+        let mut joints = JointLoop::new(&setup.robot, &setup.system, setup.scene.cycle);
+        // As on CAN the joint loop asks for the first state with a SYNC of tick 0: twice, as if it was impatient.
+        let mut told = BusFrames::default();
+        messages::frames::encode_targets(&setup.robot.layout, &Default::default(), &mut told);
+        let mut ask = |told: &BusFrames| {
+            for frame in told.as_slice() {
+                replay.answer(&Captured::of(frame, 0, Form::Fd { flags: 5 })).unwrap();
+            }
+        };
+        ask(&told);
+        for tick in 1..=300u64 {
+            ask(&told);
+            let mut answers = BusFrames::default();
+            answers.header.tick = tick - 1;
+            for frame in sent.borrow_mut().drain(..) {
+                assert!(answers.push(&frame.frame(frame.line)), "one answer to each question");
+            }
+            let logged = &sensors[tick as usize - 1];
+            assert_eq!(joints.receive(tick, logged.header.stamp_ns, Some(&answers)), logged, "cycle {tick}");
+            told = *joints.send(Some(&targets[tick as usize - 1]), None).0;
+        }
+        assert!(!replay.done(), "the answer to the last cycle was not asked for");
+        for frame in told.as_slice() {
+            replay.answer(&Captured::of(frame, 0, Form::Fd { flags: 5 })).unwrap();
+        }
+        assert!(replay.done());
+        let silence = replay.silence(301);
+        assert!(silence.contains("cycle 300 of 300"), "{silence}");
+    }
 
     #[test]
     fn maps_of_interfaces_name_what_is_wrong() {

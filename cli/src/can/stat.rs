@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use fieldbus::capture::{BASE_BITS, Captured, ERROR, EXTENDED, EXTENDED_BITS};
+use fieldbus::capture::{BASE_BITS, Captured, ERROR, EXTENDED, EXTENDED_BITS, REMOTE};
 use fieldbus::cycles::counter;
 use fieldbus::statistics::{BitRates, Row, Statistics};
 use serde::Serialize;
@@ -147,12 +147,13 @@ fn report(statistics: &Statistics, names: &[String], decoder: Option<&Decoder>, 
     }
 }
 
-/// As candump writes it.
+/// As candump writes it; remote frames with an R.
 fn identifier(id: u32) -> String {
+    let remote = if id & (REMOTE | ERROR) == REMOTE { "R" } else { "" };
     match id {
         _ if id & ERROR != 0 => format!("{:08X}", id & (ERROR | EXTENDED_BITS)),
-        _ if id & EXTENDED != 0 => format!("{:08X}", id & EXTENDED_BITS),
-        _ => format!("{:03X}", id & BASE_BITS),
+        _ if id & EXTENDED != 0 => format!("{:08X}{remote}", id & EXTENDED_BITS),
+        _ => format!("{:03X}{remote}", id & BASE_BITS),
     }
 }
 
@@ -169,7 +170,7 @@ fn name(decoder: Option<&Decoder>, line: u32, id: u32) -> String {
 
 fn table(r: &Report) -> String {
     let mut text = format!(
-        "{:12} {:>8} {:28} {:>8} {:>9} {:>10} {:>10} {:>10} {:>10} {:>8} {:>8}\n",
+        "{:12} {:>9} {:28} {:>8} {:>9} {:>10} {:>10} {:>10} {:>10} {:>8} {:>8}\n",
         "interface",
         "id",
         "message",
@@ -185,7 +186,7 @@ fn table(r: &Report) -> String {
     for m in &r.messages {
         let ms = |seconds: f64| format!("{:.3}", 1e3 * seconds);
         text += &format!(
-            "{:12} {:>8} {:28} {:>8} {:>9.1} {:>10} {:>10} {:>10} {:>10} {:>8} {:>8}\n",
+            "{:12} {:>9} {:28} {:>8} {:>9.1} {:>10} {:>10} {:>10} {:>10} {:>8} {:>8}\n",
             m.interface,
             m.id,
             m.name,

@@ -1,10 +1,12 @@
 //! Writes a log with something in every channel, and beside it the values that another reader must find there:
 //! `cargo run -p recording --example peers_log -- DIR` makes `peers.mcap` and `peers.txt`, whose lines hold a channel
-//! and all scalars of one message in the order of declaration. Used by `tests/peers/rosbags.sh`.
+//! and all scalars of one message in the order of declaration; and the same of CAN lines, `traffic.mcap` and
+//! `traffic.txt`. Used by `tests/peers/rosbags.sh`.
 
 use messages::record::{Read, Visit};
 use messages::topics::{ForType, with_type};
 use messages::{Record, SimState, TOPICS, Topic};
+use recording::traffic::{CanFrame, TrafficWriter};
 use recording::{
     FootInfo, Link, LinkPoses, Pose, Recorder, RecordingError, RobotInfo, RunInfo, channel_name,
 };
@@ -113,5 +115,37 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     recorder.finish()?;
     std::fs::write(directory.join("peers.txt"), expected)?;
+    traffic(directory)
+}
+
+/// Frames of all lengths on two lines.
+fn traffic(directory: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    let mut writer = TrafficWriter::create(&directory.join("traffic.mcap"))?;
+    let mut expected = String::new();
+    for k in 0..65u8 {
+        let data: Vec<u8> = (0..k).map(|i| i.wrapping_mul(29).wrapping_add(k)).collect();
+        let stamp_ns = 1_700_000_000_999_999_900 + u64::from(k);
+        let line = ["vcan0", "can1"][usize::from(k % 2)];
+        let (id, form) = (0x8000_0000 | u32::from(k) << 20, u8::from(k > 8));
+        writer.write(&CanFrame {
+            stamp_ns,
+            line,
+            id,
+            form,
+            flags: 5 * form,
+            way: k % 3,
+            len: k,
+            data: &data,
+        })?;
+        let (seconds, rest) = (stamp_ns / 1_000_000_000, stamp_ns % 1_000_000_000);
+        let _ =
+            write!(expected, "/can/{line} {seconds} {rest} {line} {id} {form} {} {} {k}", 5 * form, k % 3);
+        data.iter().for_each(|byte| {
+            let _ = write!(expected, " {byte}");
+        });
+        expected.push('\n');
+    }
+    writer.finish()?;
+    std::fs::write(directory.join("traffic.txt"), expected)?;
     Ok(())
 }
