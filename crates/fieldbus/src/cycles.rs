@@ -73,7 +73,7 @@ impl Cycles {
             }
         }
         let unfinished = sorter.iter().map(|s| s.told.len()).sum();
-        Self { nodes: sorter.into_iter().map(Sorter::finish).collect(), unfinished, unknown }
+        Self { nodes: sorter.into_iter().map(|s| s.finish(capture)).collect(), unfinished, unknown }
     }
 
     /// Number of ticks, from 0.
@@ -152,7 +152,21 @@ impl Sorter {
         }
     }
 
-    fn finish(self) -> BTreeMap<u64, Exchange> {
+    /// The first cycle may be asked for and answered more than once, until both ends are there: repetitions count once.
+    fn finish(mut self, capture: &Capture) -> BTreeMap<u64, Exchange> {
+        if let Some(mut first) = self.ticks.first_entry() {
+            let content = |i: u32| {
+                let frame = &capture.frames[i as usize];
+                (frame.id, frame.len, frame.data)
+            };
+            let mut once: Vec<u32> = Vec::new();
+            for i in first.get().answered.iter().copied() {
+                if !once.iter().any(|other| content(*other) == content(i)) {
+                    once.push(i);
+                }
+            }
+            first.get_mut().answered = once;
+        }
         self.ticks
     }
 }

@@ -92,6 +92,25 @@ fn nodes_may_share_an_interface() {
     assert_eq!(ids, [(0, 0x100), (0, 0x80), (1, 0x101), (1, 0x80)]);
 }
 
+/// Until both ends are there, the far end tells its state unasked, and the near end asks more than once.
+#[test]
+fn repeated_answers_to_the_first_cycle_count_once() {
+    let text = "\
+(0000000000.000000) can0 180#000200
+(0000000000.001000) can0 080#00
+(0000000000.002000) can0 180#000200
+(0000000000.003000) can0 080#00
+(0000000000.004000) can0 180#000200
+(0000000000.005000) can0 080#01
+(0000000000.006000) can0 180#010200
+(0000000000.007000) can0 180#010200
+";
+    let (layout, capture) = (layout(), capture(text));
+    let cycles = Cycles::of(&layout, &Owners::of(&layout, &capture), &capture);
+    let count = |tick| cycles.answers(&capture, tick).count;
+    assert_eq!((count(0), count(1)), (1, 2), "later repetitions are a fault, and stay");
+}
+
 #[test]
 fn ticks_are_told_from_their_low_bits() {
     let mut tick = Unwrapped::default();
