@@ -149,7 +149,7 @@ fn run(veth: &Veth, options: &Options) -> Result<(), Box<dyn Error>> {
             veth.set(FAR[1], "up");
         }
         while let Some(event) = near.master_mut().take_event() {
-            if !matches!(event, Event::Phase(_)) {
+            if matches!(event, Event::RingBroken(..) | Event::RingClosed) {
                 println!("event {event:?} in cycle {running}");
             }
         }
