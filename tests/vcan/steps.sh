@@ -16,7 +16,7 @@ done
 for check; do
     printf '\n-- vcan %s\n' "$check"
     begun=$(date +%s)
-    "$here/$check.sh" "$work" || echo "failed $check" >>"$work/steps"
+    sh "$here/$check.sh" "$work" || echo "failed $check" >>"$work/steps"
     printf -- '-- vcan %s: %d s\n' "$check" "$(($(date +%s) - begun))"
 done
 failed=$(grep -c '^failed' "$work/steps")
