@@ -38,14 +38,6 @@ no_fd() {
     return $code
 }
 
-nobody() {
-    sed -i 's/^peer_timeout = .*/peer_timeout = 2.0/' "$work/config/system.toml"
-    refused can:vcan0-8 'nobody answers'
-    code=$?
-    sed -i 's/^peer_timeout = .*/peer_timeout = 60.0/' "$work/config/system.toml"
-    return $code
-}
-
 step "an interface that is not there" refused can:vcan0-7,vcan9 'vcan9: there is no such interface; .*ip link add dev vcan9 type vcan'
 step "an interface that is down" down
 step "an interface that is no CAN interface" refused can:vcan0-7,lo 'lo: is not a CAN interface'
