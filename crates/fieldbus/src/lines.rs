@@ -11,8 +11,8 @@ use messages::layout::{Layout, MAX_NODES};
 use messages::{BusFrames, ERROR_FLAG, Frame, MAX_FRAMES};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use socketcan::{
-    CanAnyFrame, CanDataFrame, CanFdFrame, CanFdSocket, CanFilter, EmbeddedFrame, Frame as _, Socket,
-    SocketOptions, StandardId,
+    CanAnyFrame, CanDataFrame, CanErrorFrame, CanFdFrame, CanFdSocket, CanFilter, EmbeddedFrame, Frame as _,
+    Socket, SocketOptions, StandardId,
 };
 
 /// Errno: the interface is down.
@@ -196,8 +196,11 @@ impl Lines {
 fn write(socket: &CanFdSocket, frame: &Frame, fd: bool) -> io::Result<()> {
     let payload = &frame.data[..frame.len as usize];
     let wrong = || io::Error::from(ErrorKind::InvalidInput);
+    if frame.id & ERROR_FLAG != 0 {
+        // Of a simulated bus controller: on a virtual interface the other end hears it as from its own one.
+        return socket.write_frame(&CanErrorFrame::new_error(frame.id, payload).map_err(|_| wrong())?);
+    }
     let id = StandardId::new((frame.id & 0x7ff) as u16).ok_or_else(wrong)?;
-    debug_assert!(frame.id & ERROR_FLAG == 0);
     if fd {
         let mut frame = CanFdFrame::new(id, payload).ok_or_else(wrong)?;
         frame.set_brs(true);
