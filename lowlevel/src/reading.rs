@@ -12,12 +12,14 @@ use messages::{MAX_JOINTS, Sensors};
 const GRAVITY: f64 = 9.806_65;
 /// \[m\] Lever of the largest believable force at a foot's sensor.
 const LEVER: f64 = 0.3;
-/// \[rad/s\] Fastest the upper body turns; also the most this changes in one cycle.
-const TURN: f64 = 20.0;
+/// \[rad/s\] Fastest the upper body turns.
+const TURN: f64 = 5.0;
+/// \[rad/s\] Most this changes in one cycle; while Lola walks up to 5 km/h it changes by 0.3.
+const JERK: f64 = 2.0;
 /// \[1\] Play of a component of the upper body's quaternion.
-const PLAY: f64 = 0.01;
-/// \[m/s^2\] Most the specific force changes in one cycle: a foot stamps.
-const SHOCK: f64 = 300.0;
+const PLAY: f64 = 0.005;
+/// \[m/s^2\] Most the specific force changes in one cycle: a foot stamps. In a walk it changes by 65.
+const SHOCK: f64 = 200.0;
 
 /// What a node reads.
 #[derive(Clone, Debug, Default)]
@@ -123,7 +125,7 @@ impl Bounds {
         let imu = || {
             let turned = PLAY + 0.5 * TURN * self.dt * cycles;
             (0..4).all(|k| near(a.orientation[k], b.orientation[k], turned))
-                && (0..3).all(|k| near(a.angular_velocity[k], b.angular_velocity[k], TURN))
+                && (0..3).all(|k| near(a.angular_velocity[k], b.angular_velocity[k], JERK * cycles))
                 && (0..3).all(|k| near(a.acceleration[k], b.acceleration[k], SHOCK * cycles))
         };
         reads.joints.iter().all(joint) && reads.feet.iter().all(foot) && (!reads.imu || imu())

@@ -55,7 +55,7 @@ pub struct Row {
     pub at_rest_cycles: Option<u64>,
     /// \[cycle\] Until the motor supply is off, at the latest; none: it stays on.
     pub power_off_cycles: Option<u64>,
-    /// Names of what the log tells, in the order of the first instant.
+    /// Names of what the log tells, at any instant.
     pub log: Vec<String>,
     /// The worst end.
     pub end: End,
@@ -141,11 +141,16 @@ fn row(case: &Case, trials: &[Trial]) -> Row {
         reacted_cycles: latest(|t| t.reacted),
         at_rest_cycles: latest(|t| t.at_rest),
         power_off_cycles: latest(|t| t.power_off),
-        log: trials[0].log.iter().map(|code| format!("{code:?}")).collect(),
+        log: Vec::new(),
         end: trials.iter().map(Trial::end).max().unwrap_or(End::Fell),
         upright: trials.iter().filter(|t| t.end() <= End::Stands).count(),
         unmet: String::new(),
     };
+    for name in trials.iter().flat_map(|t| &t.log).map(|code| format!("{code:?}")) {
+        if !row.log.contains(&name) {
+            row.log.push(name);
+        }
+    }
     row.unmet = case.demand.unmet(&row, trials).join("; ");
     row
 }
