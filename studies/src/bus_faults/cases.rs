@@ -37,6 +37,8 @@ pub(super) struct Demand {
     reacts: Option<(EventCode, RangeInclusive<u64>)>,
     /// Told besides.
     told: Vec<EventCode>,
+    /// Where nothing must stop it: it may yet fall, if its joints are braked before.
+    may_fall: bool,
     /// Supply off within so many cycles.
     power_off: Option<u64>,
 }
@@ -45,6 +47,11 @@ impl Demand {
     /// The robot walks on; this is told.
     fn walks(told: &[EventCode]) -> Self {
         Self { told: told.to_vec(), ..Self::default() }
+    }
+
+    /// The same, of a fault beyond all reason: it may fall, but not with joints in motion.
+    fn bears(told: &[EventCode]) -> Self {
+        Self { may_fall: true, ..Self::walks(told) }
     }
 
     /// The robot is stopped.
@@ -81,6 +88,7 @@ impl Demand {
             demand(trials.iter().all(|t| t.log.contains(code)), format!("{code:?} told"));
         }
         match &self.reacts {
+            None if self.may_fall => demand(row.end < End::Fell, "joints at rest before it falls".into()),
             None => demand(row.end == End::Walks, "walks on".into()),
             Some((code, cycles)) => {
                 let in_time = |t: &Trial| t.reacted.is_some_and(|n| cycles.contains(&n));
@@ -179,9 +187,14 @@ pub(super) fn all(setup: &Setup) -> Vec<Case> {
             Demand::stops(NodeSilent, silent..=silent).and_tells(&[BusPassive]),
         ),
         case(
+            "one bit flipped unseen, 0.1 % of frames from the drives",
+            share(0.001, from_drives(fault(Flipped))),
+            refused(),
+        ),
+        case(
             "one bit flipped unseen, 1 % of frames from the drives",
             share(0.01, from_drives(fault(Flipped))),
-            refused(),
+            Demand::bears(&[FrameRefused]),
         ),
         case(
             "one bit flipped unseen, 0.1 % of frames to the drives",
