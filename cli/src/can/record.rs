@@ -176,11 +176,11 @@ fn shared_memory(order: &Order) -> Result<(), Box<dyn Error>> {
             std::thread::park_timeout(Duration::from_micros(200));
         }
         while waiting.len() > HELD_CYCLES {
-            put(&mut traffic, order.only, waiting.pop_first())?;
+            put_first(&mut traffic, order.only, &mut waiting)?;
         }
     }
     while !waiting.is_empty() {
-        put(&mut traffic, order.only, waiting.pop_first())?;
+        put_first(&mut traffic, order.only, &mut waiting)?;
     }
     let count = traffic.count;
     traffic.finish()?;
@@ -188,12 +188,13 @@ fn shared_memory(order: &Order) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn put(
+/// Writes the oldest of the cycles that wait, if it goes the way that is wanted.
+fn put_first(
     traffic: &mut Traffic,
     wanted: Option<Only>,
-    cycle: Option<((u64, Only), BusFrames)>,
+    waiting: &mut BTreeMap<(u64, Only), BusFrames>,
 ) -> Result<(), Box<dyn Error>> {
-    match cycle {
+    match waiting.pop_first() {
         Some(((_, only), frames)) if wanted.is_none_or(|wanted| wanted == only) => traffic.write(&frames),
         _ => Ok(()),
     }

@@ -178,11 +178,8 @@ impl<'a, S: FnMut(&Captured) -> Result<(), InterfaceError>> Answering<'a, S> {
         let mut heard = clock::now();
         while !stop.asked() && !self.done() {
             match tap.next(LOOK)? {
-                Some(frame) => {
-                    if self.answer(&frame)? {
-                        heard = clock::now();
-                    }
-                }
+                Some(frame) if self.answer(&frame)? => heard = clock::now(),
+                Some(_) => {}
                 // Before its first SYNC the peer may take as long as it likes.
                 None if self.sent > 0 && clock::now() > heard + PATIENCE => {
                     return Err(self.silence(ticks).into());

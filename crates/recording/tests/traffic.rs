@@ -8,7 +8,10 @@ fn place(name: &str) -> PathBuf {
     std::env::temp_dir().join(format!("gangwerk-traffic-{}-{name}.mcap", std::process::id()))
 }
 
-fn frames() -> Vec<(u64, &'static str, u32, [u8; 4], Vec<u8>)> {
+/// Time stamp, line, identifier; form, flags, way and length; data.
+type Written = (u64, &'static str, u32, [u8; 4], Vec<u8>);
+
+fn frames() -> Vec<Written> {
     let long: Vec<u8> = (0..64).collect();
     vec![
         (1_436_509_052_249_713_001, "vcan0", 0x123, [0, 0, 0, 2], vec![1, 2]),
