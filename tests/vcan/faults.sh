@@ -1,5 +1,5 @@
 #!/bin/sh
-# Faults of real interfaces while Lola walks: a cable is pulled, and plugged in again.
+# Faults of real interfaces while Lola walks: a cable pulled and plugged in again, a controller that left the bus.
 . "$(dirname "$0")/step.sh"
 . "$here/walking.sh"
 
@@ -37,4 +37,16 @@ pulled() {
     at_rest && return $code
 }
 
+bus_off() {
+    disturbed 'lowlevel: BusOff' "$python" -S -c "$bus_off_frame"
+    code=$?
+    at_rest && return $code
+}
+
+# CAN_ERR_FLAG with CAN_ERR_BUSOFF (linux/can/error.h), as a driver reports it.
+bus_off_frame='import socket, struct
+line = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
+line.bind(("vcan3",))
+line.send(struct.pack("=IB3x8s", 0x20000040, 8, bytes(8)))'
 step "a cable is pulled: the run says which node is silent, and the joints come to rest" pulled
+step "a controller leaves the bus: the run says which, and the joints come to rest" bus_off
