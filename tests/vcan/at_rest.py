@@ -27,4 +27,4 @@ way, end = states[:-LAST], states[-LAST:]
 moved = max(speed(a, b) for a, b in zip(way, way[1:]))
 last = max(speed(a, b) for a, b in zip(end, end[1:]))
 print(f"        fastest joint: {moved:.3f} rad/s on the way, {last:.2e} rad/s in the last {LAST} of {len(records)} cycles")
-sys.exit(moved < 0.1 or last > REST)
+sys.exit(moved < 0.5 or last > REST)

@@ -8,17 +8,17 @@ said() {
     grep -qE "$1" "$work/fault/said"
 }
 
-# disturbed PATTERN COMMAND...: walks, does that at cycle 400 and waits until the run tells of it; then to the end.
+# disturbed PATTERN COMMAND...: walks, does that at cycle 1200 and waits until the run tells of it; then to the end.
 disturbed() {
     pattern=$1
     shift
-    brief can_2kmh 3.0
-    timeout 300 candump -n 400 vcan0,080:7FF >/dev/null &
+    brief can_2kmh 5.0
+    timeout 390 candump -n 1200 vcan0,080:7FF >/dev/null &
     waiting=$!
     within 20 listened vcan0 || return 1
     walk fault can_2kmh --lockstep --bus can:vcan0-8 &
     running=$!
-    wait "$waiting" || because "cycle 400 was not reached: $(tail -n 5 "$work/fault/said")" || return 1
+    wait "$waiting" || because "cycle 1200 was not reached: $(tail -n 5 "$work/fault/said")" || return 1
     "$@" || because "could not: $*"
     within 120 said "$pattern" || because "no event like '$pattern': $(tail -n 5 "$work/fault/said")" || return 1
     grep -E "$pattern" "$work/fault/said" | sed 's/^/        /'
