@@ -295,6 +295,12 @@ fn push() {
     assert!(f["inclination_error_max_rad"][1].as_f64().unwrap() > 0.012, "{f:#}");
 }
 
+/// From the crane to a walk; what is told and refused on the way: `studies/tests/start_up.rs`.
+#[test]
+fn startup() {
+    walks(&figures("startup", 30.0), 1.0);
+}
+
 #[test]
 fn demo() {
     let f = figures("demo", 34.0);

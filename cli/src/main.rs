@@ -326,7 +326,10 @@ fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
             let connect = |s: &Space| commands("controller", &[Domain::Stabilize, Domain::Head], s);
             controller::daemon::main(&p.run, Box::new(connect))?;
         }
-        Task::Lowlevel(p) => lowlevel::daemon::main(&p.run)?,
+        Task::Lowlevel(p) => {
+            let connect = |s: &Space| commands("lowlevel", &[Domain::System, Domain::Joint], s);
+            lowlevel::daemon::main(&p.run, Box::new(connect))?;
+        }
         _ => {}
     }
     Ok(ExitCode::SUCCESS)

@@ -8,12 +8,13 @@ use std::time::Duration;
 
 use config::Setup;
 use config::tolerance::Method;
+use drives::cia402::Fault;
 use fieldbus::Address;
 use indicatif::{ProgressBar, ProgressStyle};
 use ipc::{Mode, Reader, Run, Space};
 use messages::command::Domain;
-use messages::topics::{CONTROLLER_STATE, SIM_STATE, Topic};
-use messages::{Command, ControllerState, Event, EventCode, GaitState, Process, SimState};
+use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE, Topic};
+use messages::{Command, ControllerState, Event, EventCode, GaitState, Process, Sensors, SimState, StartUp};
 use realtime::{Stop, clock};
 
 use crate::figures::{Figures, Gatherer};
@@ -252,7 +253,10 @@ fn terminate(child: &Child) {
 struct View {
     state: Reader<ControllerState>,
     sim: Reader<SimState>,
+    sensors: Reader<Sensors>,
     events: Vec<(Process, Reader<Event>)>,
+    joints: Vec<String>,
+    start_up: StartUp,
     bar: ProgressBar,
     gait: GaitState,
 }
@@ -269,7 +273,10 @@ impl View {
         let events =
             Process::ALL.into_iter().map(|p| Ok((p, s.events(p)?))).collect::<Result<_, Box<dyn Error>>>()?;
         let state = s.space.reader(&CONTROLLER_STATE)?;
-        Ok(Self { state, sim: s.space.reader(&SIM_STATE)?, events, bar, gait: GaitState::Idle })
+        let joints = setup.robot.joints.iter().map(|joint| joint.name.clone()).collect();
+        let (sim, sensors) = (s.space.reader(&SIM_STATE)?, s.space.reader(&SENSORS)?);
+        let (start_up, gait) = (StartUp::Off, GaitState::Idle);
+        Ok(Self { state, sim, sensors, events, joints, start_up, bar, gait })
     }
 
     fn say(&self, text: &str) {
@@ -288,6 +295,7 @@ impl View {
 
     fn update(&mut self) {
         self.tell_events();
+        self.tell_start_up();
         let Some(sim) = self.sim.latest() else { return };
         let (t, [x, y, _]) = (sim.time, sim.position);
         self.bar.set_position((t * 10.0) as u64);
@@ -305,6 +313,16 @@ impl View {
         }
     }
 
+    /// Where the start-up is, and what the operator does next.
+    fn tell_start_up(&mut self) {
+        let Some(sensors) = self.sensors.latest() else { return };
+        let (now, tick) = (StartUp::from_number(sensors.start_up), sensors.header.tick);
+        if self.start_up != now {
+            self.start_up = now;
+            self.say(&format!("tick {tick:6}  {}", now.advice()));
+        }
+    }
+
     /// Everything that is no routine.
     fn tell_events(&mut self) {
         let mut lines = Vec::new();
@@ -315,6 +333,14 @@ impl View {
                     let detail = match code {
                         EventCode::PowerOff | EventCode::SafeStop => {
                             format!("{:?}", EventCode::from_number(e.detail).unwrap_or(EventCode::None))
+                        }
+                        EventCode::DriveTripped => {
+                            let (joint, error) = (self.joints.get((e.detail & 0xFFFF) as usize), e.detail >> 16);
+                            let text = Fault::from_code(error as u16).map_or("", Fault::text);
+                            format!("{}: error {error:#06x} {text}", joint.map_or("?", String::as_str))
+                        }
+                        EventCode::NotHomed | EventCode::DriveNotEnabled => {
+                            self.joints.get(e.detail as usize).cloned().unwrap_or_default()
                         }
                         _ => e.detail.to_string(),
                     };

@@ -39,6 +39,8 @@ pub struct Drive {
     pub friction: Friction,
     /// Elasticity of the gear at its output; rigid if there is none.
     pub elasticity: Option<Elasticity>,
+    /// \[A\], \[s\] Current that may flow for ever, and time constant of the winding's temperature, if they are known.
+    pub winding: Option<[f64; 2]>,
     /// How it is controlled: as the row says, or the robot, or the scene instead of both.
     pub control: JointControl,
 }
@@ -49,6 +51,7 @@ struct MotorType {
     motor: Motor,
     rotor_inertia: f64,
     voltage_limit: f64,
+    winding: Option<[f64; 2]>,
 }
 
 /// `[gear.NAME]`: a harmonic drive.
@@ -128,6 +131,7 @@ impl MotorType {
         motor: Motor { inductance: f64::NAN, resistance: f64::NAN, torque_constant: f64::NAN },
         rotor_inertia: f64::NAN,
         voltage_limit: f64::NAN,
+        winding: None,
     };
 
     fn build(table: &Section<'_, '_>) -> Self {
@@ -139,6 +143,10 @@ impl MotorType {
             },
             rotor_inertia: table.number("rotor_inertia", "kg m^2", POSITIVE),
             voltage_limit: table.number("voltage_limit", "V", POSITIVE),
+            winding: table.has("continuous_current").then(|| {
+                let current = table.number("continuous_current", "A", POSITIVE);
+                [current, table.number("thermal_time", "s", POSITIVE)]
+            }),
         }
     }
 }
@@ -198,6 +206,7 @@ impl Drive {
             current_limit: row.number("current_limit", "A", POSITIVE),
             friction: train.friction,
             elasticity: train.elasticity,
+            winding: bought.winding,
             control: own.unwrap_or(control),
         }
     }

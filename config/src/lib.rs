@@ -12,6 +12,7 @@
 //! Only this crate names TOML.
 
 pub mod bus_fault;
+pub mod crane;
 pub mod dbc;
 pub mod drive;
 pub mod efficiency;
@@ -21,6 +22,7 @@ pub mod gait;
 mod joint_control;
 pub mod limbs;
 pub mod parameters;
+pub mod protection;
 pub mod robot;
 pub mod scene;
 mod section;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use drives::homing::HomeSwitch;
 use messages::MAX_JOINTS;
 use messages::layout::Layout;
 
@@ -10,6 +11,7 @@ use crate::dbc;
 pub use crate::drive::Drive;
 use crate::drive::drives;
 use crate::error::ConfigError;
+use crate::protection::{Protection, homes};
 use crate::file::{self, Hash};
 use crate::limbs::{Arms, Head};
 use crate::section::{self, POSITIVE, Section};
@@ -47,6 +49,10 @@ pub struct Robot {
     pub arms: Option<Arms>,
     /// Drives, one per joint in the joints' order; empty for a robot of ideal drives.
     pub drives: Vec<Drive>,
+    /// At what the drives fail safe by themselves; only scenes with `[drives]` need it.
+    pub protection: Option<Protection>,
+    /// Home switches, by joint; none for a joint with an absolute encoder.
+    pub homes: Vec<Option<HomeSwitch>>,
 }
 
 /// One driven joint.
@@ -162,6 +168,7 @@ impl Robot {
         for (i, name) in names.iter().enumerate().filter(|(i, name)| names[..*i].contains(name)) {
             top.problem("joint", format!("joint[{i}]: the name `{name}` is taken already"));
         }
+        let drives = drives(top, &joints);
         Self {
             name,
             urdf: top.text("urdf"),
@@ -176,7 +183,9 @@ impl Robot {
             spare: Vec::new(),
             head: optional(top, "head", |table| Head::build(table, &joints)),
             arms: optional(top, "arms", |table| Arms::build(table, &joints)),
-            drives: drives(top, &joints),
+            protection: optional(top, "protection", |table| Some(Protection::build(table, &drives))),
+            homes: homes(top, &joints),
+            drives,
             joints,
         }
     }

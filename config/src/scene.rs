@@ -8,6 +8,7 @@ use messages::command::{Domain, PushCommand};
 use messages::command_text::{COMMANDS, CommandInfo};
 
 use crate::bus_fault::BusFault;
+use crate::crane::{Crane, DriveStart};
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
 use crate::joint_control;
@@ -55,6 +56,10 @@ pub struct Scene {
     pub joint_control: Option<JointControl>,
     /// What the robot's software is not told.
     pub unknown: Unknown,
+    /// Crane that holds the robot at the start; none: it stands.
+    pub crane: Option<Crane>,
+    /// Drives as they are at switch-on; none: they know their angles, and nothing protects them.
+    pub drives: Option<DriveStart>,
     /// Commands by time \[s\], ascending.
     pub commands: Vec<(f64, Command)>,
     /// Pushes at the torso by time \[s\], ascending.
@@ -129,6 +134,8 @@ impl Scene {
                 .then(|| top.table("joint_control", joint_control::build))
                 .flatten(),
             unknown: unknown(top),
+            crane: top.has("crane").then(|| top.table("crane", Crane::build)).flatten(),
+            drives: top.has("drives").then(|| top.table("drives", DriveStart::build)).flatten(),
             commands: top.tables("command", command),
             pushes: top.tables("push", push),
             bus_faults: top.tables("bus_fault", BusFault::build),
@@ -214,7 +221,7 @@ fn command(row: &Section<'_, '_>) -> (f64, Command) {
     let time = row.number("time", "s", NOT_NEGATIVE);
     let scripted: Vec<&CommandInfo> = COMMANDS
         .iter()
-        .filter(|info| matches!(info.example().address().0, Domain::System | Domain::Walk | Domain::Head))
+        .filter(|info| is_scripted(&info.example()))
         .collect();
     let names: Vec<&str> = scripted.iter().map(|info| info.name).collect();
     let info = scripted[row.word("topic", &names)];
@@ -232,6 +239,12 @@ fn command(row: &Section<'_, '_>) -> (f64, Command) {
         Command::Stop
     });
     (time, command)
+}
+
+/// Whether a scene can give a command; pushes have a table of their own, and parameters are set by name.
+fn is_scripted(command: &Command) -> bool {
+    use Domain::{Head, Joint, System, Walk};
+    matches!(command, Command::Lower(_)) || matches!(command.address().0, System | Walk | Head | Joint)
 }
 
 fn push(row: &Section<'_, '_>) -> (f64, PushCommand) {

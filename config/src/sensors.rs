@@ -59,6 +59,8 @@ pub struct ForceTorque {
     pub inertia: bool,
     /// Set to zero while hanging with level feet.
     pub bias_compensation: bool,
+    /// \[N, N m\] Read too much in each direction until the sensors are set to zero.
+    pub offset: [f64; 2],
     /// \[s\] Time constant of the anti-aliasing filter.
     pub filter_time: f64,
     /// \[N, N m\] Standard deviation of the white noise of forces and of moments.
@@ -78,6 +80,7 @@ impl Default for ForceTorque {
         Self {
             inertia: false,
             bias_compensation: false,
+            offset: [0.0; 2],
             filter_time: 0.0,
             noise: [0.0; 2],
             step: [0.0; 2],
@@ -220,6 +223,7 @@ impl ForceTorque {
         let built = Self {
             inertia: table.flag("inertia"),
             bias_compensation: table.flag("bias_compensation"),
+            offset: if table.has("offset") { table.numbers("offset", "N, N m", -500.0..=500.0) } else { [0.0; 2] },
             filter_time: optional(table, "filter_time", |t, key| t.number(key, "s", 0.0..=1.0)),
             noise: pair("noise"),
             step: pair("step"),

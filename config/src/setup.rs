@@ -99,6 +99,15 @@ impl Setup {
             let (gait, robot) = (&scene.gait, &scene.robot);
             note("gait".to_owned(), format!("gait {gait} has arm_swing, but robot {robot} has no [arms]"));
         }
+        if scene.drives.is_some() && self.robot.protection.is_none() {
+            note("drives".to_owned(), format!("robot {} has no [protection]", scene.robot));
+        }
+        let heated = scene.drives.iter().flat_map(|drives| &drives.temperature.own);
+        for (name, _) in heated.filter(|(name, _)| !joints.contains(&name.as_str())) {
+            let near = nearest(name, &joints).unwrap_or("none");
+            let text = format!("robot {} has no joint `{name}`; the nearest is `{near}`", scene.robot);
+            note("drives.temperature".to_owned(), text);
+        }
         for (name, _) in &scene.unknown.joint_offset.own {
             if !joints.contains(&name.as_str()) {
                 let near = nearest(name, &joints).unwrap_or("none");

@@ -40,6 +40,7 @@ fn every_key() {
         [sensors.force_torque]
         inertia = true
         bias_compensation = true
+        offset = [3.0, 0.2]
         filter_time = 0.001
         noise = [1.0, 0.1]
         step = [1.0, 0.1]
@@ -75,6 +76,7 @@ fn every_key() {
         force_torque: ForceTorque {
             inertia: true,
             bias_compensation: true,
+            offset: [3.0, 0.2],
             filter_time: 0.001,
             noise: [1.0, 0.1],
             step: [1.0, 0.1],

@@ -7,7 +7,7 @@ use config::gait::Control;
 use config::parameters::PARAMETERS;
 use config::{Gait, Robot};
 use messages::{
-    Command, ControllerState, EventCode, JointMode, JointTargets, MAX_JOINTS, Parameters, Plan, Sensors,
+    Command, ControllerState, EventCode, JointMode, JointTargets, MAX_JOINTS, Parameters, Plan, Sensors, StartUp,
 };
 use multibody::ModelError;
 use nalgebra::{Matrix3, Vector3, Vector6};
@@ -172,7 +172,10 @@ impl Controller {
         let sensors = &sensors;
         let (angles, speeds) = (&sensors.joint_angle, &sensors.joint_speed);
         self.measured.update_motion(angles, speeds, &sensors.imu.angular_velocity);
-        if sensors.power == 0 || !self.started {
+        let start_up = StartUp::from_number(sensors.start_up);
+        // A joint that finds its angle moves by itself.
+        let moves = matches!(start_up, StartUp::NotHomed | StartUp::Homing);
+        if sensors.power == 0 || !self.started || moves {
             self.start_from(sensors);
         }
         for j in 0..self.robot.joints.len() {
@@ -323,6 +326,10 @@ impl Controller {
         s.gait = self.plan.gait(t) as u64;
         s.contact = self.watch.contact().map(u64::from);
         s.phase = [0, 1].map(|foot| self.plan.plan().phase(foot, t) as u64);
+        s.not_standing = u64::from(match StartUp::from_number(sensors.start_up) {
+            StartUp::Off => sensors.power == 0,
+            other => !other.stands(),
+        });
         s.origin = self.plan.plan().origin;
         s.com_desired = now.com.position;
         s.feet_desired = now.feet.map(|f| f.position);

@@ -1,8 +1,10 @@
 //! The process around the joint loop: `gangwerk lowlevel --run DIR`. It is the clock of all others.
 
 use crate::{Fieldbus, JointLoop, fieldbus};
-use daemon::Daemon;
+use config::Timeline;
+use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Waiter, Writer};
+use messages::command::Domain;
 use messages::topics::{BUS_TX, JOINT_TARGETS, LOG_TICK, POWER, SENSORS, SIM_STATE, WATCHDOG_RESET};
 use messages::{Event, EventCode, Header, JointTargets, Power, Process, Sensors, WatchdogReset};
 use realtime::{Period, Verdict, clock};
@@ -17,7 +19,7 @@ const ANSWER: (u64, u64) = (7, 10);
 ///
 /// # Errors
 /// The process cannot start, or, in lockstep, a peer fell silent.
-pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
+pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut d = Daemon::new(Process::Lowlevel, dir)?;
     let mut ports = Ports {
         bus: fieldbus::open(&d)?,
@@ -30,7 +32,12 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
         bell_bus: d.bell(&BUS_TX)?,
         bell_reset: d.bell(&WATCHDOG_RESET)?,
         waiter: d.space.waiter(Process::Lowlevel)?,
+        timeline: Timeline::new(&d.setup.scene, &[Domain::System, Domain::Joint]),
+        commands: connect(&d.space)?,
     };
+    if ports.sensors.epoch() > 1 {
+        ports.timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
+    }
     let scene = &d.setup.scene;
     let last = (scene.duration / scene.cycle).round() as u64;
     let mut joints = JointLoop::new(&d.setup.robot, &d.setup.system, scene.cycle);
@@ -57,6 +64,15 @@ struct Ports {
     bell_bus: usize,
     bell_reset: usize,
     waiter: Waiter,
+    timeline: Timeline,
+    commands: Commands,
+}
+
+/// Commands of this cycle: the scene's that are due, then live ones.
+fn take_commands(p: &mut Ports, joints: &mut JointLoop, tick: u64) {
+    while let Some(command) = p.timeline.due(tick).or_else(&mut p.commands) {
+        joints.command(&command);
+    }
 }
 
 /// Simulated time: each peer answers tick n before tick n + 1 begins.
@@ -81,6 +97,7 @@ fn lockstep(
         if !d.wait(&p.waiter, "controller", || targets.latest().is_some_and(|t| t.header.tick == tick))? {
             break;
         }
+        take_commands(p, joints, tick);
         let (frames, reset) = joints.send(p.targets.held(), None);
         p.reset.write(reset);
         d.ring(p.bell_reset);
@@ -126,6 +143,7 @@ fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -
         p.sensors.write(sensors);
         d.ring(p.bell_sensors);
         wait_for_targets(p, tick, period.planned() + answer_ns);
+        take_commands(p, joints, tick);
         let (frames, reset) = joints.send(p.targets.latest(), cause);
         p.bus.send(frames);
         d.ring(p.bell_bus);

@@ -2,11 +2,16 @@
 
 use config::{Robot, System};
 use messages::frames::{DriveCommand, Received, decode_sensors, encode_targets};
-use messages::{BusCounters, BusFrames, EventCode, Header, JointMode, JointTargets, Sensors, WatchdogReset};
+use messages::{BusCounters, BusFrames, Command, EventCode, Header, JointMode, JointTargets, Sensors, StartUp, WatchdogReset};
 
 use crate::braking::brake;
 use crate::limits::{Motion, admit, following_limit};
 use crate::line_guard::LineGuard;
+use crate::start_up::{StartUpSequence, is_enabled};
+use drives::cia402::{self, Wanted, controlword};
+
+/// \[m/s^2\]
+const GRAVITY: f64 = 9.81;
 
 /// What the joint loop is doing with the joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +40,7 @@ pub struct JointLoop {
     /// Cycles since targets were new.
     stale: u32,
     guard: LineGuard,
+    start_up: StartUpSequence,
     sensors: Sensors,
     command: DriveCommand,
     received: Received,
@@ -55,6 +61,7 @@ impl JointLoop {
             used: 0,
             stale: 0,
             guard: LineGuard::new(robot, system, dt),
+            start_up: StartUpSequence::new(robot.joints.len(), robot.total_mass * GRAVITY),
             sensors: Sensors::default(),
             command: DriveCommand::default(),
             received: Received::default(),
@@ -76,7 +83,12 @@ impl JointLoop {
 
     /// Something worth a line in the log, since the last call.
     pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        self.event.take().or_else(|| self.guard.take_event())
+        self.event.take().or_else(|| self.guard.take_event()).or_else(|| self.start_up.take_event())
+    }
+
+    /// Takes a command of the domains system and joint, between [`JointLoop::receive`] and [`JointLoop::send`].
+    pub fn command(&mut self, command: &Command) {
+        self.start_up.command(command, &self.sensors);
     }
 
     /// What went wrong on the bus so far.
@@ -87,12 +99,14 @@ impl JointLoop {
     /// First half of the cycle: what the bus brought, stamped.
     pub fn receive(&mut self, tick: u64, stamp_ns: u64, frames: Option<&BusFrames>) -> &Sensors {
         self.sensors.header = Header { tick, stamp_ns, epoch: 0 };
+        self.start_up.restore(&mut self.sensors);
         self.guard.expect(&mut self.sensors);
         if let Some(frames) = frames {
             self.received = decode_sensors(&self.robot.layout, frames, &mut self.sensors);
         }
         self.guard.judge(frames, &self.received, &mut self.sensors);
         self.sensors.frames_missed = self.guard.counters().lost;
+        self.start_up.receive(&mut self.sensors);
         &self.sensors
     }
 
@@ -109,12 +123,14 @@ impl JointLoop {
             self.follow_measured(); // whatever comes next begins where the joints are
         }
         self.choose_state(targets, cause);
+        self.start_up.step(&self.sensors, matches!(self.state, State::Stop(_)));
         match self.state {
             State::Off => self.follow_measured(),
             State::Hold => self.brake_all(),
             State::Stop(_) => self.brake_all(),
             State::Track => self.track(targets),
         }
+        self.follow_the_unable();
         self.check_following();
         self.check_lines();
         self.write_frames();
@@ -132,15 +148,22 @@ impl JointLoop {
             self.stale = self.stale.saturating_add(1);
         }
         let late = self.stale > self.system.targets_missed;
+        let joints = 0..self.robot.joints.len();
+        let tripped = joints.clone().find_map(|j| fault(&self.sensors, j));
+        let off = joints.clone().find(|&j| !is_enabled(&self.sensors, j));
         let mute = self.guard.cause();
         self.state = match self.state {
             _ if !powered => State::Off,
             State::Stop(why) => State::Stop(why),
             State::Off | State::Hold | State::Track if mute.is_some() => self.unheard(mute),
+            State::Hold | State::Track if tripped.is_some() => {
+                self.stop(EventCode::DriveTripped, tripped.unwrap_or(0))
+            }
             State::Off => State::Hold,
-            State::Hold if mode == JointMode::Track && !late => State::Track,
+            State::Hold if mode == JointMode::Track && !late && self.start_up.ready() => State::Track,
             State::Hold => State::Hold,
             State::Track if cause.is_some() => self.stop(cause.unwrap_or(EventCode::SafeStop), 0),
+            State::Track if off.is_some() => self.stop(EventCode::DriveNotEnabled, off.unwrap_or(0) as u64),
             State::Track if late => self.stop(EventCode::TargetsStale, self.stale.into()),
             State::Track if mode == JointMode::Stop => self.stop(EventCode::SafeStop, 0),
             State::Track if mode == JointMode::Track => State::Track,
@@ -164,6 +187,20 @@ impl JointLoop {
     fn follow_measured(&mut self) {
         for j in 0..self.robot.joints.len() {
             self.last[j] = Motion { angle: self.sensors.joint_angle[j], speed: 0.0 };
+        }
+    }
+
+    /// Whether targets move joint `j`.
+    fn leads(&self, j: usize) -> bool {
+        !self.start_up.begins() && is_enabled(&self.sensors, j)
+    }
+
+    /// A joint whose drive has no torque, or moves by itself, is where it is: what comes next begins there.
+    fn follow_the_unable(&mut self) {
+        for j in 0..self.robot.joints.len() {
+            if !self.leads(j) {
+                self.last[j] = Motion { angle: self.sensors.joint_angle[j], speed: 0.0 };
+            }
         }
     }
 
@@ -207,7 +244,7 @@ impl JointLoop {
             return;
         }
         // A joint that was not read is where it is believed to be.
-        for j in (0..self.robot.joints.len()).filter(|&j| self.guard.reads(j)) {
+        for j in (0..self.robot.joints.len()).filter(|&j| self.guard.reads(j) && self.leads(j)) {
             let error = (self.last[j].angle - self.sensors.joint_angle[j]).abs();
             let limit =
                 following_limit(self.system.following_error, self.system.following_time, self.last[j].speed);
@@ -231,13 +268,26 @@ impl JointLoop {
         self.command.targets.header = header;
         self.command.targets.mode = match self.state {
             State::Off => JointMode::Off,
+            _ if self.start_up.state() == StartUp::Homing => JointMode::Home,
             State::Hold | State::Stop(_) => JointMode::Hold,
             State::Track => JointMode::Track,
         } as u64;
         for j in 0..self.robot.joints.len() {
             self.command.targets.angle[j] = self.last[j].angle;
             self.command.targets.speed[j] = self.last[j].speed;
+            let wanted = match self.state {
+                _ if self.reset.trip != 0 => Wanted::Stop,
+                _ => self.start_up.wanted(j, &self.sensors),
+            };
+            self.command.control[j] = controlword(self.sensors.drive_status[j] as u16, wanted).into();
         }
         encode_targets(&self.robot.layout, &self.command, &mut self.frames);
     }
+}
+
+/// Fault of the drive of joint `j`: joint and error code, as in [`EventCode::DriveTripped`].
+fn fault(sensors: &Sensors, j: usize) -> Option<u64> {
+    let state = cia402::state_of(sensors.drive_status[j] as u16);
+    let broken = matches!(state, Some(cia402::State::Fault | cia402::State::FaultReaction));
+    broken.then(|| j as u64 + (u64::from(sensors.drive_error[j]) << 16))
 }

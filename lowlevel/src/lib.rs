@@ -7,6 +7,7 @@
 //! | finite? fresh? in range? slow enough? following? | [`JointLoop::send`], [`limits`] |
 //! | controlled stop when targets stay away | [`braking`] |
 //! | targets → frames of the bus; watchdog reset | [`JointLoop::send`] |
+//! | power, references, drives, force sensors: until the robot stands | [`start_up`] |
 //!
 //! What is at the far end of the bus is behind the trait [`Fieldbus`]: shared memory or CAN lines to a simulated
 //! robot, or a robot.
@@ -21,6 +22,7 @@ mod line_guard;
 mod reading;
 mod sercos_bus;
 mod simulated_bus;
+pub mod start_up;
 
 pub use fieldbus::Fieldbus;
 pub use joint_loop::JointLoop;

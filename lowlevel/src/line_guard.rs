@@ -11,6 +11,7 @@
 //! bus is a stop and no power ([`EventCode::BusOff`]), until it takes part again.
 
 use config::{Robot, System};
+use drives::cia402::REFERENCED;
 use fieldbus::{ErrorFrame, ErrorState};
 use messages::event::Refused;
 use messages::frames::Received;
@@ -118,7 +119,10 @@ impl LineGuard {
             let node = &self.nodes[i];
             let mut heard = frames.is_some() && received.complete(i);
             // Without power a joint may be moved by hand, and nobody acts on what is read.
-            let check = powered && node.heard;
+            // A joint that has found out where it is reads another angle from one cycle to the next.
+            let turned = |&j: &usize| self.believed.drive_status[j] ^ sensors.drive_status[j];
+            let found = node.reads.joints.iter().any(|j| turned(j) & u32::from(REFERENCED) != 0);
+            let check = powered && node.heard && !found;
             if check && !self.bounds.believes(&node.reads, &self.believed, sensors, node.missed + 1) {
                 node.reads.copy(&self.believed, sensors);
                 self.refuse(Refused::Jump, 1);

@@ -1,6 +1,7 @@
 //! The joint loop's transition table and its last word on every command, on Lola's limits.
 
 use config::{Robot, System};
+use drives::cia402::{self, REFERENCED, status_of};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::State;
 use messages::frames::{DriveCommand, decode_targets, encode_sensors};
@@ -26,6 +27,7 @@ impl Rig {
         let robot = Robot::load(&root.join("robots/lola")).unwrap();
         let system = System::load(&root.join("system.toml")).unwrap();
         let mut drives = Sensors { power: 1, ..Sensors::default() };
+        drives.drive_status.fill(u32::from(status_of(cia402::State::OperationEnabled) | REFERENCED));
         for (j, q) in robot.poses["stand"].iter().enumerate() {
             drives.joint_angle[j] = *q;
         }

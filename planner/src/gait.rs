@@ -110,8 +110,13 @@ impl Planner {
             self.confirm(state);
         }
         let gait = self.gait_state(tick, state);
+        let held = gait == GaitState::Idle && state.is_some_and(|s| s.not_standing == 1);
         for command in commands {
-            self.take(command, gait);
+            if held && walks(command) {
+                self.event(EventCode::NotStanding, u64::from(command.address().1));
+            } else {
+                self.take(command, gait);
+            }
         }
         let made = match (state, self.due(tick, gait)) {
             (Some(state), due) => self.make(tick, gait, state, due),
@@ -198,7 +203,10 @@ impl Planner {
             | Command::Parameter(_)
             | Command::Fixate(_)
             | Command::HeadJoints(_)
-            | Command::HeadRest => return,
+            | Command::HeadRest
+            | Command::Home
+            | Command::ZeroForce
+            | Command::Lower(_) => return,
         };
         match taken {
             Some((Wish::Walk, Some(_))) if !self.tasks.walk(gait == GaitState::Standing) => {
@@ -401,6 +409,12 @@ impl Planner {
             self.events.push((code, detail));
         }
     }
+}
+
+/// Whether a command moves the robot.
+fn walks(command: &Command) -> bool {
+    use Command::{Distance, Platform, Stand, Start, Velocity};
+    matches!(command, Stand | Start | Velocity(_) | Distance(_) | Platform(_))
 }
 
 /// Where the robot stands before its first plan, and the heights of its soles over their mean; `None` if the

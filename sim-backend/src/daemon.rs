@@ -5,8 +5,10 @@
 
 use crate::far_end::FarEnd;
 use crate::{SimBackend, far_end};
+use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Writer};
+use messages::command::Domain;
 use messages::topics::{POWER, SIM_STATE};
 use messages::{Command, EventCode, Header, Power, Process, SimState};
 use realtime::clock;
@@ -28,7 +30,11 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         power: d.space.reader(&POWER)?,
         state: d.space.writer(&SIM_STATE)?,
         commands: connect(&d.space)?,
+        timeline: Timeline::new(&d.setup.scene, &[Domain::Sim]),
     };
+    if ports.state.epoch() > 1 {
+        ports.timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
+    }
     let mut sim = SimBackend::new(&d.setup.robot, &d.setup.scene)?;
     d.report(Header::default(), EventCode::Started, 0);
     let (frames, _) = sim.step(None, None);
@@ -79,13 +85,19 @@ struct Ports {
     power: Reader<Power>,
     state: Writer<SimState>,
     commands: Commands,
+    timeline: Timeline,
 }
 
 /// One bus cycle; returns its header.
 fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
-    while let Some(command) = (p.commands)() {
-        if let Command::Push(push) = command {
-            sim.push(&push);
+    let tick = p.bus.held().map_or(0, |frames| frames.header.tick);
+    while let Some(command) = p.timeline.due(tick).or_else(&mut p.commands) {
+        match command {
+            Command::Push(push) => sim.push(&push),
+            Command::Lower(way) if !sim.lower(&way) => {
+                d.report(Header { tick, ..Header::default() }, EventCode::CommandRefused, command.address().1.into());
+            }
+            _ => {}
         }
     }
     let (frames, state) = sim.step(p.bus.held(), p.power.latest());

@@ -157,8 +157,9 @@ impl Shaft {
         let found = self.drive.friction.sliding(self.speed, self.drive.motor.torque(current));
         let before = Sliding { dry: self.step.dry, viscous: self.step.viscous };
         let Sliding { dry, viscous } = *found.as_ref().unwrap_or(&before);
-        let brake = if given.powered { 0.0 } else { self.brake() };
-        let motor = self.motor_line(h, given.powered, current);
+        let powered = given.drives(self.motor);
+        let brake = if powered { 0.0 } else { self.brake() };
+        let motor = self.motor_line(h, powered, current);
         self.step = Step { motor, dry, coulomb: dry + brake, viscous, ..self.step };
         found.map(|_| ())
     }

@@ -22,6 +22,8 @@ use crate::drive::{Drive, Motion};
 use crate::feet::Feet;
 use crate::implicit::Step;
 use crate::layout::Layout;
+pub use crate::outside::Outside;
+use crate::outside::{at_base, outside_force};
 use crate::sensors::carried;
 use crate::train::{Fault, Given, Train, rotors};
 
@@ -74,15 +76,6 @@ pub struct Snapshot {
     pub specific_force: Vector3<f64>,
     /// \[rad/s^2\] @torso
     pub angular_acceleration: Vector3<f64>,
-}
-
-/// What acts on the robot besides the ground.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Outside {
-    /// \[N\] @world Push at the torso's own centre of gravity.
-    pub push: [f64; 3],
-    /// Motor supply.
-    pub powered: bool,
 }
 
 impl Plant {
@@ -149,6 +142,15 @@ impl Plant {
 
     /// Torso upright over flat soles, nodes pressed in by the robot's weight, at rest.
     pub fn standing(&mut self, joints: &[f64]) -> Vec<f64> {
+        self.upright(joints, None)
+    }
+
+    /// Torso upright, soles `height` \[m\] over the ground, at rest.
+    pub fn hanging(&mut self, joints: &[f64], height: f64) -> Vec<f64> {
+        self.upright(joints, Some(height))
+    }
+
+    fn upright(&mut self, joints: &[f64], height: Option<f64>) -> Vec<f64> {
         let l = self.layout;
         let mut x = vec![0.0; l.len()];
         x[6] = 1.0;
@@ -156,9 +158,14 @@ impl Plant {
         self.scratch.q[7..].copy_from_slice(joints);
         self.model.forward_kinematics(&mut self.data, &self.scratch.q);
         self.scratch.seen.fill(f64::NAN);
-        let depth = self.feet.deflection(self.model.mass() * -multibody::GRAVITY.z);
+        let depth = match height {
+            None => self.feet.deflection(self.model.mass() * -multibody::GRAVITY.z),
+            Some(height) => -height,
+        };
         x[2] = -self.feet.lowest(&self.model, &self.data) - depth;
-        self.feet.press(&self.model, &self.data, depth, &mut x[l.layer()]);
+        if height.is_none() {
+            self.feet.press(&self.model, &self.data, depth, &mut x[l.layer()]);
+        }
         x[7..7 + l.joints].copy_from_slice(&joints[..l.joints]);
         if let Some(train) = &self.train {
             train.relax(joints, &mut x[l.rotor_angle()]);
@@ -185,7 +192,7 @@ impl Plant {
         if l.joints > 0 && self.train.as_ref().is_some_and(Train::is_sampled) {
             self.load(0.0, x, drives);
             let Self { data, scratch, train: Some(train), .. } = self else { return };
-            let given = given(&l, x, &scratch.reference, outside.powered);
+            let given = given(&l, x, &scratch.reference, outside);
             train.load(&given, data);
             train.sample(cycle, &given);
         }
@@ -203,9 +210,9 @@ impl Plant {
             self.base_rate(x, outside);
         } else {
             let Scratch { v, force, acceleration, .. } = scratch;
-            outside_force(model, data, feet, outside, x, force);
+            outside_force(model, data, feet, outside, (x, &x[l.speed()]), force);
             if let Some(train) = train {
-                let given = given(&l, x, &scratch.reference, outside.powered);
+                let given = given(&l, x, &scratch.reference, outside);
                 train.load(&given, data);
                 train.explicit(&given, data, &mut force[6..], &mut dx[l.current()]);
                 model.forward_dynamics_here(data, v, force, acceleration);
@@ -365,8 +372,8 @@ impl Plant {
             return self.base_rate(x, outside);
         };
         let Scratch { v, force, acceleration, bias, .. } = scratch;
-        outside_force(model, data, feet, outside, x, force);
-        let given = given(&l, x, &scratch.reference, outside.powered);
+        outside_force(model, data, feet, outside, (x, &x[l.speed()]), force);
+        let given = given(&l, x, &scratch.reference, outside);
         train.load(&given, data);
         train.free_rotors(data);
         model.dynamics_here(data, v, bias);
@@ -400,10 +407,9 @@ impl Plant {
         if let Some(train) = train {
             train.load_prescribed(&q[7..], &v[6..], data);
         }
-        let pushed = Vector3::from_column_slice(&x[..3]) + orientation(x) * model.base_cog();
-        let push = Vector3::from(outside.push);
         let (force, moment) = feet.total(model, data, &Vector3::zeros(), None);
-        let base_force = at_base(x, &(force + push), &(moment + pushed.cross(&push)));
+        let others = outside.total(model, x, &x[self.layout.speed()]);
+        let base_force = at_base(x, &(force + others.0), &(moment + others.1));
         let (m, bias) = model.base_dynamics_here(data, v, joint_acceleration);
         let a = m.cholesky().map_or(Vector6::repeat(f64::NAN), |c| c.solve(&(base_force - bias)));
         acceleration[..6].copy_from_slice(a.as_slice());
@@ -446,28 +452,14 @@ impl Scratch {
     }
 }
 
-/// Generalized force of ground and push (2.40).
-fn outside_force(model: &Model, data: &Data, feet: &Feet, outside: &Outside, x: &[f64], force: &mut [f64]) {
-    force.fill(0.0);
-    feet.add_to(model, data, force);
-    if outside.push == [0.0; 3] {
-        return;
-    }
-    let push = Vector3::from(outside.push);
-    let arm = orientation(x) * model.base_cog();
-    let base = at_base(x, &push, &(Vector3::from_column_slice(&x[..3]) + arm).cross(&push));
-    for (f, b) in force.iter_mut().zip(base.iter()) {
-        *f += b;
-    }
-}
-
-fn given<'a>(l: &Layout, x: &'a [f64], reference: &'a [Motion], powered: bool) -> Given<'a> {
+fn given<'a>(l: &Layout, x: &'a [f64], reference: &'a [Motion], outside: &Outside) -> Given<'a> {
     Given {
         joint: (&x[l.pose()][7..], &x[l.speed()][6..]),
         rotor: (&x[l.rotor_angle()], &x[l.rotor_speed()]),
         current: &x[l.current()],
         reference,
-        powered,
+        powered: outside.powered,
+        braked: outside.braked,
     }
 }
 
@@ -481,13 +473,4 @@ fn quaternion_rate(x: &[f64], w: &[f64]) -> [f64; 4] {
     let o = nalgebra::Quaternion::new(x[6], x[3], x[4], x[5]);
     let w = nalgebra::Quaternion::new(0.0, w[0], w[1], w[2]);
     (o * w * 0.5).coords.into()
-}
-
-/// Force and moment about the torso's origin, torso axes, of a force \[N\] and its moment about the world's origin
-/// \[N m\], world axes.
-fn at_base(x: &[f64], force: &Vector3<f64>, moment: &Vector3<f64>) -> Vector6<f64> {
-    let inverse = orientation(x).inverse();
-    let r = Vector3::from_column_slice(&x[..3]);
-    let (f, m) = (inverse * force, inverse * (moment - r.cross(force)));
-    Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z)
 }

@@ -5,18 +5,20 @@ use std::error::Error;
 use config::bus_fault::{BusFault, Way};
 use config::{Robot, Scene};
 use fieldbus::Injector;
-use messages::command::PushCommand;
+use messages::command::{LowerCommand, PushCommand};
 use messages::frames::{DriveCommand, decode_targets, encode_sensors};
 use messages::{BusFrames, EventCode, Imu, JointMode, Power, Sensors, SimState, Wrench};
 use multibody::Frame;
 use nalgebra::Vector3;
 
+use crate::crane::Crane;
 use crate::drive::{Drive, Motion};
 use crate::hearing::{Follows, Hearing};
 use crate::integrate::Stepper;
 use crate::plant::{Outside, Plant, Snapshot, orientation};
 use crate::power::PowerLine;
 use crate::sensors::{SensorSet, Truth, carried};
+use crate::stages::{Action, Stages, Told};
 use crate::terrain;
 
 /// Tilt of the torso \[rad\] from which a robot counts as fallen; it is also fallen below half its initial height.
@@ -41,6 +43,8 @@ pub struct SimBackend {
     sensor_frames: [Frame; 2],
     sensor_set: SensorSet,
     power: PowerLine,
+    stages: Stages,
+    crane: Option<Crane>,
     /// \[rad\] By how much the encoders of each joint read too much.
     offset: Vec<f64>,
     command: DriveCommand,
@@ -74,7 +78,12 @@ impl SimBackend {
         let pose = &robot.poses[&scene.start_pose];
         let real = really(robot, scene);
         let mut plant = Plant::new(&real, terrain::environment(scene)?, scene.depth, pose)?;
-        let state = plant.standing(pose);
+        let state = match &scene.crane {
+            None => plant.standing(pose),
+            Some(crane) => plant.hanging(pose, crane.height),
+        };
+        let drives: Vec<Drive> = pose.iter().map(|&q| Drive::resting(q)).collect();
+        let crane = scene.crane.map(|crane| hooked(&crane, &mut plant, &state, &drives));
         let sensor = |i: usize| plant.model().frame(&robot.feet[i].sensor_link, robot.feet[i].sensor);
         let sensor_frames = [sensor(0)?, sensor(1)?];
         let hanging = carried::hanging(plant.model(), &sensor_frames, pose);
@@ -83,7 +92,7 @@ impl SimBackend {
             sensor_set: SensorSet::new(&scene.sensors, robot, &hanging, scene.seed, scene.cycle),
             last_good: state.clone(),
             stepper: stepper(scene, state.len()),
-            drives: pose.iter().map(|&q| Drive::resting(q)).collect(),
+            drives,
             goals: pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect(),
             motions: pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect(),
             initial_height: state[2],
@@ -92,6 +101,8 @@ impl SimBackend {
             plant,
             state,
             power: PowerLine::default(),
+            stages: Stages::new(robot, scene, pose),
+            crane,
             offset: offsets(robot, scene),
             command: DriveCommand::default(),
             followed: 0,
@@ -106,7 +117,7 @@ impl SimBackend {
             event: None,
         };
         let snapshot = sim.plant.snapshot(0.0, &sim.state, &sim.drives, &Outside::default());
-        sim.measure(&snapshot, [0.0; 3], false);
+        sim.measure(&snapshot, &Outside::default(), false);
         Ok(sim)
     }
 
@@ -128,6 +139,11 @@ impl SimBackend {
     /// Begins a push now.
     pub fn push(&mut self, push: &PushCommand) {
         self.push = Some((*push, self.time() + push.duration));
+    }
+
+    /// Lowers the crane from now on; whether there is one.
+    pub fn lower(&mut self, way: &LowerCommand) -> bool {
+        self.crane.as_mut().map(|crane| crane.lower(way.distance)).is_some()
     }
 
     /// The truth about the robot, after the last step.
@@ -190,9 +206,13 @@ impl SimBackend {
     fn advance(&mut self, frames: Option<&BusFrames>, power: Option<&Power>) {
         let powered = self.power.step(power);
         let dt = self.scene.cycle;
-        let mut outside = Outside { push: self.current_push(), powered: false };
+        let mut outside = Outside { push: self.current_push(), ..Outside::default() };
+        if let Some(crane) = &mut self.crane {
+            outside.rope = Some(crane.step(&self.state, dt));
+        }
         if !self.fallen {
-            outside.powered = self.begin_cycle(frames, powered);
+            outside.powered = powered;
+            outside.braked = self.begin_cycle(frames, powered);
             self.last_good.copy_from_slice(&self.state);
             self.plant.sample(dt, &self.state, &self.drives, &outside);
             let h = dt / f64::from(self.scene.substeps);
@@ -210,13 +230,13 @@ impl SimBackend {
             self.sensors.header = frames.header;
             self.sim_state.header = frames.header;
         }
-        if self.measure(&snapshot, outside.push, powered) {
+        if self.measure(&snapshot, &outside, powered) {
             encode_sensors(&self.robot.layout, &self.sensors, &mut self.frames);
         }
     }
 
-    /// Chooses how each joint is to move during this cycle; true if the drives may act.
-    fn begin_cycle(&mut self, frames: Option<&BusFrames>, powered: bool) -> bool {
+    /// Chooses how each joint is to move during this cycle; the drives without torque, one bit each.
+    fn begin_cycle(&mut self, frames: Option<&BusFrames>, powered: bool) -> u64 {
         let dt = self.scene.cycle;
         let new = frames.filter(|f| f.header.tick > self.followed);
         let received = new.map(|f| decode_targets(&self.robot.layout, f, &mut self.command));
@@ -227,21 +247,33 @@ impl SimBackend {
         if let Some(node) = self.hearing.stopped_now() {
             self.event.get_or_insert((EventCode::NodeStopped, node as u64));
         }
-        for j in 0..self.drives.len() {
-            let (from, joint) = (self.goals[j], &self.robot.joints[j]);
-            let angle = self.command.targets.angle[j] - self.offset[j];
+        let DriveCommand { control, targets } = &self.command;
+        let motors = self.plant.layout().motors > 0;
+        let current = motors.then_some(&self.sensors.motor_current[..]);
+        let told = Told { control, mode: targets.mode };
+        self.stages.step(&told, powered, dt, &self.goals, &self.motions, current);
+        let mut braked = 0;
+        for (j, joint) in self.robot.joints.iter().enumerate() {
+            let (from, action) = (self.goals[j], self.stages.action(j));
+            let angle = targets.angle[j] - self.offset[j] + self.stages.origin(j);
             let follows = self.hearing.follows(j, angle - from.angle, joint.speed_limit * dt);
-            self.drives[j] = match (driven, follows) {
-                (false, _) if self.plant.layout().joints > 0 => Drive::resting(self.motions[j].angle),
-                (false, _) => Drive::brake(joint, from, dt),
-                (true, Follows::Target) => Drive::follow(from, angle, self.command.targets.speed[j], dt),
-                (true, Follows::LastSpeed) => {
+            self.drives[j] = match (action, follows) {
+                (Action::Brake, _) if self.plant.layout().joints > 0 => Drive::resting(self.motions[j].angle),
+                (Action::Brake | Action::Ramp, _) => Drive::brake(joint, from, dt),
+                (Action::Search(speed), _) => {
+                    let change = joint.braking * dt;
+                    let speed = from.speed + (speed - from.speed).clamp(-change, change);
+                    Drive::follow(from, from.angle + 0.5 * (from.speed + speed) * dt, speed, dt)
+                }
+                (Action::Follow, Follows::Target) => Drive::follow(from, angle, targets.speed[j], dt),
+                (Action::Follow, Follows::LastSpeed) => {
                     Drive::follow(from, from.angle + from.speed * dt, from.speed, dt)
                 }
-                (true, Follows::Stop) => Drive::brake(joint, from, dt),
+                (Action::Follow, Follows::Stop) => Drive::brake(joint, from, dt),
             };
+            braked |= u64::from(action == Action::Brake) << j;
         }
-        driven
+        braked
     }
 
     /// Checks and tidies the state the steps have left.
@@ -303,7 +335,7 @@ impl SimBackend {
     }
 
     /// What the sensors see, and the truth beside it; false if a reading is no number and must not go on the bus.
-    fn measure(&mut self, s: &Snapshot, push: [f64; 3], powered: bool) -> bool {
+    fn measure(&mut self, s: &Snapshot, outside: &Outside, powered: bool) -> bool {
         let x = &self.state;
         let truth = &mut self.sim_state;
         let mut seen = Truth { motor_current: [f64::NAN; messages::MAX_JOINTS], ..Truth::default() };
@@ -314,9 +346,12 @@ impl SimBackend {
         (seen.motor_angle, seen.motor_speed) = (seen.joint_angle, seen.joint_speed);
         self.plant.motors(x, &mut seen.motor_angle, &mut seen.motor_speed, &mut seen.motor_current);
         truth.motor_angle = seen.motor_angle;
-        for (j, offset) in self.offset.iter().enumerate().filter(|(_, offset)| **offset != 0.0) {
-            seen.joint_angle[j] += offset;
-            seen.motor_angle[j] += offset;
+        for (j, offset) in self.offset.iter().enumerate() {
+            let offset = offset - self.stages.origin(j);
+            if offset != 0.0 {
+                seen.joint_angle[j] += offset;
+                seen.motor_angle[j] += offset;
+            }
         }
         for i in 0..2 {
             let pose = self.plant.frame_pose(&self.sensor_frames[i]);
@@ -343,6 +378,7 @@ impl SimBackend {
         };
         let report = self.sensor_set.measure(&seen, &mut self.sensors);
         self.sensors.power = u64::from(powered);
+        self.stages.report(&mut self.sensors);
         if report.invalid > 0 {
             self.event.get_or_insert((EventCode::SensorNotFinite, report.invalid.into()));
         } else if report.clipped > 0 {
@@ -356,7 +392,8 @@ impl SimBackend {
         truth.com = s.com.into();
         truth.foot_wrench = s.foot_wrench;
         truth.feet = s.feet;
-        truth.push = push;
+        truth.push = outside.push;
+        truth.rope = outside.rope.map_or(0.0, |rope| rope.tension(x, &x[self.plant.layout().speed()]));
         truth.power = u64::from(powered);
         truth.fallen = u64::from(self.fallen);
         report.invalid == 0
@@ -372,6 +409,15 @@ fn really(robot: &Robot, scene: &Scene) -> Robot {
         pads.modulus *= factor;
     }
     robot
+}
+
+/// The crane of a scene with its hook above the centre of gravity, which hangs in balance.
+fn hooked(crane: &config::crane::Crane, plant: &mut Plant, state: &[f64], drives: &[Drive]) -> Crane {
+    let snapshot = plant.snapshot(0.0, state, drives, &Outside::default());
+    let torso = Vector3::from_column_slice(&state[..3]);
+    let mut hook = snapshot.com - torso;
+    hook.z = crane.hook;
+    Crane::new(crane, hook, torso + hook, plant.model().mass())
 }
 
 /// \[rad\] By how much the encoders of each joint read too much.

@@ -96,6 +96,15 @@ pub struct Given<'a> {
     pub reference: &'a [Motion],
     /// Whether the motor supply is on; without it the terminals are shorted and brakes hold.
     pub powered: bool,
+    /// Drives without torque all the same, one bit each.
+    pub braked: u64,
+}
+
+impl Given<'_> {
+    /// Whether a drive's power stage is on.
+    pub(crate) fn drives(&self, drive: usize) -> bool {
+        self.powered && self.braked >> drive & 1 == 0
+    }
 }
 
 impl Train {
@@ -183,14 +192,14 @@ impl Train {
     pub fn explicit(&mut self, given: &Given<'_>, data: &mut Data, torque: &mut [f64], rate: &mut [f64]) {
         for (k, s) in self.shafts.iter().enumerate() {
             let current = given.current[k];
-            let voltage = if given.powered { s.voltage(current) } else { 0.0 };
+            let voltage = if given.drives(k) { s.voltage(current) } else { 0.0 };
             rate[k] = s.drive.motor.current_rate(current, voltage, s.speed); // (2.57)
             let driving = s.drive.motor.torque(current);
             let friction = s.drive.friction.torque(s.speed, driving, SLOW).unwrap_or_else(|why| {
                 self.fault.get_or_insert(Fault { drive: k, why: Why::Friction(why) });
                 0.0
             });
-            let brake = if given.powered { 0.0 } else { s.brake() * (s.speed / SLOW).clamp(-1.0, 1.0) };
+            let brake = if given.drives(k) { 0.0 } else { s.brake() * (s.speed / SLOW).clamp(-1.0, 1.0) };
             s.apply(given, driving + friction - brake, data, torque);
         }
     }

@@ -7,7 +7,7 @@ use config::{Setup, root};
 use drives::Resolution;
 use environment::Environment;
 use messages::frames::{DriveCommand, encode_targets};
-use messages::{BusFrames, JointMode, JointTargets, Power};
+use messages::{BusFrames, JointMode, JointTargets, MAX_JOINTS, Power};
 use realtime::allocations::{arm, counted, disarm};
 use rig::Rig;
 use sim_backend::SimBackend;
@@ -82,7 +82,7 @@ fn cycles_of_the_simulated_robot() {
                     targets.header.tick = tick;
                     encode_targets(
                         &setup.robot.layout,
-                        &DriveCommand { targets, ..DriveCommand::default() },
+                        &DriveCommand { targets, control: [if tick == 1 { 0x06 } else { 0x0F }; MAX_JOINTS] },
                         &mut frames,
                     );
                     sim.step(Some(&frames), Some(&Power { toggle: tick, on: 1, ..Power::default() }));

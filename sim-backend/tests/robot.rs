@@ -10,6 +10,11 @@ fn setup() -> Setup {
     Setup::load(&root(None), "stand").unwrap()
 }
 
+/// Controlwords that switch all drives on.
+fn enabling(tick: u64) -> [u32; messages::MAX_JOINTS] {
+    [if tick == 1 { 0x06 } else { 0x0F }; messages::MAX_JOINTS]
+}
+
 /// Holds the start pose for `cycles` with the supply on, `until` that cycle; gives the last truth and sensors.
 fn hold(sim: &mut SimBackend, setup: &Setup, cycles: u64, until: u64) -> (SimState, Sensors) {
     let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
@@ -21,7 +26,7 @@ fn hold(sim: &mut SimBackend, setup: &Setup, cycles: u64, until: u64) -> (SimSta
         targets.header.tick = tick;
         encode_targets(
             &setup.robot.layout,
-            &DriveCommand { targets, ..DriveCommand::default() },
+            &DriveCommand { targets, control: enabling(tick) },
             &mut frames,
         );
         let power = Power { toggle: tick.min(until), on: 1, ..Power::default() };

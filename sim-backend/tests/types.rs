@@ -5,7 +5,7 @@ use config::scene::Integrator;
 use config::{Setup, root};
 use messages::command::PushCommand;
 use messages::frames::{DriveCommand, encode_targets};
-use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, SimState};
+use messages::{BusFrames, EventCode, JointMode, JointTargets, MAX_JOINTS, Power, SimState};
 use sim_backend::SimBackend;
 
 fn setup(depth: u8) -> Setup {
@@ -35,7 +35,7 @@ fn cycles(
         change(tick, &mut targets);
         encode_targets(
             &setup.robot.layout,
-            &DriveCommand { targets, ..DriveCommand::default() },
+            &DriveCommand { targets, control: [if tick == from { 0x06 } else { 0x0F }; MAX_JOINTS] },
             &mut frames,
         );
         let (answer, truth) =

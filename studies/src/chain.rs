@@ -43,6 +43,8 @@ pub struct Chain {
     walk: Timeline,
     system: Timeline,
     head: Timeline,
+    joint: Timeline,
+    simulated: Timeline,
     due: Vec<Command>,
     planner: Planner,
     controller: Controller,
@@ -71,6 +73,8 @@ impl Chain {
             walk: Timeline::new(scene, &[Domain::Walk]),
             system: Timeline::new(scene, &[Domain::System]),
             head: Timeline::new(scene, &[Domain::Head]),
+            joint: Timeline::new(scene, &[Domain::System, Domain::Joint]),
+            simulated: Timeline::new(scene, &[Domain::Sim]),
             due: Vec::with_capacity(64),
             planner,
             controller: Controller::new(robot, gait, scene.cycle)?,
@@ -153,12 +157,23 @@ impl Chain {
         let told = std::iter::from_fn(|| self.controller.take_event());
         c.events.extend(told.map(|(code, detail)| (Process::Controller, code, detail)));
 
+        take_due(&mut self.joint, tick, &mut self.due);
+        self.due.iter().for_each(|command| self.joint_loop.command(command));
         let (frames, reset) = self.joint_loop.send(Some(&c.joint_targets), None);
         take_due(&mut self.system, tick, &mut self.due);
         let before = self.watchdog.supply();
         c.power = *self.watchdog.step(&Inputs { reset: Some(reset), commands: &self.due });
         let event = watchdog::supply_event(before, self.watchdog.supply());
         c.events.extend(event.map(|(code, detail)| (Process::Watchdog, code, detail)));
+        take_due(&mut self.simulated, tick, &mut self.due);
+        for command in &self.due {
+            if let Command::Lower(way) = command
+                && !self.sim.lower(way)
+            {
+                let refused = (EventCode::CommandRefused, u64::from(command.address().1));
+                c.events.push((Process::SimBackend, refused.0, refused.1));
+            }
+        }
         let (answer, sim_state) = self.sim.step(Some(frames), Some(&c.power));
         (self.answer, c.sim_state) = (*answer, *sim_state);
         let told = std::iter::from_fn(|| self.joint_loop.take_event());

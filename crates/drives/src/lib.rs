@@ -9,22 +9,27 @@
 //!   (5.41)-(5.52), continuous and sampled.
 //! - [`lookup`]: tables of a linkage with linear interpolation; [`FixedTable`]: the same in 32-bit integers, as Lola's local
 //!   controllers have them.
+//! - [`cia402`]: states of a drive, seen from itself and from its master; [`homing`]: the reference of its angle;
+//!   [`thermal`]: temperature of its winding.
 //! - [`fit`]: friction parameters from efficiencies (2.62); off-line, it allocates.
 //!
 //! Pure mathematics: no file, no clock, and no allocation after construction. All quantities of a motor are those of its
 //! rotor relative to its stator: angle, speed \[rad/s\] and torque count about the rotor's axis, not about the joint's.
 
 mod ankle;
+pub mod cia402;
 mod control;
 pub mod elastic_joint;
 mod elasticity;
 pub mod fit;
 pub mod fixed_table;
 mod friction;
+pub mod homing;
 mod inverse;
 mod knee;
 pub mod lookup;
 mod motor;
+pub mod thermal;
 mod transmission;
 mod turn;
 

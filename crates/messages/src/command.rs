@@ -125,6 +125,12 @@ pub enum Command {
     Distance(DistanceCommand),
     /// `walk/platform`: climb onto a platform, or off it.
     Platform(PlatformCommand),
+    /// `joint/home`: joints that do not know their angles find them out.
+    Home,
+    /// `joint/zero_force`: the force sensors of the hanging robot read zero from now on.
+    ZeroForce,
+    /// `sim/lower`: lower the simulated robot on its crane.
+    Lower(LowerCommand),
 }
 
 /// Step parameters (thesis table 4.1).
@@ -178,6 +184,14 @@ pub struct PlatformCommand {
     pub distance: f64,
     /// \[m\] How much higher the ground is behind the edge; lower if negative.
     pub height: f64,
+}
+
+/// A way of the crane that holds the simulated robot.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LowerCommand {
+    /// \[m\] Downwards; upwards if negative.
+    pub distance: f64,
 }
 
 /// A push at the torso's centre of gravity.
@@ -235,7 +249,10 @@ impl Command {
             Self::Velocity(_) => (Domain::Walk, 4),
             Self::Distance(_) => (Domain::Walk, 5),
             Self::Platform(_) => (Domain::Walk, 6),
+            Self::Home => (Domain::Joint, 0),
+            Self::ZeroForce => (Domain::Joint, 1),
             Self::Push(_) => (Domain::Sim, 0),
+            Self::Lower(_) => (Domain::Sim, 1),
             Self::Parameter(_) => (Domain::Stabilize, 0),
             Self::Fixate(_) => (Domain::Head, 0),
             Self::HeadJoints(_) => (Domain::Head, 1),
@@ -265,7 +282,10 @@ impl Command {
             Self::Velocity(_) => "walk/velocity",
             Self::Distance(_) => "walk/distance",
             Self::Platform(_) => "walk/platform",
+            Self::Home => "joint/home",
+            Self::ZeroForce => "joint/zero_force",
             Self::Push(_) => "sim/push",
+            Self::Lower(_) => "sim/lower",
             Self::Parameter(_) => "stabilize/parameter",
             Self::Fixate(_) => "head/fixate",
             Self::HeadJoints(_) => "head/joints",

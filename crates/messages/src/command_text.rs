@@ -5,8 +5,8 @@
 //! out. Nothing here runs in a control cycle: errors are text and allocate.
 
 use crate::command::{
-    Command, DistanceCommand, FixateCommand, HeadJointsCommand, ParameterCommand, PlatformCommand,
-    PushCommand, StepCommand, VelocityCommand,
+    Command, DistanceCommand, FixateCommand, HeadJointsCommand, LowerCommand, ParameterCommand,
+    PlatformCommand, PushCommand, StepCommand, VelocityCommand,
 };
 
 /// One number of a command.
@@ -113,6 +113,14 @@ pub const COMMANDS: &[CommandInfo] = &[
         ],
         build: |v| Command::Push(PushCommand { force: [v[0], v[1], v[2]], duration: v[3] }),
     },
+    plain("joint/home", |_| Command::Home, "joints that do not know their angles find them out"),
+    plain("joint/zero_force", |_| Command::ZeroForce, "the hanging robot's force sensors read zero from now on"),
+    CommandInfo {
+        name: "sim/lower",
+        about: "lower the simulated robot on its crane",
+        fields: &[field("distance", "m", [-2.0, 2.0], None, "downwards; upwards if negative")],
+        build: |v| Command::Lower(LowerCommand { distance: v[0] }),
+    },
     CommandInfo {
         name: "stabilize/parameter",
         about: "give a parameter another value; gangwerk param does it by name",
@@ -183,6 +191,7 @@ impl Command {
             Self::Platform(p) => [p.distance, p.height, 0.0, 0.0],
             Self::Parameter(p) => [f64::from(p.number), p.value, 0.0, 0.0],
             Self::Fixate(FixateCommand { point: [x, y, z] }) => [x, y, z, 0.0],
+            Self::Lower(l) => [l.distance, 0.0, 0.0, 0.0],
             Self::HeadJoints(h) => [h.pan, h.tilt, 0.0, 0.0],
             Self::Push(p) => [p.force[0], p.force[1], p.force[2], p.duration],
             _ => [0.0; MAX_FIELDS],

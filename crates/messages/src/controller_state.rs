@@ -20,6 +20,8 @@ record! {
         phase: [u64; 2],
         /// \[1\] Whether a foot presses on the ground, by its force sensor.
         contact: [u64; 2],
+        /// \[1\] 1 while the robot does not stand on its feet yet: no walking command is taken.
+        not_standing: u64,
         /// \[m, m, rad\] @I_0 Planning frame of the active plan.
         origin: [f64; 3],
         /// \[m\] Desired centre of gravity.

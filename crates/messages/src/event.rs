@@ -122,6 +122,21 @@ pub enum EventCode {
     RingBroken = 53,
     /// The ring of the field bus is closed again.
     RingClosed = 54,
+    /// A drive has a fault of its own: controlled stop; detail: joint index + 65536 times its error code.
+    DriveTripped = 55,
+    /// A drive was not switched on, or is off while the supply is on: nothing is followed; detail: joint index.
+    DriveNotEnabled = 56,
+    /// A joint does not know its angle, so no drive is switched on; detail: joint index.
+    NotHomed = 57,
+    /// All joints know their angles; detail: cycles it took.
+    Homed = 58,
+    /// The force sensors read zero from now on; detail: what was taken away at most \[N\].
+    ForceZeroed = 59,
+    /// The force sensors cannot be set to zero: the robot does not hang still with its drives on; detail: load on its
+    /// feet \[N\].
+    ZeroRefused = 60,
+    /// A walking command was refused: the robot does not stand on its feet yet; detail: its message id.
+    NotStanding = 61,
 }
 
 /// Why a frame or a reading was refused, in the detail of [`EventCode::FrameRefused`].
@@ -141,7 +156,7 @@ pub enum Refused {
 
 impl EventCode {
     /// All codes, in order of their numbers.
-    pub const ALL: [Self; 55] = [
+    pub const ALL: [Self; 62] = [
         Self::None,
         Self::Started,
         Self::Ended,
@@ -197,6 +212,13 @@ impl EventCode {
         Self::NodeStopped,
         Self::RingBroken,
         Self::RingClosed,
+        Self::DriveTripped,
+        Self::DriveNotEnabled,
+        Self::NotHomed,
+        Self::Homed,
+        Self::ForceZeroed,
+        Self::ZeroRefused,
+        Self::NotStanding,
     ];
 
     /// The code of a number from a record.

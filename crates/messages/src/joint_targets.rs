@@ -14,6 +14,8 @@ pub enum JointMode {
     Track = 2,
     /// Come to rest as fast as the joints allow, then stay: the controlled stop.
     Stop = 3,
+    /// Joints that do not know their angles find them out.
+    Home = 4,
 }
 
 impl From<u64> for JointMode {
@@ -23,6 +25,7 @@ impl From<u64> for JointMode {
             0 => Self::Off,
             1 => Self::Hold,
             2 => Self::Track,
+            4 => Self::Home,
             _ => Self::Stop,
         }
     }

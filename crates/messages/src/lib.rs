@@ -22,6 +22,7 @@ pub mod power;
 pub mod record;
 pub mod sensors;
 pub mod sim_state;
+pub mod start_up;
 pub mod topics;
 pub mod wire;
 
@@ -37,6 +38,7 @@ pub use power::{Power, WatchdogReset};
 pub use record::{Field, Header, Read, Record, Visit, Wrench};
 pub use sensors::{Imu, Sensors};
 pub use sim_state::SimState;
+pub use start_up::StartUp;
 pub use topics::{Process, TOPICS, Topic};
 
 /// Room for joints in every record.

@@ -41,6 +41,8 @@ record! {
         imu: Imu,
         /// \[1\] 1 while the motor supply is on.
         power: u64,
+        /// \[1\] A [`StartUp`](crate::StartUp), as the joint loop left it in the cycle before.
+        start_up: u64,
         /// \[1\] Bus frames missed since start.
         frames_missed: u64,
         /// \[1\] Targets refused or limited since start.

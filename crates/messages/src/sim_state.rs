@@ -29,6 +29,8 @@ record! {
         feet: [[f64; 4]; 2],
         /// \[N\] @world External push on the torso.
         push: [f64; 3],
+        /// \[N\] Rope of the crane, 0 without one.
+        rope: f64,
         /// \[1\] 1 while the motor supply is on.
         power: u64,
         /// \[1\] 1 once the robot has fallen: torso tilted by more than 45 degrees or below half its height.

@@ -1,8 +1,8 @@
 //! Bytes of commands: golden vectors, an independent decoder, hostile bytes.
 
 use messages::command::{
-    Command, DistanceCommand, FixateCommand, HeadJointsCommand, ParameterCommand, PlatformCommand,
-    PushCommand, StepCommand, VelocityCommand,
+    Command, DistanceCommand, FixateCommand, HeadJointsCommand, LowerCommand, ParameterCommand,
+    PlatformCommand, PushCommand, StepCommand, VelocityCommand,
 };
 use messages::wire::{MAX_BYTES, decode, encode};
 use proptest::prelude::*;
@@ -26,6 +26,9 @@ enum Peer {
     HeadRest,
     Distance { distance: f64, speed: f64, acceleration: f64 },
     Platform { distance: f64, height: f64 },
+    Home,
+    ZeroForce,
+    Lower { distance: f64 },
 }
 
 impl From<Command> for Peer {
@@ -53,6 +56,9 @@ impl From<Command> for Peer {
                 Self::Distance { distance, speed, acceleration }
             }
             Command::Platform(PlatformCommand { distance, height }) => Self::Platform { distance, height },
+            Command::Home => Self::Home,
+            Command::ZeroForce => Self::ZeroForce,
+            Command::Lower(LowerCommand { distance }) => Self::Lower { distance },
         }
     }
 }
@@ -69,7 +75,10 @@ fn any_command() -> impl Strategy<Value = Command> {
             Command::Start,
             Command::Stop,
             Command::HeadRest,
+            Command::Home,
+            Command::ZeroForce,
         ]),
+        f().prop_map(|distance| Command::Lower(LowerCommand { distance })),
         (any::<u32>(), f())
             .prop_map(|(number, value)| Command::Parameter(ParameterCommand { number, value })),
         prop::array::uniform3(f()).prop_map(|point| Command::Fixate(FixateCommand { point })),
@@ -145,7 +154,7 @@ fn every_cut_and_every_surplus_is_an_error() {
 
 #[test]
 fn unknown_commands_are_named_as_such() {
-    for n in [16u32, 255, 1 << 16, u32::MAX] {
+    for n in [19u32, 255, 1 << 16, u32::MAX] {
         let error = decode(&n.to_le_bytes()).unwrap_err().to_string();
         assert!(error.starts_with("not a command") && error.contains(&n.to_string()), "{error}");
     }

@@ -8,7 +8,8 @@
 //!
 //! The strain gauges see what the bodies below press on the ankle: F = F_c - F_i. It is set to zero while hanging, where
 //! F_c = 0: F = F_c - F_i + F_0 (errata 1, 4.13). A foot that stands still and level reads F_c exactly; one that is
-//! tilted, or swings, does not. Then: anti-aliasing filter, noise, converter, range, dead time.
+//! tilted, or swings, does not. Strain gauges have an
+//! offset, too, which goes with the zero that the joint loop takes while the robot hangs. Then: anti-aliasing filter, noise, converter, range, dead time.
 
 use messages::Wrench;
 
@@ -23,6 +24,8 @@ pub struct ForceTorque {
     inertia: bool,
     /// Wrench that is added: F_0, T_0, if it was set to zero while hanging.
     zero: Option<[f64; 6]>,
+    /// Read too much.
+    offset: [f64; 2],
     low_pass: [LowPass<1>; 6],
     converters: [Converter; 6],
     latency: Latency<[f64; 6]>,
@@ -44,6 +47,7 @@ impl ForceTorque {
         Self {
             inertia: errors.inertia,
             zero: (errors.inertia && errors.bias_compensation).then(|| components(hanging)),
+            offset: errors.offset,
             low_pass: std::array::from_fn(|_| LowPass::new(errors.filter_time, cycle)),
             converters: std::array::from_fn(converter),
             latency: Latency::new(errors.delay, 0.0, cycle),
@@ -66,6 +70,7 @@ impl ForceTorque {
             if let Some(zero) = &self.zero {
                 x[i] += zero[i];
             }
+            x[i] += self.offset[i / 3];
             let [filtered] = self.low_pass[i].filter([x[i]]);
             x[i] = self.converters[i].convert(filtered, clipped);
         }

@@ -55,7 +55,7 @@ impl Rig {
         let x = plant.standing(&pose);
         let drives = pose.iter().map(|&q| Drive::resting(q)).collect();
         let data = Data::new(plant.model());
-        let outside = Outside { push: [0.0; 3], powered: true };
+        let outside = Outside { powered: true, ..Outside::default() };
         Self { robot, plant, depth, pose, x, drives, outside, data }
     }
 

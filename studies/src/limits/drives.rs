@@ -185,7 +185,7 @@ pub(super) fn dead_point(bench: &Bench) -> Findings {
     let mut fault = |q: f64| {
         let mut x = rest.clone();
         x[7 + drive.joints[0]] = q;
-        plant.rate(0.0, &x, &still, &Outside { push: [0.0; 3], powered: true }, &mut rate);
+        plant.rate(0.0, &x, &still, &Outside { powered: true, ..Outside::default() }, &mut rate);
         finite &= rate.iter().all(|r| r.is_finite());
         plant.take_fault()
     };

@@ -1,6 +1,7 @@
 //! The simulated robot with its supply on and all joints told to stay where they are.
 
 use config::scene::Scene;
+use drives::cia402::{ENABLE_OPERATION, SHUTDOWN};
 use messages::frames::{DriveCommand, encode_targets};
 use messages::layout::Layout;
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, SimState};
@@ -36,6 +37,8 @@ impl Held {
     pub(super) fn step(&mut self) -> (&BusFrames, &SimState) {
         self.command.targets.header.tick += 1;
         self.power.toggle += 1;
+        let word = if self.power.toggle == 1 { SHUTDOWN } else { ENABLE_OPERATION };
+        self.command.control.fill(word.into());
         encode_targets(&self.layout, &self.command, &mut self.frames);
         self.sim.step(Some(&self.frames), Some(&self.power))
     }

@@ -95,7 +95,7 @@ impl Loop {
         x[2] += 1e3;
         x[l.layer()].fill(0.0);
         (x[l.speed()][6], x[l.rotor_speed()][0]) = (link, rotor);
-        let (drives, outside) = ([Drive::resting(0.0)], Outside { push: [0.0; 3], powered: true });
+        let (drives, outside) = ([Drive::resting(0.0)], Outside { powered: true, ..Outside::default() });
         let cycle = self.sampled.map_or(1e-3, |(period, _)| period);
         let longest = STEPS[usize::from(self.sampled.is_none())];
         let (cycles, steps) = ((self.seconds / cycle) as usize, (cycle / longest).ceil() as usize);
@@ -161,6 +161,7 @@ impl Loop {
             current_limit: 1e9,
             friction: self.friction,
             elasticity: Some(Elasticity::linear(self.joint.stiffness)),
+            winding: None,
             control: JointControl {
                 law: Law::Cascade(cascade),
                 sampling: self.sampled.map_or(Sampling::Continuous, |(_, sampled)| Sampling::Cycle(sampled)),

@@ -1,0 +1,66 @@
+//! How a scene begins when the robot does not simply stand there: `[crane]` and `[drives]` of a scene.
+//!
+//! ```toml
+//! [crane] # holds the robot at the start, and is lowered by sim/lower; without it the robot stands
+//! height = 0.1 # [m] of the soles over the ground
+//! hook = 0.4 # [m] over the torso's origin, above the centre of gravity
+//! rope = 1.0 # [m]
+//! stiffness = 6e4 # [N/m]
+//! damping = 2e3 # [N s/m]
+//! speed = 0.05 # [m/s] of lowering
+//!
+//! [drives] # as they are at switch-on, protected; without it they know their angles, and nothing protects them
+//! homing = true # joints with a home switch do not know their angles; without it they do
+//! temperature = { all = 25.0 } # [deg C] of the windings; without it the surroundings'
+//! ```
+
+use crate::section::{POSITIVE, Section};
+use crate::sensors::PerJoint;
+
+/// Crane with a rope that holds the robot at the start of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crane {
+    /// \[m\] Soles over the ground at the start.
+    pub height: f64,
+    /// \[m\] Hook over the torso's origin; it lies above the centre of gravity of the start pose.
+    pub hook: f64,
+    /// \[m\] Length of the rope without load.
+    pub rope: f64,
+    /// \[N/m\] Of the rope.
+    pub stiffness: f64,
+    /// \[N s/m\] Of the rope.
+    pub damping: f64,
+    /// \[m/s\] At which it lowers and lifts.
+    pub speed: f64,
+}
+
+impl Crane {
+    pub(crate) fn build(table: &Section<'_, '_>) -> Self {
+        Self {
+            height: table.number("height", "m", 0.0..=2.0),
+            hook: table.number("hook", "m", 0.0..=2.0),
+            rope: table.number("rope", "m", 0.1..=20.0),
+            stiffness: table.number("stiffness", "N/m", 1e3..=1e7),
+            damping: table.number("damping", "N s/m", 0.0..=1e5),
+            speed: table.number("speed", "m/s", POSITIVE),
+        }
+    }
+}
+
+/// The drives of a scene as they are at switch-on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DriveStart {
+    /// Joints with a home switch do not know their angles.
+    pub homing: bool,
+    /// \[°C\] Windings; those that are not named have the temperature of the surroundings.
+    pub temperature: PerJoint,
+}
+
+impl DriveStart {
+    pub(crate) fn build(table: &Section<'_, '_>) -> Self {
+        Self {
+            homing: table.flag("homing"),
+            temperature: PerJoint::build(table, "temperature", "deg C", -40.0..=300.0),
+        }
+    }
+}

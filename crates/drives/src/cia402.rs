@@ -1,0 +1,273 @@
+//! States of a drive as in CiA 402 (IEC 61800-7-201), from both sides of the bus. Pure: one call per bus cycle.
+//!
+//! ```text
+//!  Not ready ─1─► Switch on disabled ─2─► Ready ─3─► Switched on ─4─► Operation enabled ─11─► Quick stop
+//!      ▲ 0               ▲▲▲  ▲ ◄──7──────  ▲ ◄──6───────  ▲ ◄────5────────  │  ◄────────16────────  │
+//!    start               │││  └15── Fault   └──────────────┼───────8─────────┤                       │
+//!                        ││└─────────────────10────────────┘                 │                       │
+//!                        │└──────────────────────────────────────9───────────┘                       │
+//!                        └─────────────────────────────────────────────────────────────────12────────┘
+//!  every state ─13─► Fault reaction ─14─► Fault
+//! ```
+//!
+//! | bit of the controlword | name | bit of the statusword | name |
+//! |---|---|---|---|
+//! | 0 | switch on | 0 | ready to switch on |
+//! | 1 | enable voltage | 1, 2 | switched on, operation enabled |
+//! | 2 | quick stop (0: stop) | 3 | fault |
+//! | 3 | enable operation | 4 | voltage at the power stage |
+//! | 7 | fault reset (edge) | 5 | quick stop (0: stops) |
+//! | | | 6 | switch on disabled |
+//! | | | 7 | warning |
+//! | | | 15 | angle known: the drive has its reference (maker's own bit) |
+//!
+//! Where the standard leaves a choice, it is made as a biped needs it. *Enable operation* in state Ready does transitions
+//! 3 and 4 at once. Quick stop brakes on the ramp and then holds (option code 6): a leg that lets go is a fall. A supply
+//! that goes off is no fault but transitions 9, 10 and 12: who took it away says why. Switching on takes a supply and, for
+//! transition 4 and for staying there, what the drive itself demands ([`Inputs::permit`]): a reference for its angle.
+
+/// States of a drive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum State {
+    /// The drive starts.
+    NotReady,
+    /// No voltage may be switched on.
+    SwitchOnDisabled,
+    /// Voltage may be switched on.
+    Ready,
+    /// Power stage ready, no torque: the brake holds.
+    SwitchedOn,
+    /// Targets are followed.
+    OperationEnabled,
+    /// Brakes on the ramp, then holds.
+    QuickStop,
+    /// Brakes on the ramp because of a fault.
+    FaultReaction,
+    /// No torque: the brake holds. Only the edge of a fault reset leads out.
+    Fault,
+}
+
+/// Controlword: shutdown, transitions 2, 6, 8.
+pub const SHUTDOWN: u16 = 0x06;
+/// Controlword: switch on, and disable operation: transitions 3, 5.
+pub const SWITCH_ON: u16 = 0x07;
+/// Controlword: enable operation, transitions 3 and 4, 16.
+pub const ENABLE_OPERATION: u16 = 0x0F;
+/// Controlword: disable voltage, transitions 7, 9, 10, 12.
+pub const DISABLE_VOLTAGE: u16 = 0x00;
+/// Controlword: quick stop, transition 11; elsewhere 7, 10.
+pub const QUICK_STOP: u16 = 0x02;
+/// Controlword: fault reset, transition 15, on its rising edge.
+pub const FAULT_RESET: u16 = 0x80;
+
+/// Bit of the statusword: voltage at the power stage.
+pub const VOLTAGE: u16 = 1 << 4;
+/// Bit of the statusword: warning.
+pub const WARNING: u16 = 1 << 7;
+/// Bit of the statusword: the drive knows its angle.
+pub const REFERENCED: u16 = 1 << 15;
+
+/// Why a drive has a fault: error codes of CiA 301 and 402.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u16)]
+pub enum Fault {
+    /// Current above what the power stage allows.
+    OverCurrent = 0x2310,
+    /// Winding too hot.
+    OverTemperature = 0x4310,
+    /// The joint does not follow.
+    FollowingError = 0x8611,
+}
+
+impl Fault {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::OverCurrent, Self::OverTemperature, Self::FollowingError];
+
+    /// The fault of an error code.
+    pub fn from_code(code: u16) -> Option<Self> {
+        Self::ALL.into_iter().find(|fault| *fault as u16 == code)
+    }
+
+    /// Whether the power stage may still brake on the ramp; otherwise it lets go at once, and the brake closes.
+    pub const fn ramps(self) -> bool {
+        !matches!(self, Self::OverCurrent)
+    }
+
+    /// In words.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::OverCurrent => "over-current",
+            Self::OverTemperature => "winding too hot",
+            Self::FollowingError => "following error",
+        }
+    }
+}
+
+/// What one cycle of a drive sees.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Inputs {
+    /// The controlword, if one came in this cycle; otherwise the last one holds, without an edge.
+    pub control: Option<u16>,
+    /// Voltage of the motor supply.
+    pub supply: bool,
+    /// Whether the drive may go to Operation enabled: its angle is known, or it is to find it out.
+    pub permit: bool,
+    /// What is wrong in this cycle.
+    pub fault: Option<Fault>,
+    /// The joint has come to rest.
+    pub still: bool,
+}
+
+/// The drive's side.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive {
+    state: State,
+    control: u16,
+    error: Option<Fault>,
+    supply: bool,
+}
+
+impl Default for Drive {
+    fn default() -> Self {
+        Self { state: State::NotReady, control: 0, error: None, supply: false }
+    }
+}
+
+impl Drive {
+    /// The state.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// What the last fault was, until it is reset.
+    pub fn error(&self) -> Option<Fault> {
+        self.error
+    }
+
+    /// Whether the power stage drives the motor; otherwise the brake holds it.
+    pub fn drives(&self) -> bool {
+        matches!(self.state, State::OperationEnabled | State::QuickStop | State::FaultReaction)
+    }
+
+    /// Whether the joint brakes on the ramp instead of following its targets.
+    pub fn ramps(&self) -> bool {
+        matches!(self.state, State::QuickStop | State::FaultReaction)
+    }
+
+    /// One cycle.
+    pub fn step(&mut self, inputs: &Inputs) -> State {
+        let before = self.control;
+        self.control = inputs.control.unwrap_or(self.control & !FAULT_RESET);
+        self.supply = inputs.supply;
+        let reset = self.control & !before & FAULT_RESET != 0;
+        let brakes = inputs.supply && inputs.fault.is_none_or(Fault::ramps);
+        self.state = match (self.state, inputs.fault) {
+            (State::FaultReaction, _) if inputs.still || !brakes => State::Fault, // 14
+            (State::FaultReaction, _) => State::FaultReaction,
+            (State::Fault, None) if reset => {
+                self.error = None;
+                State::SwitchOnDisabled // 15
+            }
+            (State::Fault, _) => State::Fault,
+            (_, Some(fault)) => {
+                self.error = Some(fault);
+                // 13, and 14 at once if nothing can brake, or nothing moves.
+                if self.drives() && brakes { State::FaultReaction } else { State::Fault }
+            }
+            (State::NotReady, None) => State::SwitchOnDisabled, // 0, 1: the self-test is passed
+            (state, None) => self.command(state, inputs),
+        };
+        self.state
+    }
+
+    /// The transition table without faults.
+    fn command(&self, state: State, inputs: &Inputs) -> State {
+        use State::{OperationEnabled, QuickStop, Ready, SwitchOnDisabled, SwitchedOn};
+        let word = self.control & 0x0F;
+        let is = |wanted: u16, mask: u16| word & mask == wanted;
+        let (shutdown, switch_on) = (is(SHUTDOWN, 0x07), is(SWITCH_ON, 0x0F));
+        let enable = is(ENABLE_OPERATION, 0x0F);
+        let (disable, quick) = (is(DISABLE_VOLTAGE, 0x02), is(QUICK_STOP, 0x06));
+        let on = inputs.supply;
+        match state {
+            SwitchOnDisabled if shutdown => Ready,                                     // 2
+            Ready if disable || quick => SwitchOnDisabled,                             // 7
+            Ready if enable && on && inputs.permit => OperationEnabled,                // 3, 4
+            Ready if (switch_on || enable) && on => SwitchedOn,                        // 3
+            SwitchedOn if disable || quick || !on => SwitchOnDisabled,                 // 10
+            SwitchedOn if shutdown => Ready,                                           // 6
+            SwitchedOn if enable && inputs.permit => OperationEnabled,                 // 4
+            OperationEnabled | QuickStop if disable || !on => SwitchOnDisabled,        // 9, 12
+            OperationEnabled | QuickStop if !inputs.permit => SwitchedOn,              // 5, by itself
+            OperationEnabled if quick => QuickStop,                                    // 11
+            OperationEnabled if shutdown => Ready,                                     // 8
+            OperationEnabled if switch_on => SwitchedOn,                               // 5
+            QuickStop if enable && inputs.permit => OperationEnabled,                  // 16
+            same => same,
+        }
+    }
+
+    /// The statusword of the state, with voltage; [`WARNING`] and [`REFERENCED`] are the caller's to add.
+    pub fn statusword(&self) -> u16 {
+        status_of(self.state) | if self.supply { VOLTAGE } else { 0 }
+    }
+}
+
+/// Bits 0 to 3, 5 and 6 of a state's statusword; bit 5 is free in the upper four and 0 there.
+pub const fn status_of(state: State) -> u16 {
+    match state {
+        State::NotReady => 0x00,
+        State::SwitchOnDisabled => 0x40,
+        State::Ready => 0x21,
+        State::SwitchedOn => 0x23,
+        State::OperationEnabled => 0x27,
+        State::QuickStop => 0x07,
+        State::FaultReaction => 0x0F,
+        State::Fault => 0x08,
+    }
+}
+
+/// The state of a statusword; none if its bits name no state.
+pub const fn state_of(status: u16) -> Option<State> {
+    match (status & 0x4F, status & 0x6F) {
+        (0x00, _) => Some(State::NotReady),
+        (0x40, _) => Some(State::SwitchOnDisabled),
+        (0x0F, _) => Some(State::FaultReaction),
+        (0x08, _) => Some(State::Fault),
+        (_, 0x21) => Some(State::Ready),
+        (_, 0x23) => Some(State::SwitchedOn),
+        (_, 0x27) => Some(State::OperationEnabled),
+        (_, 0x07) => Some(State::QuickStop),
+        _ => None,
+    }
+}
+
+/// What the master wants of a drive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// No torque, ready to be switched on.
+    Ready,
+    /// Targets are followed.
+    Operation,
+    /// Brake and hold.
+    Stop,
+    /// A fault is forgotten; no torque, as with [`Wanted::Ready`].
+    Reset,
+}
+
+/// The master's side: the controlword that leads a drive with this statusword one step towards what is wanted.
+///
+/// A drive with a fault gets none but [`DISABLE_VOLTAGE`] until [`Wanted::Reset`] asks for more; it lets bit 7 fall, so
+/// that the reset is an edge.
+pub fn controlword(status: u16, wanted: Wanted) -> u16 {
+    match (state_of(status), wanted) {
+        (Some(State::Fault), Wanted::Reset) => FAULT_RESET,
+        (Some(State::Fault | State::FaultReaction), _) => DISABLE_VOLTAGE,
+        (_, Wanted::Ready | Wanted::Reset) => SHUTDOWN,
+        (Some(State::OperationEnabled | State::QuickStop), Wanted::Stop) => QUICK_STOP,
+        (_, Wanted::Stop) => SHUTDOWN,
+        (Some(State::Ready | State::SwitchedOn | State::OperationEnabled), _) => ENABLE_OPERATION,
+        (Some(State::QuickStop), _) => ENABLE_OPERATION,
+        (_, Wanted::Operation) => SHUTDOWN,
+    }
+}

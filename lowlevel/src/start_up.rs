@@ -1,0 +1,227 @@
+//! The way from a robot without power to one that may walk. Pure: sensor data of a cycle and commands in, what the drives
+//! are to be told out.
+//!
+//! ```text
+//!  Off ──supply on──► NotHomed ──joint/home──► Homing ──► Enabling ──► Hanging ──joint/zero_force──► Zeroed
+//!   ▲                     (only if a joint does not know its angle)      │                             │ the feet
+//!   │                                                                    ▼ the feet carried already    ▼ carry
+//!   └────────── supply off, from everywhere ◄─────────────────────────── Standing ◄────────────────────┘
+//! ```
+//!
+//! Nothing is followed before every drive is in Operation enabled. No drive is switched on while a joint does not know its
+//! angle, but to find it out.
+
+use drives::cia402::{REFERENCED, State, Wanted, state_of};
+use messages::{Command, EventCode, Sensors, StartUp, Wrench};
+
+/// Share of the weight on a foot up to which it counts as unloaded: nothing but what hangs on its sensor, and its offset.
+const UNLOADED: f64 = 0.15;
+/// Share of the weight on both feet from which a robot that was not hung up stands.
+const STOOD: f64 = 0.5;
+/// Share of the weight on both feet, for [`LANDED_CYCLES`], from which a robot that was lowered stands.
+const LANDED: f64 = 0.9;
+/// \[1\]
+const LANDED_CYCLES: u32 = 100;
+/// Readings of which the zero of a force sensor is the mean.
+const ZERO_CYCLES: u32 = 100;
+/// Cycles for switching all drives on; after these somebody is told.
+const ENABLE_CYCLES: u32 = 100;
+/// Cycles for which a reset is passed on to drives with a fault.
+const RESET_CYCLES: u32 = 100;
+
+/// Force sensors that are set to zero.
+#[derive(Clone, Debug, Default)]
+struct Zero {
+    /// What is taken away; right, left.
+    offset: [Wrench; 2],
+    sum: [[f64; 6]; 2],
+    /// Readings still to come; 0: none is asked for.
+    left: u32,
+}
+
+/// The start-up of one robot.
+#[derive(Clone, Debug)]
+pub struct StartUpSequence {
+    state: StartUp,
+    joints: usize,
+    /// \[N\]
+    weight: f64,
+    zero: Zero,
+    /// What the force sensors read; right, left.
+    raw: [Wrench; 2],
+    /// Cycles in this state, and cycles in which the feet carried.
+    cycles: u32,
+    landed: u32,
+    reset: u32,
+    event: Option<(EventCode, u64)>,
+}
+
+impl StartUpSequence {
+    /// The start-up of a robot of this weight \[N\].
+    pub fn new(joints: usize, weight: f64) -> Self {
+        Self {
+            state: StartUp::Off,
+            joints,
+            weight,
+            zero: Zero::default(),
+            raw: Default::default(),
+            cycles: 0,
+            landed: 0,
+            reset: 0,
+            event: None,
+        }
+    }
+
+    /// The state.
+    pub fn state(&self) -> StartUp {
+        self.state
+    }
+
+    /// What happened since the last call.
+    pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
+        self.event.take()
+    }
+
+    /// Before new sensor data are decoded: what is missing among them stays as it was read.
+    pub fn restore(&self, sensors: &mut Sensors) {
+        sensors.foot_wrench = self.raw;
+    }
+
+    /// Takes the offsets of the force sensors away from what they read, and says where the start-up is.
+    pub fn receive(&mut self, sensors: &mut Sensors) {
+        let begins = self.state == StartUp::Off && sensors.power == 1;
+        sensors.start_up = if begins { StartUp::Enabling } else { self.state } as u64;
+        self.raw = sensors.foot_wrench;
+        self.average(sensors);
+        for (wrench, offset) in sensors.foot_wrench.iter_mut().zip(&self.zero.offset) {
+            for k in 0..3 {
+                wrench.force[k] -= offset.force[k];
+                wrench.moment[k] -= offset.moment[k];
+            }
+        }
+    }
+
+    /// Takes `system/reset`, `joint/home` and `joint/zero_force`; `sensors` as [`Self::receive`] left them.
+    pub fn command(&mut self, command: &Command, sensors: &Sensors) {
+        match command {
+            Command::Reset => self.reset = RESET_CYCLES,
+            Command::Home if self.state == StartUp::NotHomed => self.enter(StartUp::Homing),
+            Command::Home if self.state == StartUp::Homing => {}
+            Command::Home => self.tell(EventCode::CommandRefused, command.address().1.into()),
+            Command::ZeroForce => self.begin_zero(sensors),
+            _ => {}
+        }
+    }
+
+    /// One cycle: `stopped` while a controlled stop is latched.
+    pub fn step(&mut self, sensors: &Sensors, stopped: bool) {
+        self.cycles = self.cycles.saturating_add(1);
+        self.reset = self.reset.saturating_sub(1);
+        let unknown = (0..self.joints).find(|&j| sensors.drive_status[j] & u32::from(REFERENCED) == 0);
+        let off = (0..self.joints).find(|&j| !is_enabled(sensors, j));
+        let load: f64 = sensors.foot_wrench.iter().map(|w| w.force[2]).sum();
+        let carried = load > LANDED * self.weight;
+        self.landed = if carried { self.landed.saturating_add(1) } else { 0 };
+        let next = match self.state {
+            _ if sensors.power != 1 => StartUp::Off,
+            _ if stopped => StartUp::Stopped,
+            StartUp::Stopped => StartUp::Enabling,
+            StartUp::Homing if unknown.is_some() => StartUp::Homing,
+            StartUp::Standing if off.is_none() => StartUp::Standing,
+            _ if unknown.is_some() => StartUp::NotHomed,
+            _ if off.is_some() => StartUp::Enabling,
+            StartUp::Hanging => StartUp::Hanging,
+            StartUp::Zeroed if self.landed >= LANDED_CYCLES => StartUp::Standing,
+            StartUp::Zeroed => StartUp::Zeroed,
+            _ if load > STOOD * self.weight => StartUp::Standing,
+            _ => StartUp::Hanging,
+        };
+        match (self.state, next) {
+            (StartUp::NotHomed, StartUp::NotHomed) => {}
+            (_, StartUp::NotHomed) => self.tell(EventCode::NotHomed, unknown.unwrap_or(0) as u64),
+            (StartUp::Homing, StartUp::Enabling) => self.tell(EventCode::Homed, self.cycles.into()),
+            (StartUp::Enabling, StartUp::Enabling) if self.cycles == ENABLE_CYCLES => {
+                self.tell(EventCode::DriveNotEnabled, off.unwrap_or(0) as u64);
+            }
+            _ => {}
+        }
+        self.enter(next);
+    }
+
+    /// Whether targets may be followed.
+    pub fn ready(&self) -> bool {
+        matches!(self.state, StartUp::Hanging | StartUp::Zeroed | StartUp::Standing)
+    }
+
+    /// Whether drives are still being switched on, or find their angles.
+    pub fn begins(&self) -> bool {
+        matches!(self.state, StartUp::Off | StartUp::NotHomed | StartUp::Homing | StartUp::Enabling)
+    }
+
+    /// What is wanted of the drive of joint `j`.
+    pub fn wanted(&self, j: usize, sensors: &Sensors) -> Wanted {
+        let unknown = sensors.drive_status[j] & u32::from(REFERENCED) == 0;
+        match self.state {
+            StartUp::Off if self.reset > 0 => Wanted::Reset,
+            StartUp::Off | StartUp::NotHomed => Wanted::Ready,
+            StartUp::Homing if !unknown => Wanted::Ready,
+            _ => Wanted::Operation,
+        }
+    }
+
+    fn enter(&mut self, state: StartUp) {
+        if state != self.state {
+            (self.state, self.cycles) = (state, 0);
+            self.zero.left = 0;
+        }
+    }
+
+    fn tell(&mut self, code: EventCode, detail: u64) {
+        self.event.get_or_insert((code, detail));
+    }
+
+    fn begin_zero(&mut self, sensors: &Sensors) {
+        let load = heaviest(sensors);
+        if matches!(self.state, StartUp::Hanging | StartUp::Zeroed) && load < UNLOADED * self.weight {
+            self.zero.sum = [[0.0; 6]; 2];
+            self.zero.left = ZERO_CYCLES;
+        } else {
+            self.tell(EventCode::ZeroRefused, load as u64);
+        }
+    }
+
+    /// Adds a reading, without any offset, to the mean; a load meanwhile ends it.
+    fn average(&mut self, sensors: &Sensors) {
+        if self.zero.left == 0 {
+            return;
+        }
+        let load = heaviest(sensors);
+        if !(load < UNLOADED * self.weight) {
+            self.zero.left = 0;
+            return self.tell(EventCode::ZeroRefused, load as u64);
+        }
+        for (sum, w) in self.zero.sum.iter_mut().zip(&sensors.foot_wrench) {
+            for (sum, x) in sum.iter_mut().zip(w.force.iter().chain(&w.moment)) {
+                *sum += x;
+            }
+        }
+        self.zero.left -= 1;
+        if self.zero.left == 0 {
+            let mean = self.zero.sum.map(|sum| sum.map(|x| x / f64::from(ZERO_CYCLES)));
+            self.zero.offset = mean.map(|[a, b, c, d, e, f]| Wrench { force: [a, b, c], moment: [d, e, f] });
+            let most = mean.iter().flat_map(|m| &m[..3]).fold(0.0f64, |most, x| most.max(x.abs()));
+            self.tell(EventCode::ForceZeroed, most.round() as u64);
+            self.enter(StartUp::Zeroed);
+        }
+    }
+}
+
+/// Whether the drive of joint `j` follows its targets.
+pub fn is_enabled(sensors: &Sensors, j: usize) -> bool {
+    state_of(sensors.drive_status[j] as u16) == Some(State::OperationEnabled)
+}
+
+/// \[N\] Larger normal force of both feet, without its sign.
+fn heaviest(sensors: &Sensors) -> f64 {
+    sensors.foot_wrench.iter().map(|w| w.force[2].abs()).fold(0.0, f64::max)
+}

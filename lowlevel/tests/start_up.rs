@@ -1,0 +1,277 @@
+//! The start-up against drives that behave as CiA 402 says: what is asked of them, what is refused, what is told.
+
+use config::{Robot, System};
+use drives::cia402::{self, Fault, Inputs, REFERENCED};
+use lowlevel::JointLoop;
+use lowlevel::joint_loop::State;
+use messages::frames::{DriveCommand, decode_targets, encode_sensors};
+use messages::{BusFrames, Command, EventCode, JointMode, JointTargets, Sensors, StartUp};
+
+/// \[N\] Lola's weight.
+const WEIGHT: f64 = 60.885 * 9.81;
+/// Joint without an absolute encoder, and one with.
+const HEAD: usize = 22;
+const KNEE: usize = 5;
+
+/// Drives at the far end, which go where they are told at once.
+struct Rig {
+    robot: Robot,
+    loop_: JointLoop,
+    drives: Vec<cia402::Drive>,
+    known: Vec<bool>,
+    fault: Option<(usize, Fault)>,
+    said: Sensors,
+    seen: Sensors,
+    told: DriveCommand,
+    /// \[rad\] Where the controller wants the joints, but for 1 mrad to and fro.
+    wanted: messages::Joints,
+    /// A joint that creeps away instead of following.
+    creeps: Option<usize>,
+    events: Vec<(EventCode, u64)>,
+    tick: u64,
+}
+
+impl Rig {
+    /// Supply off, both feet loaded with this much \[N\].
+    fn new(load: f64) -> Self {
+        let root = config::root(None);
+        let robot = Robot::load(&root.join("robots/lola")).unwrap();
+        let system = System::load(&root.join("system.toml")).unwrap();
+        let mut said = Sensors::default();
+        for (j, q) in robot.poses["stand"].iter().enumerate() {
+            said.joint_angle[j] = *q;
+        }
+        for wrench in &mut said.foot_wrench {
+            wrench.force[2] = 0.5 * load;
+        }
+        let mut drives = vec![cia402::Drive::default(); robot.joints.len()];
+        drives.iter_mut().for_each(|drive| _ = drive.step(&Inputs::default()));
+        let mut rig = Self {
+            loop_: JointLoop::new(&robot, &system, 1e-3),
+            known: vec![true; drives.len()],
+            robot,
+            drives,
+            fault: None,
+            seen: Sensors::default(),
+            told: DriveCommand::default(),
+            wanted: said.joint_angle,
+            creeps: None,
+            said,
+            events: Vec::new(),
+            tick: 0,
+        };
+        rig.cycles(3);
+        rig
+    }
+
+    /// With the supply on, and every drive on as far as it may be.
+    fn on(load: f64) -> Self {
+        let mut rig = Self::new(load);
+        rig.said.power = 1;
+        rig.cycles(5);
+        rig
+    }
+
+    fn cycles(&mut self, count: usize) {
+        for _ in 0..count {
+            self.cycle(None);
+        }
+    }
+
+    /// One bus cycle, with a command between its halves.
+    fn cycle(&mut self, command: Option<Command>) {
+        let mut answer = BusFrames::default();
+        self.said.header.tick = self.tick;
+        for (j, drive) in self.drives.iter().enumerate() {
+            let known = if self.known[j] { REFERENCED } else { 0 };
+            self.said.drive_status[j] = u32::from(drive.statusword() | known);
+            self.said.drive_error[j] = drive.error().map_or(0, |fault| fault as u32);
+        }
+        encode_sensors(&self.robot.layout, &self.said, &mut answer);
+        self.tick += 1;
+        self.seen = *self.loop_.receive(self.tick, self.tick * 1_000_000, Some(&answer));
+        command.iter().for_each(|command| self.loop_.command(command));
+        let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
+        targets.header.tick = self.tick;
+        targets.angle = self.wanted;
+        let step = if self.tick % 2 == 0 { 1e-3 } else { -1e-3 };
+        targets.angle.iter_mut().for_each(|q| *q += step);
+        let (frames, _) = self.loop_.send(Some(&targets), None);
+        decode_targets(&self.robot.layout, frames, &mut self.told);
+        self.events.extend(std::iter::from_fn(|| self.loop_.take_event()));
+        let home = self.told.targets.mode == JointMode::Home as u64;
+        for j in 0..self.drives.len() {
+            self.drives[j].step(&Inputs {
+                control: Some(self.told.control[j] as u16),
+                supply: self.said.power == 1,
+                permit: home || self.known[j],
+                fault: self.fault.filter(|fault| fault.0 == j).map(|fault| fault.1),
+                still: true,
+            });
+            if self.creeps == Some(j) {
+                self.said.joint_angle[j] += 5e-3;
+            } else if self.drives[j].drives() && !home {
+                self.said.joint_angle[j] = self.told.targets.angle[j];
+            }
+        }
+    }
+
+    fn state(&self) -> StartUp {
+        StartUp::from_number(self.seen.start_up)
+    }
+
+    fn enabled(&self) -> usize {
+        self.drives.iter().filter(|drive| drive.drives()).count()
+    }
+
+    fn load(&mut self, newton: f64) {
+        self.said.foot_wrench.iter_mut().for_each(|wrench| wrench.force[2] = 0.5 * newton);
+    }
+}
+
+#[test]
+fn a_standing_robot_is_on_in_the_cycle_after_its_supply() {
+    let mut rig = Rig::new(WEIGHT);
+    assert_eq!((rig.state(), rig.enabled()), (StartUp::Off, 0));
+    rig.said.power = 1;
+    rig.cycle(None);
+    assert_eq!(rig.enabled(), 24, "in the very cycle in which the supply was seen");
+    rig.cycles(3);
+    assert_eq!((rig.state(), rig.loop_.state()), (StartUp::Standing, State::Track));
+    assert!(rig.events.is_empty(), "{:?}", rig.events);
+}
+
+#[test]
+fn a_joint_that_does_not_know_its_angle_keeps_all_drives_off_until_it_was_homed() {
+    let mut rig = Rig::new(0.0);
+    let before = rig.said.joint_angle;
+    rig.known[HEAD] = false;
+    rig.said.power = 1;
+    rig.cycles(1000);
+    assert_eq!((rig.state(), rig.enabled()), (StartUp::NotHomed, 0));
+    assert_eq!(rig.events, [(EventCode::NotHomed, HEAD as u64)], "told once");
+    assert_eq!((rig.said.joint_angle, rig.loop_.state()), (before, State::Hold), "nothing moves");
+    rig.cycle(Some(Command::Home));
+    rig.cycles(10);
+    assert_eq!((rig.state(), rig.enabled()), (StartUp::Homing, 1));
+    assert_eq!(rig.told.targets.mode, JointMode::Home as u64);
+    (rig.known[HEAD], rig.said.joint_angle[HEAD]) = (true, 0.7);
+    rig.wanted[HEAD] = 0.7;
+    rig.cycles(5);
+    assert_eq!((rig.state(), rig.enabled()), (StartUp::Hanging, 24));
+    assert_eq!(rig.events[1].0, EventCode::Homed);
+    let led = rig.told.targets.angle[HEAD];
+    assert!((led - 0.7).abs() < 0.01, "begins at the angle that was found: {led}");
+    assert_eq!(rig.events.len(), 2, "{:?}", rig.events);
+    rig.cycle(Some(Command::Home));
+    assert_eq!(rig.events.last(), Some(&(EventCode::CommandRefused, 0)), "homing is done");
+}
+
+#[test]
+fn force_sensors_read_zero_after_zeroing_and_the_robot_stands_once_its_feet_carry() {
+    let mut rig = Rig::on(-30.0); // feet that hang on their sensors
+    rig.cycles(100);
+    assert_eq!(rig.state(), StartUp::Hanging);
+    rig.cycle(Some(Command::ZeroForce));
+    rig.cycles(101);
+    assert_eq!(rig.state(), StartUp::Zeroed);
+    assert_eq!(rig.events, [(EventCode::ForceZeroed, 15)]);
+    assert!(rig.seen.foot_wrench.iter().all(|w| w.force[2].abs() < 1e-9), "{:?}", rig.seen.foot_wrench);
+    rig.load(0.85 * WEIGHT - 30.0);
+    rig.cycles(300);
+    assert_eq!(rig.state(), StartUp::Zeroed, "still held by the crane");
+    rig.load(WEIGHT - 30.0);
+    rig.cycles(110);
+    assert_eq!(rig.state(), StartUp::Standing);
+    let load: f64 = rig.seen.foot_wrench.iter().map(|w| w.force[2]).sum();
+    assert!((load - WEIGHT).abs() < 1e-3, "{load} N");
+}
+
+#[test]
+fn frames_that_are_missing_do_not_take_the_offset_away_twice() {
+    let mut rig = Rig::on(-30.0);
+    rig.cycle(Some(Command::ZeroForce));
+    rig.cycles(101);
+    for _ in 0..5 {
+        rig.tick += 1;
+        rig.seen = *rig.loop_.receive(rig.tick, 0, None);
+        let mut nothing = BusFrames::default();
+        nothing.header.tick = rig.tick;
+        rig.seen = *rig.loop_.receive(rig.tick, 0, Some(&nothing));
+    }
+    assert!(rig.seen.foot_wrench.iter().all(|w| w.force[2].abs() < 1e-9), "{:?}", rig.seen.foot_wrench);
+}
+
+#[test]
+fn zeroing_with_load_on_the_feet_is_refused() {
+    let mut standing = Rig::on(WEIGHT);
+    standing.cycle(Some(Command::ZeroForce));
+    assert_eq!(standing.events, [(EventCode::ZeroRefused, (0.5 * WEIGHT) as u64)]);
+    let mut off = Rig::new(0.0);
+    off.cycle(Some(Command::ZeroForce));
+    assert_eq!(off.events, [(EventCode::ZeroRefused, 0)], "drives off");
+    let mut lowered = Rig::on(0.0);
+    lowered.cycle(Some(Command::ZeroForce));
+    lowered.cycles(50);
+    lowered.load(0.5 * WEIGHT);
+    lowered.cycles(200);
+    assert_eq!(lowered.events, [(EventCode::ZeroRefused, (0.25 * WEIGHT) as u64)], "while it is measured");
+    assert!(lowered.seen.foot_wrench.iter().all(|w| w.force[2] > 0.2 * WEIGHT), "nothing taken away");
+    assert_eq!(lowered.state(), StartUp::Hanging);
+}
+
+#[test]
+fn a_drive_with_a_fault_is_a_controlled_stop_that_names_it_and_only_a_reset_ends_it() {
+    let mut rig = Rig::on(WEIGHT);
+    rig.fault = Some((KNEE, Fault::OverTemperature));
+    rig.cycles(3);
+    rig.fault = None;
+    rig.cycles(50);
+    let named = KNEE as u64 + ((Fault::OverTemperature as u64) << 16);
+    assert_eq!(rig.events, [(EventCode::DriveTripped, named)]);
+    assert_eq!((rig.loop_.state(), rig.state()), (State::Stop(EventCode::DriveTripped), StartUp::Stopped));
+    assert_eq!(rig.enabled(), 23, "the others hold");
+    assert!((0..24).all(|j| rig.told.targets.speed[j] == 0.0));
+
+    let again = |reset: bool, rig: &mut Rig| {
+        rig.said.power = 0;
+        rig.cycles(5);
+        rig.cycle(reset.then_some(Command::Reset));
+        rig.cycles(5);
+        rig.said.power = 1;
+        rig.cycles(10);
+    };
+    again(false, &mut rig);
+    assert_eq!(rig.events, [(EventCode::DriveTripped, named); 2], "a fault is not forgotten by itself");
+    again(true, &mut rig);
+    assert_eq!((rig.state(), rig.enabled(), rig.events.len()), (StartUp::Standing, 24, 2));
+}
+
+#[test]
+fn a_drive_that_drops_out_or_does_not_come_is_named() {
+    let mut rig = Rig::on(WEIGHT);
+    rig.drives[KNEE] = cia402::Drive::default(); // its controller started again
+    rig.drives[KNEE].step(&Inputs::default());
+    rig.cycles(4);
+    assert_eq!(rig.events, [(EventCode::DriveNotEnabled, KNEE as u64)]);
+    assert_eq!(rig.loop_.state(), State::Stop(EventCode::DriveNotEnabled));
+
+    let mut dead = Rig::new(WEIGHT);
+    dead.said.power = 1;
+    for _ in 0..300 {
+        dead.drives[KNEE] = cia402::Drive::default();
+        dead.cycle(None);
+    }
+    assert_eq!((dead.events.clone(), dead.state()), (vec![(EventCode::DriveNotEnabled, 5)], StartUp::Enabling));
+}
+
+#[test]
+fn a_joint_that_does_not_follow_is_told_to_stop_at_once() {
+    let mut rig = Rig::on(WEIGHT);
+    rig.creeps = Some(KNEE);
+    while rig.events.is_empty() && rig.tick < 1000 {
+        rig.cycle(None);
+    }
+    assert_eq!(rig.events, [(EventCode::FollowingError, KNEE as u64)]);
+    assert!(rig.drives.iter().all(|drive| drive.state() == cia402::State::QuickStop));
+}

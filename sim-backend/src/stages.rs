@@ -1,0 +1,322 @@
+//! The drives' own electronics: states of CiA 402, references, protection; one power stage per drive.
+//!
+//! Row i of the drives drives joint i. States are always there; references and protection only where the scene asks for
+//! them by `[drives]`, and what needs motors only where the model has motors. Silence of the bus: [`crate::hearing`].
+
+use config::protection::Protection;
+use config::{Robot, Scene};
+use drives::cia402::{self, Fault, Inputs, REFERENCED, WARNING};
+use drives::homing::{HomeSwitch, Homing};
+use messages::{JointMode, MAX_JOINTS, Sensors};
+
+use crate::drive::Motion;
+
+/// \[rad/s\] Speed of a reference below which it is at rest, but for rounding.
+const REST: f64 = 1e-9;
+
+/// What a joint does in this cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Action {
+    /// No torque: the brake holds.
+    Brake,
+    /// Follows its targets.
+    Follow,
+    /// Comes to rest on its ramp, and is held.
+    Ramp,
+    /// Looks for its reference with this joint speed \[rad/s\].
+    Search(f64),
+}
+
+/// What the bus brought in this cycle.
+pub(crate) struct Told<'a> {
+    /// The newest controlwords.
+    pub control: &'a [u32; MAX_JOINTS],
+    /// What the joints shall do, a [`JointMode`].
+    pub mode: u64,
+}
+
+/// A joint without absolute encoder.
+#[derive(Clone, Copy, Debug)]
+struct Search {
+    switch: HomeSwitch,
+    homing: Homing,
+    began_closed: bool,
+    /// \[rad\] What its encoder reads less than its angle.
+    origin: f64,
+}
+
+/// Power stages of all drives.
+#[derive(Clone, Debug)]
+pub(crate) struct Stages {
+    drives: Vec<cia402::Drive>,
+    /// Joints that look for their references, or have found them.
+    searches: Vec<Option<Search>>,
+    protection: Option<Protection>,
+    /// \[°C\] Windings.
+    temperature: Vec<f64>,
+    /// \[A\] Current limits.
+    limit: Vec<f64>,
+    actions: Vec<Action>,
+}
+
+impl Stages {
+    /// The drives of a scene, whose joints begin at `pose` \[rad\]; self-tests passed.
+    pub(crate) fn new(robot: &Robot, scene: &Scene, pose: &[f64]) -> Self {
+        let start = scene.drives.as_ref();
+        let mut drives = vec![cia402::Drive::default(); robot.joints.len()];
+        for drive in &mut drives {
+            drive.step(&Inputs::default());
+        }
+        let search = |(switch, angle): (&Option<HomeSwitch>, &f64)| {
+            let switch = switch.filter(|_| start.is_some_and(|start| start.homing))?;
+            let began_closed = *angle >= switch.angle;
+            Some(Search { switch, homing: Homing::Search, began_closed, origin: *angle })
+        };
+        let protection = robot.protection.clone().filter(|_| start.is_some());
+        let warm = |(joint, winding): (&config::robot::Joint, &drives::thermal::Thermal)| {
+            start.and_then(|start| start.temperature.of(&joint.name)).unwrap_or(winding.surroundings)
+        };
+        let windings = protection.iter().flat_map(|p| &p.windings);
+        Self {
+            searches: robot.homes.iter().zip(pose).map(search).collect(),
+            temperature: robot.joints.iter().zip(windings).map(warm).collect(),
+            actions: vec![Action::Brake; drives.len()],
+            protection,
+            drives,
+            limit: robot.drives.iter().map(|drive| drive.current_limit).collect(),
+        }
+    }
+
+    /// One bus cycle of `dt` \[s\]: states, and what every joint does. `goals` and `now` are where the joints were to be
+    /// and are; `current` \[A\], if there are motors with protection to look after.
+    pub(crate) fn step(
+        &mut self,
+        told: &Told<'_>,
+        supply: bool,
+        dt: f64,
+        goals: &[Motion],
+        now: &[Motion],
+        current: Option<&[f64]>,
+    ) {
+        let home = told.mode == JointMode::Home as u64;
+        for j in 0..self.drives.len() {
+            let drive = self.drives[j];
+            let inputs = Inputs {
+                control: Some(told.control[j] as u16),
+                supply,
+                permit: home || self.knows(j),
+                fault: self.fault(j, &drive, dt, goals[j], now[j], current),
+                still: goals[j].speed.abs() < REST,
+            };
+            self.drives[j].step(&inputs);
+            self.actions[j] = self.choose(j, now[j].angle);
+        }
+    }
+
+    /// What a joint does in this cycle.
+    pub(crate) fn action(&self, j: usize) -> Action {
+        self.actions[j]
+    }
+
+    /// Whether a joint knows its angle.
+    fn knows(&self, j: usize) -> bool {
+        self.searches[j].is_none_or(|search| search.homing == Homing::Found)
+    }
+
+    /// What is wrong with a drive.
+    fn fault(
+        &mut self,
+        j: usize,
+        drive: &cia402::Drive,
+        dt: f64,
+        goal: Motion,
+        now: Motion,
+        current: Option<&[f64]>,
+    ) -> Option<Fault> {
+        let Some((p, current)) = self.protection.as_ref().zip(current) else { return None };
+        let winding = &p.windings[j];
+        self.temperature[j] = winding.after(self.temperature[j], current[j], dt);
+        let limit = p.following_error + p.following_time * goal.speed.abs();
+        let strays = drive.drives() && !((goal.angle - now.angle).abs() <= limit);
+        // Voltage control knows no current limit: what flows is looked at.
+        let most = p.over_current * self.limit[j];
+        let burns = !(current[j].abs() <= most);
+        let hot = !(self.temperature[j] <= winding.highest);
+        burns
+            .then_some(Fault::OverCurrent)
+            .or(hot.then_some(Fault::OverTemperature))
+            .or(strays.then_some(Fault::FollowingError))
+    }
+
+    fn choose(&mut self, j: usize, angle: f64) -> Action {
+        let drive = &self.drives[j];
+        match &mut self.searches[j] {
+            _ if !drive.drives() => Action::Brake,
+            _ if drive.ramps() => Action::Ramp,
+            Some(search) if search.homing != Homing::Found => {
+                let closed = angle >= search.switch.angle;
+                let speed = search.homing.step(&search.switch, search.began_closed, closed);
+                if search.homing == Homing::Found {
+                    search.origin = angle - search.switch.angle;
+                }
+                Action::Search(speed)
+            }
+            _ => Action::Follow,
+        }
+    }
+
+    /// \[rad\] How much less than its angle a joint's encoders read: not 0 where it does not know its angle, or knows it
+    /// as well as its home switch.
+    pub(crate) fn origin(&self, j: usize) -> f64 {
+        self.searches[j].map_or(0.0, |search| search.origin)
+    }
+
+    /// Writes status, error and temperature of every drive.
+    pub(crate) fn report(&self, out: &mut Sensors) {
+        for (j, drive) in self.drives.iter().enumerate() {
+            let known = if self.knows(j) { REFERENCED } else { 0 };
+            let hot = self.protection.as_ref().is_some_and(|p| self.temperature[j] > p.warning);
+            let warning = if hot { WARNING } else { 0 };
+            out.drive_status[j] = u32::from(drive.statusword() | known | warning);
+            out.drive_error[j] = drive.error().map_or(0, |fault| fault as u32);
+        }
+        out.temperature[..self.temperature.len()].copy_from_slice(&self.temperature);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use config::{Setup, root};
+    use drives::cia402::State;
+
+    const KNEE: usize = 5;
+    const HEAD: usize = 22;
+    const DT: f64 = 1e-3;
+
+    /// The drives of the scene `startup`, with what they see.
+    struct Rig {
+        stages: Stages,
+        goals: Vec<Motion>,
+        now: Vec<Motion>,
+        current: [f64; MAX_JOINTS],
+        mode: JointMode,
+        supply: bool,
+        word: u16,
+    }
+
+    impl Rig {
+        fn new(homing: bool) -> Self {
+            let mut setup = Setup::load(&root(None), "startup").unwrap();
+            setup.scene.drives.as_mut().unwrap().homing = homing;
+            let pose = &setup.robot.poses["hang"];
+            let goals: Vec<Motion> = pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect();
+            let mut rig = Self {
+                stages: Stages::new(&setup.robot, &setup.scene, pose),
+                now: goals.clone(),
+                goals,
+                current: [0.0; MAX_JOINTS],
+                mode: JointMode::Hold,
+                supply: true,
+                word: 0x06,
+            };
+            rig.step();
+            rig.word = 0x0F;
+            rig.step();
+            rig
+        }
+
+        fn step(&mut self) {
+            let told = Told { control: &[u32::from(self.word); MAX_JOINTS], mode: self.mode as u64 };
+            self.stages.step(&told, self.supply, DT, &self.goals, &self.now, Some(&self.current));
+        }
+
+        fn state(&self, j: usize) -> State {
+            self.stages.drives[j].state()
+        }
+
+        fn error(&self, j: usize) -> Option<Fault> {
+            self.stages.drives[j].error()
+        }
+    }
+
+    #[test]
+    fn a_joint_without_reference_is_enabled_only_to_find_it() {
+        let mut rig = Rig::new(true);
+        assert_eq!((rig.state(HEAD), rig.stages.action(HEAD)), (State::SwitchedOn, Action::Brake));
+        assert_eq!((rig.state(KNEE), rig.stages.action(KNEE)), (State::OperationEnabled, Action::Follow));
+        assert_eq!(rig.stages.origin(HEAD), rig.now[HEAD].angle, "its encoder counts from zero");
+        rig.mode = JointMode::Home;
+        let mut cycles = 0;
+        while !rig.stages.knows(HEAD) && cycles < 20_000 {
+            rig.step();
+            if let Action::Search(speed) = rig.stages.action(HEAD) {
+                rig.now[HEAD].angle += speed * DT;
+                rig.goals[HEAD] = rig.now[HEAD];
+            }
+            cycles += 1;
+        }
+        assert!(rig.stages.origin(HEAD).abs() < 2e-5, "{} rad", rig.stages.origin(HEAD));
+        rig.mode = JointMode::Hold;
+        rig.step();
+        assert_eq!(rig.stages.action(HEAD), Action::Follow);
+    }
+
+    /// From 25 degrees at twice the continuous current the limit is reached after tau ln(4/3); then it brakes, and lets go.
+    #[test]
+    fn a_hot_winding_ends_in_a_fault_after_a_warning() {
+        let mut rig = Rig::new(false);
+        rig.current[KNEE] = 40.0;
+        let (mut cycles, mut warned, mut out) = (0, 0, Sensors::default());
+        while rig.state(KNEE) == State::OperationEnabled {
+            rig.step();
+            cycles += 1;
+            rig.stages.report(&mut out);
+            warned += u32::from(out.drive_status[KNEE] & u32::from(WARNING) != 0);
+        }
+        let expected = 60.0 * (4.0_f64 / 3.0).ln() / DT;
+        assert!((f64::from(cycles) - expected).abs() < 5.0, "{cycles} cycles, not {expected}");
+        assert!(warned > 1000 && (out.temperature[KNEE] - 120.0).abs() < 0.01);
+        assert_eq!(rig.error(KNEE), Some(Fault::OverTemperature));
+        assert_eq!(rig.stages.action(KNEE), Action::Ramp);
+        rig.step();
+        assert_eq!(rig.state(KNEE), State::Fault, "no reset while it is hot");
+        rig.stages.report(&mut out);
+        assert_eq!(out.drive_error[KNEE], 0x4310);
+        assert_eq!(rig.state(KNEE + 1), State::OperationEnabled);
+    }
+
+    #[test]
+    fn a_current_beyond_the_limit_lets_go_at_once() {
+        let mut rig = Rig::new(false);
+        rig.current[KNEE] = -59.0;
+        rig.step();
+        assert_eq!(rig.state(KNEE), State::OperationEnabled);
+        rig.current[KNEE] = -61.0;
+        rig.step();
+        assert_eq!((rig.error(KNEE), rig.stages.action(KNEE)), (Some(Fault::OverCurrent), Action::Brake));
+        rig.current[HEAD] = f64::NAN;
+        rig.step();
+        assert_eq!(rig.error(HEAD), Some(Fault::OverCurrent), "no number is no small one");
+    }
+
+    #[test]
+    fn the_following_error_scales_with_the_speed() {
+        let mut rig = Rig::new(false);
+        rig.goals[KNEE].speed = 1.0;
+        rig.now[KNEE].angle -= 0.07; // 0.06 rad at rest, 0.08 rad at 1 rad/s
+        rig.step();
+        assert_eq!(rig.state(KNEE), State::OperationEnabled);
+        rig.goals[KNEE].speed = 0.0;
+        rig.step();
+        assert_eq!((rig.error(KNEE), rig.stages.action(KNEE)), (Some(Fault::FollowingError), Action::Ramp));
+    }
+
+    #[test]
+    fn without_supply_every_brake_holds() {
+        let mut rig = Rig::new(false);
+        rig.supply = false;
+        rig.step();
+        assert!((0..24).all(|j| rig.stages.action(j) == Action::Brake && rig.error(j).is_none()));
+    }
+}
