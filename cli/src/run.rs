@@ -335,7 +335,8 @@ impl View {
                             format!("{:?}", EventCode::from_number(e.detail).unwrap_or(EventCode::None))
                         }
                         EventCode::DriveTripped => {
-                            let (joint, error) = (self.joints.get((e.detail & 0xFFFF) as usize), e.detail >> 16);
+                            let (joint, error) =
+                                (self.joints.get((e.detail & 0xFFFF) as usize), e.detail >> 16);
                             let text = Fault::from_code(error as u16).map_or("", Fault::text);
                             format!("{}: error {error:#06x} {text}", joint.map_or("?", String::as_str))
                         }

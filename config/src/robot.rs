@@ -11,9 +11,9 @@ use crate::dbc;
 pub use crate::drive::Drive;
 use crate::drive::drives;
 use crate::error::ConfigError;
-use crate::protection::{Protection, homes};
 use crate::file::{self, Hash};
 use crate::limbs::{Arms, Head};
+use crate::protection::{Protection, homes};
 use crate::section::{self, POSITIVE, Section};
 
 /// A robot: its URDF and everything else that is data about it.

@@ -219,10 +219,7 @@ fn unknown(top: &Section<'_, '_>) -> Unknown {
 /// One `[[command]]`: `time`, the topic as `gangwerk topic` names it, and the topic's fields.
 fn command(row: &Section<'_, '_>) -> (f64, Command) {
     let time = row.number("time", "s", NOT_NEGATIVE);
-    let scripted: Vec<&CommandInfo> = COMMANDS
-        .iter()
-        .filter(|info| is_scripted(&info.example()))
-        .collect();
+    let scripted: Vec<&CommandInfo> = COMMANDS.iter().filter(|info| is_scripted(&info.example())).collect();
     let names: Vec<&str> = scripted.iter().map(|info| info.name).collect();
     let info = scripted[row.word("topic", &names)];
     let mut text = String::new();

@@ -223,7 +223,11 @@ impl ForceTorque {
         let built = Self {
             inertia: table.flag("inertia"),
             bias_compensation: table.flag("bias_compensation"),
-            offset: if table.has("offset") { table.numbers("offset", "N, N m", -500.0..=500.0) } else { [0.0; 2] },
+            offset: if table.has("offset") {
+                table.numbers("offset", "N, N m", -500.0..=500.0)
+            } else {
+                [0.0; 2]
+            },
             filter_time: optional(table, "filter_time", |t, key| t.number(key, "s", 0.0..=1.0)),
             noise: pair("noise"),
             step: pair("step"),

@@ -7,7 +7,8 @@ use config::gait::Control;
 use config::parameters::PARAMETERS;
 use config::{Gait, Robot};
 use messages::{
-    Command, ControllerState, EventCode, JointMode, JointTargets, MAX_JOINTS, Parameters, Plan, Sensors, StartUp,
+    Command, ControllerState, EventCode, JointMode, JointTargets, MAX_JOINTS, Parameters, Plan, Sensors,
+    StartUp,
 };
 use multibody::ModelError;
 use nalgebra::{Matrix3, Vector3, Vector6};

@@ -2,7 +2,10 @@
 
 use config::{Robot, System};
 use messages::frames::{DriveCommand, Received, decode_sensors, encode_targets};
-use messages::{BusCounters, BusFrames, Command, EventCode, Header, JointMode, JointTargets, Sensors, StartUp, WatchdogReset};
+use messages::{
+    BusCounters, BusFrames, Command, EventCode, Header, JointMode, JointTargets, Sensors, StartUp,
+    WatchdogReset,
+};
 
 use crate::braking::brake;
 use crate::limits::{Motion, admit, following_limit};

@@ -262,7 +262,10 @@ fn a_drive_that_drops_out_or_does_not_come_is_named() {
         dead.drives[KNEE] = cia402::Drive::default();
         dead.cycle(None);
     }
-    assert_eq!((dead.events.clone(), dead.state()), (vec![(EventCode::DriveNotEnabled, 5)], StartUp::Enabling));
+    assert_eq!(
+        (dead.events.clone(), dead.state()),
+        (vec![(EventCode::DriveNotEnabled, 5)], StartUp::Enabling)
+    );
 }
 
 #[test]

@@ -4,8 +4,8 @@
 //! push. The trolley stands still while the rope is taut and follows the hook while it is slack, so that a robot that
 //! walks away is not pulled back.
 
-use config::crane::Crane as Description;
 use crate::plant::orientation;
+use config::crane::Crane as Description;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// The rope of one moment.
@@ -71,8 +71,7 @@ impl Crane {
     pub(crate) fn new(of: &Description, hook: Vector3<f64>, at: Vector3<f64>, mass: f64) -> Self {
         let stretch = mass * -multibody::GRAVITY.z / of.stiffness;
         let anchor = at + Vector3::z() * (of.rope + stretch);
-        let rope =
-            Rope { anchor, hook, length: of.rope, stiffness: of.stiffness, damping: of.damping };
+        let rope = Rope { anchor, hook, length: of.rope, stiffness: of.stiffness, damping: of.damping };
         Self { rope, speed: of.speed, goal: anchor.z }
     }
 

@@ -95,7 +95,11 @@ fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
         match command {
             Command::Push(push) => sim.push(&push),
             Command::Lower(way) if !sim.lower(&way) => {
-                d.report(Header { tick, ..Header::default() }, EventCode::CommandRefused, command.address().1.into());
+                d.report(
+                    Header { tick, ..Header::default() },
+                    EventCode::CommandRefused,
+                    command.address().1.into(),
+                );
             }
             _ => {}
         }

@@ -210,7 +210,8 @@ mod tests {
             let mut setup = Setup::load(&root(None), "startup").unwrap();
             setup.scene.drives.as_mut().unwrap().homing = homing;
             let pose = &setup.robot.poses["hang"];
-            let goals: Vec<Motion> = pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect();
+            let goals: Vec<Motion> =
+                pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect();
             let mut rig = Self {
                 stages: Stages::new(&setup.robot, &setup.scene, pose),
                 now: goals.clone(),

@@ -190,19 +190,19 @@ impl Drive {
         let (disable, quick) = (is(DISABLE_VOLTAGE, 0x02), is(QUICK_STOP, 0x06));
         let on = inputs.supply;
         match state {
-            SwitchOnDisabled if shutdown => Ready,                                     // 2
-            Ready if disable || quick => SwitchOnDisabled,                             // 7
-            Ready if enable && on && inputs.permit => OperationEnabled,                // 3, 4
-            Ready if (switch_on || enable) && on => SwitchedOn,                        // 3
-            SwitchedOn if disable || quick || !on => SwitchOnDisabled,                 // 10
-            SwitchedOn if shutdown => Ready,                                           // 6
-            SwitchedOn if enable && inputs.permit => OperationEnabled,                 // 4
-            OperationEnabled | QuickStop if disable || !on => SwitchOnDisabled,        // 9, 12
-            OperationEnabled | QuickStop if !inputs.permit => SwitchedOn,              // 5, by itself
-            OperationEnabled if quick => QuickStop,                                    // 11
-            OperationEnabled if shutdown => Ready,                                     // 8
-            OperationEnabled if switch_on => SwitchedOn,                               // 5
-            QuickStop if enable && inputs.permit => OperationEnabled,                  // 16
+            SwitchOnDisabled if shutdown => Ready,                              // 2
+            Ready if disable || quick => SwitchOnDisabled,                      // 7
+            Ready if enable && on && inputs.permit => OperationEnabled,         // 3, 4
+            Ready if (switch_on || enable) && on => SwitchedOn,                 // 3
+            SwitchedOn if disable || quick || !on => SwitchOnDisabled,          // 10
+            SwitchedOn if shutdown => Ready,                                    // 6
+            SwitchedOn if enable && inputs.permit => OperationEnabled,          // 4
+            OperationEnabled | QuickStop if disable || !on => SwitchOnDisabled, // 9, 12
+            OperationEnabled | QuickStop if !inputs.permit => SwitchedOn,       // 5, by itself
+            OperationEnabled if quick => QuickStop,                             // 11
+            OperationEnabled if shutdown => Ready,                              // 8
+            OperationEnabled if switch_on => SwitchedOn,                        // 5
+            QuickStop if enable && inputs.permit => OperationEnabled,           // 16
             same => same,
         }
     }

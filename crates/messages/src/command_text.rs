@@ -114,7 +114,11 @@ pub const COMMANDS: &[CommandInfo] = &[
         build: |v| Command::Push(PushCommand { force: [v[0], v[1], v[2]], duration: v[3] }),
     },
     plain("joint/home", |_| Command::Home, "joints that do not know their angles find them out"),
-    plain("joint/zero_force", |_| Command::ZeroForce, "the hanging robot's force sensors read zero from now on"),
+    plain(
+        "joint/zero_force",
+        |_| Command::ZeroForce,
+        "the hanging robot's force sensors read zero from now on",
+    ),
     CommandInfo {
         name: "sim/lower",
         about: "lower the simulated robot on its crane",

@@ -72,7 +72,9 @@ fn target(bench: &Bench) -> Finding {
     let mut largest = 0.0_f64;
     let mut answer = messages::BusFrames::default();
     let mut sensors = messages::Sensors { power: 1, ..Default::default() };
-    sensors.drive_status.fill(u32::from(drives::cia402::status_of(drives::cia402::State::OperationEnabled) | drives::cia402::REFERENCED));
+    sensors.drive_status.fill(u32::from(
+        drives::cia402::status_of(drives::cia402::State::OperationEnabled) | drives::cia402::REFERENCED,
+    ));
     for tick in 1..20 {
         sensors.header.tick = tick;
         sensors.joint_angle[..bench.pose().len()].copy_from_slice(bench.pose());
