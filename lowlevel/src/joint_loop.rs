@@ -247,7 +247,10 @@ impl JointLoop {
             return;
         }
         // A joint that was not read is where it is believed to be.
-        for j in (0..self.robot.joints.len()).filter(|&j| self.guard.reads(j) && self.leads(j)) {
+        for j in 0..self.robot.joints.len() {
+            if !(self.guard.reads(j) && self.leads(j)) {
+                continue;
+            }
             let error = (self.last[j].angle - self.sensors.joint_angle[j]).abs();
             let limit =
                 following_limit(self.system.following_error, self.system.following_time, self.last[j].speed);
