@@ -226,7 +226,7 @@ fn scene_and_its_commands() {
          line 19: command[1].forwards: unknown key; the nearest known one is `forward`\n  \
          line 34: command[4].topic: `walk/halt` is not known; it takes one of `system/emergency_stop`, \
          `system/reset`, `system/enable`, `system/end`, `walk/stand`, `walk/start`, `walk/stop`, `walk/step`, \
-         `walk/velocity`, `walk/distance`, `walk/platform`, `head/fixate`, `head/joints`, `head/rest`"
+         `walk/velocity`, `walk/distance`, `walk/platform`, `joint/home`, `joint/zero_force`, `sim/lower`, `head/fixate`, `head/joints`, `head/rest`"
     );
 }
 
@@ -238,7 +238,7 @@ fn scene_that_robot_and_gait_cannot_do() {
     assert_eq!(
         text(&copy.scene("demo")),
         "demo.toml: 2 problems\n  \
-         start_pose: robot lola has no pose `stadn`; the nearest is `stand`; there is `crouch`, `stand`, `straight`\n  \
+         start_pose: robot lola has no pose `stadn`; the nearest is `stand`; there is `crouch`, `hang`, `stand`, `straight`\n  \
          command[2]: at 10 s: forward = 1.5 is beyond by_speed's 0.9429 m/s of gait lola"
     );
 }
