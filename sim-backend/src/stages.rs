@@ -133,7 +133,7 @@ impl Stages {
         now: Motion,
         current: Option<&[f64]>,
     ) -> Option<Fault> {
-        let Some((p, current)) = self.protection.as_ref().zip(current) else { return None };
+        let (p, current) = self.protection.as_ref().zip(current)?;
         let winding = &p.windings[j];
         self.temperature[j] = winding.after(self.temperature[j], current[j], dt);
         let limit = p.following_error + p.following_time * goal.speed.abs();
