@@ -131,7 +131,7 @@ impl MotorType {
         motor: Motor { inductance: f64::NAN, resistance: f64::NAN, torque_constant: f64::NAN },
         rotor_inertia: f64::NAN,
         voltage_limit: f64::NAN,
-        winding: None,
+        winding: Some([f64::NAN; 2]),
     };
 
     fn build(table: &Section<'_, '_>) -> Self {

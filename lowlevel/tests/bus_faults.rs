@@ -2,6 +2,7 @@
 
 use config::bus_fault::{BusFault, FaultKind, Way};
 use config::{Robot, System};
+use drives::cia402::{self, REFERENCED, status_of};
 use fieldbus::{ErrorFrame, ErrorState, Injector};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::State;
@@ -38,6 +39,7 @@ impl Rig {
         let robot = Robot::load(&root.join("robots/lola")).unwrap();
         let system = System::load(&root.join("system.toml")).unwrap();
         let mut drives = Sensors { power: 1, ..Sensors::default() };
+        drives.drive_status.fill(u32::from(status_of(cia402::State::OperationEnabled) | REFERENCED));
         for (j, q) in robot.poses["stand"].iter().enumerate() {
             (drives.joint_angle[j], drives.motor_angle[j]) = (*q, *q);
         }

@@ -84,7 +84,9 @@ pub(crate) fn software_ranges_lie_inside(name: &str, margins: impl Fn(&str) -> [
 pub(crate) fn soles_are_flat_in_every_pose(name: &str, apart: f64) {
     let (robot, model) = load(name);
     let mut data = Data::new(&model);
-    assert_eq!(robot.poses.keys().collect::<Vec<_>>(), ["crouch", "stand", "straight"]);
+    for pose in ["crouch", "stand", "straight"] {
+        assert!(robot.poses.contains_key(pose), "{pose}");
+    }
     for (name, pose) in &robot.poses {
         let mut q = model.neutral();
         q[7..].copy_from_slice(pose);
