@@ -12,7 +12,7 @@ walks() {
 
 # 20 s in cycles of 3.5 ms.
 every_frame() {
-    awk -v CYCLES=5715 -v PREFIX=vcan -f "$here/every_frame.awk" "$dbc" "$work/walk.log"
+    awk -v CYCLES=5714 -v PREFIX=vcan -f "$here/every_frame.awk" "$dbc" "$work/walk.log"
 }
 
 decode() {
