@@ -8,7 +8,7 @@ use realtime::clock;
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpStream};
 
-const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
+const EXE: &str = harness::executable!();
 
 /// Both ways to run the scene `stand` refuse with the same error, which holds all of `texts`; no process was started.
 fn refused(site: &Site, scene: &str, texts: &[&str]) {

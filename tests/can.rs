@@ -5,7 +5,7 @@ use harness::{Said, Site};
 use std::fs;
 use std::path::PathBuf;
 
-const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
+const EXE: &str = harness::executable!();
 
 /// Standing up.
 const STAND: &str = "

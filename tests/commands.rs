@@ -6,7 +6,7 @@ use messages::topics::{CONTROLLER_STATE, EVENTS_WATCHDOG, POWER, SIM_STATE};
 use messages::{ControllerState, Event, EventCode, GaitState, Power, Record, SimState};
 use realtime::clock;
 
-const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
+const EXE: &str = harness::executable!();
 
 /// Lola stands up and waits for what she is told.
 const WAIT: &str = "

@@ -17,7 +17,7 @@ use realtime::clock;
 use recording::{End, Log};
 use std::fmt::Write;
 
-const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
+const EXE: &str = harness::executable!();
 
 const SCENE: &str = "
 [[command]]

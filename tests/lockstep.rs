@@ -8,7 +8,7 @@ use recording::{Log, payload_hashes};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
+const EXE: &str = harness::executable!();
 
 /// Standing up, three steps, a point to look at, an order that the head refuses, a push, a bus with faults.
 const SCENE: &str = "

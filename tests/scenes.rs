@@ -4,7 +4,7 @@ use harness::{Site, root};
 use serde_json::Value;
 use std::f64::consts::TAU;
 
-const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
+const EXE: &str = harness::executable!();
 
 /// \[rad\] Largest inclination error of an undisturbed walk.
 const INCLINATION: f64 = 0.03;

@@ -6,7 +6,7 @@ use recording::payload_hashes;
 use std::collections::BTreeMap;
 use std::process::Command;
 
-const EXE: &str = env!("CARGO_BIN_EXE_gangwerk");
+const EXE: &str = harness::executable!();
 
 /// Standing up and the first steps at 1 km/h.
 const SCENE: &str = "

@@ -6,12 +6,10 @@ here=$(cd "$(dirname "$0")" && pwd)
 python=$(sh "$here/setup.sh")
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
-example() {
-    (cd "$here/../.." && cargo run --quiet --package fieldbus --example peers_candump -- "$@")
-}
-example "$directory"
+example=$(sh "$here/example.sh" peers_candump)
+"$example" "$directory"
 "$python" "$here/candump.py" "$directory"
-example "$directory" "$directory/theirs.log" >"$directory/theirs_by_us.txt"
+"$example" "$directory" "$directory/theirs.log" >"$directory/theirs_by_us.txt"
 cmp "$directory/ours.txt" "$directory/theirs_by_us.txt"
 echo "python-can's log: read here the same"
 if command -v log2asc >/dev/null; then

@@ -9,6 +9,4 @@ made=$(sh "$here/mujoco/build.sh")
 if [ "${1:-}" = --points ]; then
     exec "$python" "$here/mujoco/sweep.py" "$made" "${2:?FILE.json}"
 fi
-cd "$here/../.."
-cargo build --quiet --package multibody --example peer
-exec "$python" "$here/mujoco/check.py" "${CARGO_TARGET_DIR:-target}/debug/examples/peer" "$made"
+exec "$python" "$here/mujoco/check.py" "$(sh "$here/example.sh" peer)" "$made"

@@ -4,6 +4,4 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 python=$(sh "$here/setup.sh")
 made=$(sh "$here/mujoco/build.sh")
-cd "$here/../.."
-cargo build --quiet --package multibody --example flight
-exec "$python" "$here/mujoco/flight.py" "${CARGO_TARGET_DIR:-target}/debug/examples/flight" "$made"
+exec "$python" "$here/mujoco/flight.py" "$(sh "$here/example.sh" flight)" "$made"

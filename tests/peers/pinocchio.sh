@@ -4,6 +4,4 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$here/../.."
 python=$(sh tests/peers/setup.sh)
-cargo build --quiet --package multibody --example peer
-target=${CARGO_TARGET_DIR:-target}
-exec "$python" tests/peers/with_pinocchio.py "$target/debug/examples/peer" "$@"
+exec "$python" tests/peers/with_pinocchio.py "$(sh tests/peers/example.sh peer)" "$@"

@@ -9,6 +9,6 @@ if [ $# -gt 0 ]; then
 fi
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
-(cd "$here/../.." && cargo run --quiet --package recording --example peers_log -- "$directory")
+"$(sh "$here/example.sh" peers_log)" "$directory"
 "$python" "$here/rosbags_read.py" "$directory/peers.mcap" "$directory/peers.txt"
 "$python" "$here/traffic_read.py" "$directory/traffic.mcap" "$directory/traffic.txt"

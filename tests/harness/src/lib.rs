@@ -5,3 +5,14 @@ mod running;
 
 pub use place::{Site, root};
 pub use running::{Running, Said, doze};
+
+/// The executable that is tested: the file that `GANGWERK` names while the tests are built, or the one built beside them.
+#[macro_export]
+macro_rules! executable {
+    () => {
+        match option_env!("GANGWERK") {
+            Some(file) => file,
+            None => env!("CARGO_BIN_EXE_gangwerk"),
+        }
+    };
+}
