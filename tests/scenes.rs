@@ -267,6 +267,25 @@ fn johnnie_25kmh() {
     walks(&figures("johnnie_25kmh", 21.0), 2.5);
 }
 
+/// Pushed twice by 2 N s, which 20 kg feel as Lola would 6.
+#[test]
+fn archie_stand() {
+    let f = figures("archie_stand", 10.0);
+    assert_eq!(f["steps"], 0);
+    for axis in 0..2 {
+        // Standing without a push reaches 0.7 mrad: the pushes were there.
+        assert!(f["inclination_error_max_rad"][axis].as_f64().unwrap() > 0.003, "{f:#}");
+    }
+}
+
+/// With the steps of his thesis (6.2), ten times as fast.
+#[test]
+fn archie_walk() {
+    let f = figures("archie_walk", 20.0);
+    walks(&f, 0.75);
+    assert!((number(&f, "step_length_m") - 0.25).abs() < 0.01, "{f:#}");
+}
+
 /// The model is chosen, the same one every time, and it says why.
 #[test]
 fn walk_auto() {

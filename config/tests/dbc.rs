@@ -6,7 +6,8 @@ use messages::layout::{Carries, Layout};
 use messages::{BusFrames, Sensors};
 
 fn robots() -> Vec<Robot> {
-    ["lola", "johnnie"].map(|name| Robot::load(&config::root(None).join("robots").join(name)).unwrap()).into()
+    let load = |name| Robot::load(&config::root(None).join("robots").join(name)).unwrap();
+    ["lola", "johnnie", "archie"].map(load).into()
 }
 
 /// Numbers without a pattern, from -1 to 1.

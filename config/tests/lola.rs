@@ -59,7 +59,7 @@ fn software_ranges_lie_inside_the_measured_ones() {
 
 #[test]
 fn soles_are_flat_in_every_pose() {
-    robot::soles_are_flat_in_every_pose(NAME, 0.2);
+    robot::soles_are_flat_in_every_pose(NAME, |_| 0.2);
 }
 
 /// Heights by hand: hip over sole = ankle height + projected thigh and shank.

@@ -16,15 +16,17 @@ use serde::Serialize;
 
 use crate::scorecard::walk;
 
-/// Robots, and the cycle of their CAN lines \[s\]: Lola's of the thesis (8.2), Johnnie's control cycle (5.5.1).
-const ROBOTS: [(&str, f64); 2] = [("lola", 0.0035), ("johnnie", 0.0015)];
+/// Robots, and the cycle of their CAN lines \[s\]: Lola's of the thesis (8.2), Johnnie's control cycle (5.5.1); Archie's is what
+/// one line per leg leaves room for.
+const ROBOTS: [(&str, f64); 3] = [("lola", 0.0035), ("johnnie", 0.0015), ("archie", 0.0035)];
 /// Classic CAN, and CAN FD with the usual data rate.
 const CLASSIC: Rates = Rates { nominal: 1e6, data: None };
 const FD: Rates = Rates { nominal: 1e6, data: Some(5e6) };
 /// \[s\] Cycle that CAN FD is to allow.
 const FD_CYCLE: f64 = 0.001;
 /// Walks, whose joint laws hear their targets and tell their angles by the bus, and the cycles they are walked with.
-const WALKS: [(&str, &[f64]); 2] = [("walk_2kmh_type3", &[0.001, 0.0035]), ("johnnie_type3", &[0.0015])];
+const WALKS: [(&str, &[f64]); 3] =
+    [("walk_2kmh_type3", &[0.001, 0.0035]), ("johnnie_type3", &[0.0015]), ("archie_walk", &[0.0035])];
 /// \[s\] Integration step of the models with motors.
 const STEP: f64 = 1e-4;
 /// Cycles that are timed together, and how often; the median counts.
