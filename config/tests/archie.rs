@@ -68,7 +68,7 @@ fn kinematics_are_those_of_the_thesis() {
     let torso_from_6: Matrix3<f64> = Matrix3::new(0.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0);
     let right = std::f64::consts::PI - 1.4;
     #[rustfmt::skip]
-    let cases: [(f64, [f64; 6], [f64; 3], [f64; 9]); 3] = [
+    let cases = [
         (1.0, [0.1, 0.2, -0.7, 0.4, 1.4, -0.05], [55.219967872722, 19.200209481480, -8.640259495835],
             [0.074769632876, -0.095717363039, -0.992596437840, 0.996661840171, 0.039895478696, 0.071228695952,
              0.032782287090, -0.994608735731, 0.098380813478]),
@@ -90,9 +90,9 @@ fn kinematics_are_those_of_the_thesis() {
         let foot = model.frame_pose(&data, &model.frame(foot, [0.0; 3]).unwrap());
         let back = foot.inverse(); // foot_from_torso
         let p: Vector3<f64> = 100.0 * foot_from_0.transpose() * back.translation.vector;
-        assert!((p - Vector3::from(position)).amax() < 1e-9, "{p}");
+        assert!((p - Vector3::<f64>::from(position)).amax() < 1e-9, "{p}");
         let r: Matrix3<f64> = foot_from_0.transpose() * back.rotation.matrix() * torso_from_6;
-        assert!((r - Matrix3::from_row_slice(&rotation)).amax() < 1e-9, "{r}");
+        assert!((r - Matrix3::<f64>::from_row_slice(&rotation)).amax() < 1e-9, "{r}");
     }
 }
 
