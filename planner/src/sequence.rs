@@ -48,7 +48,8 @@ impl Builder {
                     parameters.towards(wish, &self.step, share)
                 };
                 if n == 0 && state == GaitState::Starting {
-                    parameters.length = parameters.length.clamp(-most, most);
+                    // Feet that stand side by side have no step before: a step that ends a walk may be as long.
+                    parameters.length = wish.length.clamp(-most * share, most * share);
                 }
                 let wish = if ending { &rest } else { wish };
                 let before = if n == 0 { from.previous.duration } else { last.parameters.duration };

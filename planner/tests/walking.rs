@@ -242,11 +242,41 @@ fn nothing_walks_before_it_stands() {
     assert!(planner.step(1, CYCLE, None, &[Command::Stand]).plan.is_none());
 }
 
+fn shipped(name: &str) -> Gait {
+    let gaits = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../config/gaits"));
+    Gait::load(&gaits.join(name)).expect("a shipped gait")
+}
+
+/// Thesis 8.1.1: Lola speeds up in approximately four steps, and stops as fast. The step that closes the feet is one.
+#[test]
+fn shipped_gaits_are_at_top_speed_with_the_fourth_step() {
+    for (gait, kmh) in [(shipped("lola.toml"), 3.34), (shipped("lola_fast.toml"), 5.0)] {
+        let mut r = Robot::new(&gait);
+        r.stand();
+        r.step(&[forward(kmh), Command::Start]);
+        r.run(10.0);
+        r.step(&[Command::Stop]);
+        r.run(8.0);
+        check(&r, &gait);
+        assert!(r.events.is_empty(), "{:?}", r.events);
+        // The first step of every plan is walked, and all of the last one.
+        let (last, before) = r.plans[1..].split_last().expect("plans");
+        let all = before.iter().flat_map(|p| &p.steps[..1]).chain(&last.steps[..last.step_count as usize]);
+        let lengths: Vec<f64> = all.map(|s| s.landing[0] - s.foothold[0]).collect();
+        let full = lengths.iter().copied().fold(0.0, f64::max);
+        assert!((full - kmh / 3.6 * gait.step.by_speed.last().expect("rows")[2]).abs() < 0.02, "{full}");
+        let is_full = |l: &f64| *l > 0.97 * full;
+        assert_eq!(lengths.iter().position(is_full), Some(3), "{lengths:?}");
+        let down = lengths.len() - 1 - lengths.iter().rposition(is_full).expect("a full one");
+        assert_eq!(down, 4, "{lengths:?}");
+        assert!(lengths[0] <= gait.step.first_length + 1e-12, "{lengths:?}");
+    }
+}
+
 /// The shipped gait passes the same checks.
 #[test]
 fn shipped_gait_walks() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../config/gaits/lola.toml");
-    let gait = Gait::load(std::path::Path::new(path)).expect("the shipped gait");
+    let gait = shipped("lola.toml");
     for command in
         [forward(1.0), forward(2.0), forward(-0.5), step(0.0, 0.2, 0.0, 1.0), step(0.4, 0.0, 0.2, 0.9)]
     {
