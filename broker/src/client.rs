@@ -23,7 +23,7 @@ use crate::message::{
 /// Room in each ring.
 const RING: usize = 128;
 /// How often the thread looks for what the control cycle publishes; what comes in wakes it.
-const POLL: Duration = Duration::from_millis(2);
+const POLL: Duration = Duration::from_millis(10);
 /// Time from one renewal of the registration to the next \[ns\].
 const RENEW: u64 = SECOND / 5;
 /// Renewals without an answer after which the broker counts as gone.

@@ -1,6 +1,7 @@
 //! The broker process: `gangwerk broker --run DIR`.
 //!
-//! Not a real-time process, in either way to run: it sleeps until a queue rings, and looks after TCP connections a thousand times a second.
+//! Not a real-time process, in either way to run: it sleeps until a queue rings, and looks after TCP connections, if it
+//! serves any, a thousand times a second.
 
 use std::error::Error;
 use std::path::Path;
@@ -16,6 +17,8 @@ use crate::tcp;
 
 /// Longest time a message of a TCP connection waits while nothing else happens.
 const POLL: Duration = Duration::from_millis(1);
+/// Without TCP, between two looks whether to end.
+const LOOK: Duration = Duration::from_millis(20);
 
 /// Runs until asked to end. `tcp_port`: another port than that of `system.toml`; 0: no TCP.
 ///
@@ -45,6 +48,7 @@ pub fn serve(run: &Run, tcp_port: u16, stop: &Stop) -> Result<(), String> {
     if tcp_port != 0 {
         tcp::serve(tcp::bind(tcp_port)?, gate)?;
     }
+    let nap = if tcp_port == 0 { LOOK } else { POLL };
     events.write(EventCode::Started, 0);
     while !stop.asked() {
         let busy = exchange.turn(&mut |report| match report {
@@ -52,7 +56,7 @@ pub fn serve(run: &Run, tcp_port: u16, stop: &Stop) -> Result<(), String> {
             Report::Lost(messages) => events.write(EventCode::MessagesLost, messages),
         });
         if !busy {
-            exchange.wait(POLL);
+            exchange.wait(nap);
         }
     }
     events.write(EventCode::Ended, 0);

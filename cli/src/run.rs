@@ -144,7 +144,7 @@ impl Supervisor {
             if clock::now() - begun > START_PATIENCE {
                 return Err(format!("{} did not start within 20 s", process.name()).into());
             }
-            std::thread::park_timeout(LOOK / 10);
+            std::thread::park_timeout(LOOK / 2);
         }
         Ok(())
     }

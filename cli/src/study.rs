@@ -94,6 +94,21 @@ pub(super) enum Task {
     },
     /// What the field bus costs: load of its lines, time of its frames, accuracy of the walk.
     Bus,
+    /// How punctual a bus cycle over CAN lines is, beside cyclictest in the same run: both ends on this machine.
+    Lines {
+        /// The lines, classic CAN or CAN FD.
+        #[arg(long, default_value = "can:vcan0-8")]
+        bus: Address,
+        /// Whose frames they carry.
+        #[arg(long, default_value = "lola")]
+        robot: String,
+        /// Bus cycle [ms].
+        #[arg(long, value_name = "MS", default_value_t = 3.5)]
+        cycle: f64,
+        /// How long [s]; cyclictest runs as long before, and again beside it.
+        #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=3600))]
+        seconds: u64,
+    },
     /// What the walking robot does when the bus fails: lost, late, corrupted frames, silent nodes, cables.
     BusFaults {
         /// At how many instants of a stride each fault begins.
@@ -145,6 +160,10 @@ pub(super) fn run(config: &Path, what: Task, json: bool) -> Result<ExitCode, Box
             let report = studies::bus::run(config)?;
             (serde_json::to_string(&report)?, studies::bus::table(&report))
         }
+        Task::Lines { bus, robot, cycle, seconds } => {
+            let report = lines_study(config, bus, robot, cycle, seconds)?;
+            (serde_json::to_string(&report)?, studies::lines::table(&report))
+        }
         Task::Tables { out } => {
             let report = studies::tables::run(config, |what| eprintln!("{what} ..."))?;
             tracing::info!("{}", studies::tables::draw(&report, &out)?);
@@ -173,6 +192,24 @@ pub(super) fn run(config: &Path, what: Task, json: bool) -> Result<ExitCode, Box
     };
     println!("{}", if json { object } else { table });
     Ok(ExitCode::SUCCESS)
+}
+
+/// How punctual a cycle over CAN lines is.
+fn lines_study(
+    config: &Path,
+    bus: Address,
+    robot: String,
+    cycle_ms: f64,
+    seconds: u64,
+) -> Result<studies::lines::Report, Box<dyn Error>> {
+    let Address::Can { fd, interfaces } = bus else {
+        return Err(format!("--bus {bus}: must be can:INTERFACES or canfd:INTERFACES").into());
+    };
+    if !(0.1..=1000.0).contains(&cycle_ms) {
+        return Err(format!("--cycle {cycle_ms}: must be 0.1 to 1000 ms").into());
+    }
+    let order = studies::lines::Order { robot, interfaces, fd, cycle: cycle_ms * 1e-3, seconds };
+    studies::lines::run(config, &order)
 }
 
 /// What a gait survives, with progress on standard error.
@@ -243,7 +280,7 @@ fn realtime_study(
     let row = setup.system.process(messages::Process::Lowlevel);
     let (core, priority) = row.map_or((0, 0), |row| (row.core.unwrap_or(0), row.priority));
     let cyclictest = || {
-        let found = (seconds > 0).then(|| studies::cycles::cyclictest(core, priority, seconds))?;
+        let found = (seconds > 0).then(|| studies::cycles::cyclictest(Some(core), priority, seconds))?;
         found.inspect_err(|error| tracing::warn!("{error}")).ok()
     };
     std::fs::create_dir_all(out)

@@ -13,9 +13,10 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
-/// Between two looks at empty rings: a ring holds 256 cycles.
+/// Between two looks at empty rings: a ring holds 256 cycles. In lockstep half of them, without anybody's sleep, take longer
+/// than this on any machine; more looks only take time from those that work.
 const NAP_REAL_TIME: Duration = Duration::from_millis(5);
-const NAP_LOCKSTEP: Duration = Duration::from_micros(200);
+const NAP_LOCKSTEP: Duration = Duration::from_millis(2);
 
 /// How much of the log the death of this very process may cost.
 const FLUSH_NS: u64 = 500_000_000;

@@ -9,6 +9,7 @@
 //! | [`limits`] | where do methods fail, and is it told? |
 //! | [`speed`], [`simulation_speed`] | how fast is each part, and how accurate is it at that speed? |
 //! | [`bus`] | what does the field bus cost, in time, room on its lines and accuracy of the walk? |
+//! | [`lines`] | how punctual is a cycle over CAN lines, beside cyclictest? |
 //! | [`tables`] | what do look-up tables, counts and a slower bus cost the joints? |
 //! | [`arm_swing`] | what do swinging arms take from the soles? |
 //! | [`figures_of_thesis`] | are the figures of the thesis found again? |
@@ -28,6 +29,7 @@ pub mod depth;
 pub mod figures;
 pub mod figures_of_thesis;
 pub mod limits;
+pub mod lines;
 mod parallel;
 pub mod push;
 pub mod scorecard;

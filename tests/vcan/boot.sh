@@ -1,18 +1,20 @@
 #!/bin/sh
-# Runs a command in a virtual machine that has CAN: tests/vcan/boot.sh [-t SECONDS] [-k DIR] [-i] COMMAND...
+# Runs a command in a virtual machine that has CAN: tests/vcan/boot.sh [-t SECONDS] [-c CORES] [-k DIR] [-i] COMMAND...
 #
 # The machine is emulated (no KVM is needed, none is used), runs Debian's kernel, and sees all files of this one at their
 # places; what it writes stays in its memory and is gone at the end. The command runs as root in this folder, its output is
 # shown as it comes, its exit code is returned. 124: the time limit (-t, 600 s) was reached; 125: the machine itself failed.
-# -k: what is written to /run/kept is kept in that folder.
+# -c: so many cores, 2. -k: what is written to /run/kept is kept in that folder.
 # -i: with the keyboard, for a shell: tests/vcan/boot.sh -i bash
 set -u
 limit=600
+cores=2
 keyboard=
 kept=
-while getopts t:k:i option; do
+while getopts t:c:k:i option; do
     case $option in
     t) limit=$OPTARG ;;
+    c) cores=$OPTARG ;;
     k) kept=$OPTARG ;;
     i) keyboard=yes ;;
     *) exit 2 ;;
@@ -26,7 +28,7 @@ fail() {
     exit 125
 }
 
-[ $# -gt 0 ] || fail "no command; usage: boot.sh [-t SECONDS] [-k DIR] [-i] COMMAND..."
+[ $# -gt 0 ] || fail "no command; usage: boot.sh [-t SECONDS] [-c CORES] [-k DIR] [-i] COMMAND..."
 for tool in qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio; do
     command -v "${tool%%:*}" >/dev/null || fail "${tool%%:*} is missing: apt-get install ${tool##*:}"
 done
@@ -70,7 +72,7 @@ set --
 
 # All files of the host at their places: one tree, whatever is mounted in it.
 timeout --foreground "$limit" qemu-system-x86_64 \
-    -accel tcg,thread=multi -cpu max -smp 2 -m 3G -no-reboot -nodefaults -display none \
+    -accel tcg,thread=multi -cpu max -smp "$cores" -m 2G -no-reboot -nodefaults -display none \
     -kernel "$kernel/vmlinuz" -initrd "$work/initramfs" \
     -append "console=ttyS0 quiet panic=-1 mitigations=off random.trust_cpu=on tsc=reliable" \
     -virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap "$@" \

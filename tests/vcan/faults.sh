@@ -8,39 +8,51 @@ said() {
     grep -qE "$1" "$work/fault/said"
 }
 
-# disturbed PATTERN COMMAND...: walks, does that at cycle 1200 and waits until the run tells of it; then to the end.
+# disturbed PATTERN COMMAND...: walks, does that at cycle 400, in mid-step, and waits until the run tells of it.
 disturbed() {
     pattern=$1
     shift
-    brief can_2kmh 5.0
-    timeout 390 candump -n 1200 vcan0,080:7FF >/dev/null &
+    brief can_2kmh 3.5
+    timeout 390 candump -n 400 vcan0,080:7FF >/dev/null &
     waiting=$!
     within 20 listened vcan0 || return 1
     walk fault can_2kmh --lockstep --bus can:vcan0-8 &
     running=$!
-    wait "$waiting" || because "cycle 1200 was not reached: $(tail -n 5 "$work/fault/said")" || return 1
+    wait "$waiting" || because "cycle 400 was not reached: $(tail -n 5 "$work/fault/said")" || return 1
     "$@" || because "could not: $*"
     within 120 said "$pattern" || because "no event like '$pattern': $(tail -n 5 "$work/fault/said")" || return 1
     grep -E "$pattern" "$work/fault/said" | sed 's/^/        /'
 }
 
-# at_rest: the end of the run, and what the joints did last.
+# at_rest STATE: the end of the run, and what the joints did last.
 at_rest() {
     wait "$running"
-    "$python" "$here/at_rest.py" "$work/fault/can_2kmh.mcap"
+    "$python" "$here/at_rest.py" "$work/fault/can_2kmh.mcap" "$1"
 }
 
 pulled() {
     disturbed 'lowlevel: (NodeSilent|BusSilent)' ip link set vcan3 down
     code=$?
     ip link set vcan3 up
-    at_rest && return $code
+    return $code
+}
+
+# Frames go both ways again and are believed; the stop stays until an operator resets it.
+plugged() {
+    within 60 said 'lowlevel: NodeBack \(3' || because "no event NodeBack: $(tail -n 5 "$work/fault/said")" || return 1
+    grep -E 'lowlevel: NodeBack' "$work/fault/said" | sed 's/^/        /'
+    timeout 60 candump -L -n 150 vcan3 >"$work/plugged.log"
+    awk 'FNR == NR && /^BO_ / { ours[sprintf("%03X", $2)] = $5 == "PC" }
+         FNR != NR { n[ours[substr($3, 1, index($3, "#") - 1)]]++ }
+         END { print "        heard on vcan3 after it: " n[1] + 0 " frames of ours, " n[0] + 0 " of the drives"; exit !(n[0] && n[1]) }' \
+        "$here/../../config/robots/lola/can/lola.dbc" "$work/plugged.log" || because "not both ends are heard on vcan3" || return 1
+    at_rest Stopped
 }
 
 bus_off() {
     disturbed 'lowlevel: BusOff' "$python" -S -c "$bus_off_frame"
     code=$?
-    at_rest && return $code
+    at_rest Off && return $code
 }
 
 # CAN_ERR_FLAG with CAN_ERR_BUSOFF (linux/can/error.h), as a driver reports it.
@@ -48,5 +60,6 @@ bus_off_frame='import socket, struct
 line = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
 line.bind(("vcan3",))
 line.send(struct.pack("=IB3x8s", 0x20000040, 8, bytes(8)))'
-step "a cable is pulled: the run says which node is silent, and the joints come to rest" pulled
+step "a cable is pulled: the run says which node is silent" pulled
+step "it is plugged in again: frames are heard and read again, the robot stays stopped, its joints at rest" plugged
 step "a controller leaves the bus: the run says which, and the joints come to rest" bus_off

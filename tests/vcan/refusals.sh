@@ -38,8 +38,31 @@ no_fd() {
     return $code
 }
 
+# forbidden: under rules that forbid sockets of CAN, as a container's may.
+forbidden() {
+    allowed=$GANGWERK
+    printf '#!/bin/sh\nexec "%s" -S "%s/forbidden.py" "%s" "$@"\n' "$python" "$here" "$allowed" >"$work/forbidden"
+    chmod +x "$work/forbidden"
+    GANGWERK="$work/forbidden"
+    refused can:vcan0-8 'vcan0: not permitted; .*seccomp'
+    code=$?
+    GANGWERK=$allowed
+    return $code
+}
+
+# ordinary: who has no capability at all may use the lines; what is missing for real time is said.
+ordinary() {
+    prlimit --rtprio=0:0 --memlock=65536:65536 setpriv --bounding-set=-all --inh-caps=-all \
+        "$GANGWERK" study lines --config "$here/../../config" --bus can:vcan0-8 --cycle 224 --seconds 2 \
+        >"$work/lines" 2>&1 || because "gangwerk ended with $?: $(tail -n 5 "$work/lines")" || return 1
+    grep -E 'frames lost|^degraded' "$work/lines" | sed 's/^/        /'
+    grep -q '^degraded: .*SCHED_FIFO' "$work/lines" || because "no word of the priority" || return 1
+}
+
 step "an interface that is not there" refused can:vcan0-7,vcan9 'vcan9: there is no such interface; .*ip link add dev vcan9 type vcan'
 step "an interface that is down" down
 step "an interface that is no CAN interface" refused can:vcan0-7,lo 'lo: is not a CAN interface'
 step "an interface without CAN FD" no_fd
 step "as many interfaces as lines, or one" refused can:vcan0-3 'the robot has 9 CAN lines; give 1 or 9 interfaces, not 4'
+step "sockets that are forbidden" forbidden
+step "no right is needed for the lines: an ordinary user" ordinary

@@ -1,12 +1,13 @@
 #!/bin/sh
 # A walk recorded by candump, played back into our end with nobody else at the far one: canplayer with the recorded
-# timing, and our own replay as fast as it is consumed. Either way the same is sensed and commanded, bit for bit.
+# timing, and our own replay as fast as it is consumed. Either way the same is sensed and commanded, bit for bit;
+# and so it is with all controllers on one interface.
 . "$(dirname "$0")/step.sh"
 . "$here/walking.sh"
 
 # What the drives said.
 from_drives() {
-    brief can_2kmh 4.5
+    brief can_2kmh 2.8
     recorded walk can_2kmh --lockstep --bus can:vcan0-8 || return 1
     awk 'FNR == NR && /^BU_:/ { computer = $2 } FNR == NR && /^BO_ / && $5 != computer { theirs[sprintf("%03X", $2)] = 1 }
          FNR != NR && substr($3, 1, index($3, "#") - 1) in theirs' "$dbc" "$work/walk.log" >"$work/answers.log"
@@ -29,12 +30,18 @@ answered_by() {
 }
 
 same() {
-    "$python" "$here/same.py" "$work/walk/can_2kmh.mcap" "$work/canplayer/can_2kmh.mcap" "$work/ours/can_2kmh.mcap"
+    "$python" "$here/same.py" "$work/walk/can_2kmh.mcap" "$work/canplayer/can_2kmh.mcap" "$work/ours/can_2kmh.mcap" \
+        "$work/one/can_2kmh.mcap"
 }
 
+# All controllers on one interface, and the robot itself at its far end.
+one_line() {
+    walk one can_2kmh --lockstep --bus can:vcan0 || because "gangwerk ended with $?: $(tail -n 5 "$work/one/said")"
+}
 
 dbc="$here/../../config/robots/lola/can/lola.dbc"
 step "candump records a walk" from_drives
 step "canplayer replays it into the joint loop" answered_by canplayer canplayer -I "$work/answers.log"
 step "gangwerk can replay does the same" answered_by ours "$GANGWERK" can replay "$work/walk.log" --as-fast-as-consumed --robot lola
-step "all three logs are the same" same
+step "all controllers on one interface walk, too" one_line
+step "all four logs are the same" same

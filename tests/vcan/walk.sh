@@ -20,7 +20,12 @@ decode() {
     "$python" "$here/decode.py" "$dbc" "$work/sample.log" "$work/sample.ticks" "$work/walk/can_2kmh.mcap"
 }
 
+counted() {
+    "$python" "$here/counted.py" "$work/walk/can_2kmh.mcap"
+}
+
 dbc="$here/../../config/robots/lola/can/lola.dbc"
 step "Lola walks 2 km/h over nine lines" walks
+step "the joint loop allocated nothing and lost nothing" counted
 step "candump heard each message of the DBC once per cycle, on its line" every_frame
 step "cantools decodes to the values of the log" decode

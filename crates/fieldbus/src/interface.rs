@@ -51,7 +51,11 @@ impl InterfaceError {
                 "the interface is down; `ip link set {interface} up` (a real one first needs its bit rate: \
                  `ip link set {interface} type can bitrate 1000000`)"
             ),
-            Some(EPERM | EACCES) => "not permitted; run as root or with the capability CAP_NET_RAW".into(),
+            Some(EPERM | EACCES) => {
+                "not permitted; SocketCAN asks for no right of its own: rules of a container or service forbid it \
+                 (seccomp, SELinux, AppArmor)"
+                    .into()
+            }
             Some(EINVAL) => format!(
                 "it does not take this frame; CAN FD needs `ip link set {interface} mtu 72` while it is down"
             ),
@@ -153,7 +157,7 @@ mod tests {
     #[test]
     fn every_error_of_the_system_says_what_to_do() {
         for (number, advice) in
-            [(97, "modprobe"), (19, "ip link add"), (100, "ip link set"), (1, "CAP_NET_RAW")]
+            [(97, "modprobe"), (19, "ip link add"), (100, "ip link set"), (1, "seccomp")]
         {
             let said = InterfaceError::of("vcan0", &io::Error::from_raw_os_error(number)).to_string();
             assert!(said.starts_with("vcan0: ") && said.contains(advice), "{said}");

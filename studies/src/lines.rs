@@ -1,0 +1,251 @@
+//! How punctual a bus cycle over CAN lines is, beside `cyclictest` in the same run.
+//!
+//! Both ends of the lines and nothing else: the near end does in each cycle what the joint loop does with its lines, the
+//! far end answers each SYNC with all frames of its line. So what is measured is the cost of the lines themselves.
+
+use std::error::Error;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use config::Robot;
+use fieldbus::{End, Lines};
+use messages::frames::{DriveCommand, decode_sensors, encode_sensors, encode_targets};
+use messages::layout::Layout;
+use messages::{BusFrames, Frame, MAX_FRAMES, Sensors};
+use realtime::{Histogram, Period, Schedule, allocations, clock, prepare_thread};
+use serde::Serialize;
+
+use crate::cycles::cyclictest;
+
+/// SCHED_FIFO priorities of near end and `cyclictest`, and of the far end.
+const PRIORITY: [u8; 2] = [80, 79];
+/// Cycles before counting begins: everything has been touched once.
+const WARM_UP: u64 = 20;
+/// Share of a cycle within which the answers are to be there; as the joint loop waits for its targets.
+const ANSWER: (u64, u64) = (7, 10);
+/// The far end looks this often whether to end.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// What is to be measured.
+#[derive(Clone, Debug)]
+pub struct Order {
+    /// Whose frames.
+    pub robot: String,
+    /// One interface per line, or one for all.
+    pub interfaces: Vec<String>,
+    /// Whether they carry CAN FD.
+    pub fd: bool,
+    /// \[s\] Bus cycle.
+    pub cycle: f64,
+    /// \[s\] Duration, and that of `cyclictest` alone before it.
+    pub seconds: u64,
+}
+
+/// What was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Whose frames.
+    pub robot: String,
+    /// \[s\] Bus cycle.
+    pub cycle: f64,
+    /// Cycles counted.
+    pub cycles: u64,
+    /// Whole periods skipped, because a cycle had not ended.
+    pub skipped: u64,
+    /// Cycles whose answers were not there after 70 % of it.
+    pub late: u64,
+    /// Frames that should have come, and those that had not by the next cycle.
+    pub frames: [u64; 2],
+    /// Frames that could not be sent, by near and far end.
+    pub unsent: [u32; 2],
+    /// Allocations and frees in the cycles, of near and far end.
+    pub allocations: [[u64; 2]; 2],
+    /// \[us\] Wake-up after its time: p50, p99, p99.9, max.
+    pub lateness_us: [f64; 4],
+    /// \[us\] Targets encoded and sent, up to the last SYNC: likewise.
+    pub sent_us: [f64; 4],
+    /// \[us\] From the last SYNC until the last answer was read: likewise; no more than 70 % of the cycle are waited for.
+    pub answered_us: [f64; 4],
+    /// \[us\] Lateness of `cyclictest` alone and beside this, at the same priority; or why it did not run.
+    pub cyclictest_us: [Result<[u64; 4], String>; 2],
+    /// What real time was asked for and not granted.
+    pub missing: Vec<String>,
+}
+
+/// Runs `cyclictest` alone, then both ends of the lines beside it.
+///
+/// # Errors
+/// The robot's files are wrong, or an interface cannot be used.
+pub fn run(config: &Path, order: &Order) -> Result<Report, Box<dyn Error>> {
+    let robot = Robot::load(&config.join("robots").join(&order.robot))?;
+    let layout = if order.fd { robot.layout } else { robot.classic };
+    let open = |end| Lines::open(&order.interfaces, &layout, order.fd, end);
+    let (near, far) = (open(End::Near)?, open(End::Far)?);
+    let beside = || cyclictest(None, PRIORITY[0], order.seconds);
+    let alone = beside();
+    let stop = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        // Each thread takes its priority by itself; cyclictest would inherit it.
+        let other = scope.spawn(beside);
+        let far = scope.spawn(|| answer(far, &layout, &stop));
+        let near = scope.spawn(|| drive(near, &layout, order));
+        let report = near.join();
+        stop.store(true, Ordering::Relaxed);
+        let (far, other) = (far.join(), other.join());
+        let died = |_| "a thread has died";
+        let (mut report, (allocated, unsent)) = (report.map_err(died)?, far.map_err(died)?);
+        (report.allocations[1], report.unsent[1]) = (allocated, unsent);
+        report.cyclictest_us = [alone, other.map_err(died)?];
+        Ok(report)
+    })
+}
+
+/// The near end: one cycle after the other.
+fn drive(mut lines: Lines, layout: &Layout, order: &Order) -> Report {
+    let granted = prepare_thread(&Schedule { priority: PRIORITY[0], core: None });
+    let answers = layout.sent(false).count().min(MAX_FRAMES);
+    let cycle_ns = (order.cycle * 1e9) as u64;
+    let [mut lateness, mut sent, mut answered] = [(); 3].map(|()| Histogram::new());
+    let mut command = DriveCommand::default();
+    let (mut tx, mut rx, mut sensors) = (BusFrames::default(), BusFrames::default(), Sensors::default());
+    let begin = clock::now() + cycle_ns;
+    let mut period = Period::new(begin, cycle_ns, u32::MAX);
+    let (mut tick, mut late, mut lost, mut skipped_before) = (0, 0, 0, 0);
+    let end = begin + WARM_UP * cycle_ns + order.seconds * clock::SECOND;
+    while period.planned() < end || tick <= WARM_UP + 1 {
+        clock::sleep_until(period.planned());
+        let woken = clock::now();
+        lines.receive(&mut rx);
+        rx.header.tick = tick;
+        let missed = decode_sensors(layout, &rx, &mut sensors).missed();
+        tick += 1;
+        rx.count = 0;
+        command.targets.header.tick = tick;
+        let begun = clock::now();
+        encode_targets(layout, &command, &mut tx);
+        lines.send(&tx);
+        let synced = clock::now();
+        let complete = collect(&mut lines, &mut rx, answers, period.planned() + cycle_ns * ANSWER.0 / ANSWER.1);
+        let ended = clock::now();
+        if tick == WARM_UP {
+            allocations::arm();
+            skipped_before = period.skipped();
+        } else if tick > WARM_UP {
+            lateness.record(woken.saturating_sub(period.planned()));
+            sent.record(synced - begun);
+            answered.record(ended - synced);
+            late += u64::from(!complete);
+            // Of the cycle before.
+            lost += if tick > WARM_UP + 1 { u64::from(missed) } else { 0 };
+        }
+        period.finish(clock::now());
+    }
+    let allocated = allocations::counted();
+    allocations::disarm();
+    let cycles = tick - WARM_UP;
+    let us = |histogram: &Histogram| histogram.percentiles().map(|ns| ns as f64 * 1e-3);
+    Report {
+        robot: order.robot.clone(),
+        cycle: order.cycle,
+        cycles,
+        skipped: period.skipped() - skipped_before,
+        late,
+        frames: [(cycles - 1) * answers as u64, lost],
+        unsent: [lines.take_trouble().unsent, 0],
+        allocations: [allocated, [0; 2]],
+        lateness_us: us(&lateness),
+        sent_us: us(&sent),
+        answered_us: us(&answered),
+        cyclictest_us: [const { Ok([0; 4]) }; 2],
+        missing: granted.missing.clone(),
+    }
+}
+
+/// Reads until all answers are there; `false`: it is too late for that.
+fn collect(lines: &mut Lines, rx: &mut BusFrames, answers: usize, until_ns: u64) -> bool {
+    while rx.as_slice().len() < answers {
+        let left = until_ns.saturating_sub(clock::now());
+        if left == 0 {
+            return false;
+        }
+        if lines.receive(rx) == 0 {
+            // Lines are answered in their order: the last one is worth waking up for.
+            lines.wait(Some(usize::MAX), Duration::from_nanos(left));
+        }
+    }
+    true
+}
+
+/// The far end: every SYNC is answered with all frames of its line. Returns allocations and frees, and what could not be
+/// sent.
+fn answer(mut lines: Lines, layout: &Layout, stop: &AtomicBool) -> ([u64; 2], u32) {
+    prepare_thread(&Schedule { priority: PRIORITY[1], core: None });
+    let (mut rx, mut tx, mut sensors) = (BusFrames::default(), BusFrames::default(), Sensors::default());
+    let mut cycles = 0;
+    while !stop.load(Ordering::Relaxed) {
+        lines.wait(None, LOOK);
+        rx.count = 0;
+        lines.receive(&mut rx);
+        for frame in rx.as_slice() {
+            let Some(counter) = sync(layout, frame) else { continue };
+            if counter != sensors.header.tick || cycles == 0 {
+                sensors.header.tick = counter;
+                encode_sensors(layout, &sensors, &mut tx);
+                cycles += 1;
+                if cycles == WARM_UP {
+                    allocations::arm();
+                }
+            }
+            lines.send_on(frame.line, &tx);
+        }
+    }
+    let allocated = allocations::counted();
+    allocations::disarm();
+    (allocated, lines.take_trouble().unsent)
+}
+
+/// The counter of a SYNC; none if it is another frame.
+fn sync(layout: &Layout, frame: &Frame) -> Option<u64> {
+    let message = layout.find(frame.line, frame.id).map(|i| &layout.messages[i])?;
+    let counter = message.counter().filter(|_| message.is_sync() && message.len == frame.len)?;
+    Some(counter.get(&frame.data) as u64)
+}
+
+/// As a table.
+pub fn table(r: &Report) -> String {
+    let row = |name: &str, v: [f64; 4]| {
+        format!("{name:24}{:10.1}{:10.1}{:10.1}{:10.1}\n", v[0], v[1], v[2], v[3])
+    };
+    let beside = |name: &str, v: &Result<[u64; 4], String>| match v {
+        Ok(v) => row(name, v.map(|us| us as f64)),
+        Err(why) => format!("{name:24} {why}\n"),
+    };
+    let mut text = format!(
+        "{}, cycle {} ms: {} cycles, {} skipped; {} with late answers; {} of {} frames lost, {} and {} unsent\n",
+        r.robot,
+        r.cycle * 1e3,
+        r.cycles,
+        r.skipped,
+        r.late,
+        r.frames[1],
+        r.frames[0],
+        r.unsent[0],
+        r.unsent[1]
+    );
+    let [near, far] = r.allocations;
+    text += &format!(
+        "allocations and frees: near end {}, {}; far end {}, {}\n",
+        near[0], near[1], far[0], far[1]
+    );
+    text += &format!("{:24}{:>10}{:>10}{:>10}{:>10}\n", "[us]", "p50", "p99", "p99.9", "max");
+    text += &row("wake-up after its time", r.lateness_us);
+    text += &row("targets and SYNC sent", r.sent_us);
+    text += &row("last SYNC to last answer", r.answered_us);
+    text += &beside("cyclictest beside it", &r.cyclictest_us[1]);
+    text += &beside("cyclictest alone", &r.cyclictest_us[0]);
+    for missing in &r.missing {
+        text += &format!("degraded: {missing}\n");
+    }
+    text
+}
