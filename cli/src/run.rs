@@ -85,7 +85,7 @@ pub fn run(order: &Order) -> Result<Outcome, Box<dyn Error>> {
     };
     run.save()?;
     let mut supervisor = Supervisor { children: Vec::new(), space, order: order.clone(), stop };
-    let result = supervisor.start().and_then(|()| supervisor.watch(&setup));
+    let result = supervisor.start(setup.system.peer_timeout).and_then(|()| supervisor.watch(&setup));
     supervisor.end();
     result
 }
@@ -104,8 +104,9 @@ struct Supervisor {
 }
 
 impl Supervisor {
-    /// Starts the processes one after the other; each has built everything before the next begins.
-    fn start(&mut self) -> Result<(), Box<dyn Error>> {
+    /// Starts the processes one after the other; each has built everything before the next begins. Who waits longer for
+    /// peers, `peer_timeout` \[s\], waits longer for their start, too.
+    fn start(&mut self, peer_timeout: f64) -> Result<(), Box<dyn Error>> {
         for process in Process::ALL {
             let wanted = match process {
                 Process::Logger => self.order.log.is_some(),
@@ -124,12 +125,12 @@ impl Supervisor {
                 .process_group(0) // the terminal's Ctrl-C is the supervisor's to hear
                 .spawn()?;
             self.children.push((process, child));
-            self.wait_until_started(process)?;
+            self.wait_until_started(process, START_PATIENCE.max((peer_timeout * 1e9) as u64))?;
         }
         Ok(())
     }
 
-    fn wait_until_started(&mut self, process: Process) -> Result<(), Box<dyn Error>> {
+    fn wait_until_started(&mut self, process: Process, patience: u64) -> Result<(), Box<dyn Error>> {
         let mut events = self.events(process)?;
         let begun = clock::now();
         while events.follow().is_none_or(|e| e.code != EventCode::Started as u64) {
@@ -141,8 +142,9 @@ impl Supervisor {
                 )
                 .into());
             }
-            if clock::now() - begun > START_PATIENCE {
-                return Err(format!("{} did not start within 20 s", process.name()).into());
+            if clock::now() - begun > patience {
+                let seconds = patience / clock::SECOND;
+                return Err(format!("{} did not start within {seconds} s", process.name()).into());
             }
             std::thread::park_timeout(LOOK / 2);
         }

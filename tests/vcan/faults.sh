@@ -13,14 +13,14 @@ disturbed() {
     pattern=$1
     shift
     brief can_2kmh 3.5
-    timeout 390 candump -n 400 vcan0,080:7FF >/dev/null &
+    timeout 800 candump -n 400 vcan0,080:7FF >/dev/null &
     waiting=$!
     within 20 listened vcan0 || return 1
     walk fault can_2kmh --lockstep --bus can:vcan0-8 &
     running=$!
     wait "$waiting" || because "cycle 400 was not reached: $(tail -n 5 "$work/fault/said")" || return 1
     "$@" || because "could not: $*"
-    within 120 said "$pattern" || because "no event like '$pattern': $(tail -n 5 "$work/fault/said")" || return 1
+    within 240 said "$pattern" || because "no event like '$pattern': $(tail -n 5 "$work/fault/said")" || return 1
     grep -E "$pattern" "$work/fault/said" | sed 's/^/        /'
 }
 
@@ -39,9 +39,9 @@ pulled() {
 
 # Frames go both ways again and are believed; the stop stays until an operator resets it.
 plugged() {
-    within 60 said 'lowlevel: NodeBack \(3' || because "no event NodeBack: $(tail -n 5 "$work/fault/said")" || return 1
+    within 120 said 'lowlevel: NodeBack \(3' || because "no event NodeBack: $(tail -n 5 "$work/fault/said")" || return 1
     grep -E 'lowlevel: NodeBack' "$work/fault/said" | sed 's/^/        /'
-    timeout 60 candump -L -n 150 vcan3 >"$work/plugged.log"
+    timeout 120 candump -L -n 150 vcan3 >"$work/plugged.log"
     awk 'FNR == NR && /^BO_ / { ours[sprintf("%03X", $2)] = $5 == "PC" }
          FNR != NR { n[ours[substr($3, 1, index($3, "#") - 1)]]++ }
          END { print "        heard on vcan3 after it: " n[1] + 0 " frames of ours, " n[0] + 0 " of the drives"; exit !(n[0] && n[1]) }' \

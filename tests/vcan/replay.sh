@@ -19,13 +19,13 @@ from_drives() {
 answered_by() {
     name=$1
     shift
-    timeout 60 candump -n 1 vcan8,0A0:7FF >/dev/null &
+    timeout 240 candump -n 1 vcan8,0A0:7FF >/dev/null &
     waiting=$!
     within 20 listened vcan8 || because "candump did not start" || return 1
     walk "$name" can_2kmh --lockstep --bus can:vcan0-8 --no-robot &
     running=$!
-    wait "$waiting" || because "no SYNC on vcan8 within 60 s: $(tail -n 5 "$work/$name/said")" || return 1
-    timeout 300 "$@" >"$work/player.said" 2>&1 || because "$1 ended with $?: $(tail -n 5 "$work/player.said")" || return 1
+    wait "$waiting" || because "no SYNC on vcan8 within 240 s: $(tail -n 5 "$work/$name/said")" || return 1
+    timeout 800 "$@" >"$work/player.said" 2>&1 || because "$1 ended with $?: $(tail -n 5 "$work/player.said")" || return 1
     wait "$running" || because "gangwerk ended with $?: $(tail -n 5 "$work/$name/said")"
 }
 

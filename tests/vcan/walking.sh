@@ -23,12 +23,12 @@ walk() {
     scene=$2
     shift 2
     mkdir -p "$place"
-    timeout 400 "$GANGWERK" run "$scene" --config "$work/config" --dir "$place/run" --out "$place" --no-plots "$@" >"$place/said" 2>&1
+    timeout 900 "$GANGWERK" run "$scene" --config "$work/config" --dir "$place/run" --out "$place" --no-plots "$@" >"$place/said" 2>&1
 }
 
 # recorded NAME SCENE ARGUMENTS...: the same, and the traffic of all lines in $work/NAME.log.
 recorded() {
-    listen "$work/$1.log" 500 || return 1
+    listen "$work/$1.log" 1000 || return 1
     walk "$@" || because "gangwerk ended with $?: $(tail -n 5 "$work/$1/said")"
     code=$?
     listened_out
