@@ -126,7 +126,8 @@ fn drive(mut lines: Lines, layout: &Layout, order: &Order) -> Report {
         encode_targets(layout, &command, &mut tx);
         lines.send(&tx);
         let synced = clock::now();
-        let complete = collect(&mut lines, &mut rx, answers, period.planned() + cycle_ns * ANSWER.0 / ANSWER.1);
+        let complete =
+            collect(&mut lines, &mut rx, answers, period.planned() + cycle_ns * ANSWER.0 / ANSWER.1);
         let ended = clock::now();
         if tick == WARM_UP {
             allocations::arm();
@@ -214,9 +215,8 @@ fn sync(layout: &Layout, frame: &Frame) -> Option<u64> {
 
 /// As a table.
 pub fn table(r: &Report) -> String {
-    let row = |name: &str, v: [f64; 4]| {
-        format!("{name:24}{:10.1}{:10.1}{:10.1}{:10.1}\n", v[0], v[1], v[2], v[3])
-    };
+    let row =
+        |name: &str, v: [f64; 4]| format!("{name:24}{:10.1}{:10.1}{:10.1}{:10.1}\n", v[0], v[1], v[2], v[3]);
     let beside = |name: &str, v: &Result<[u64; 4], String>| match v {
         Ok(v) => row(name, v.map(|us| us as f64)),
         Err(why) => format!("{name:24} {why}\n"),

@@ -156,8 +156,7 @@ mod tests {
 
     #[test]
     fn every_error_of_the_system_says_what_to_do() {
-        for (number, advice) in
-            [(97, "modprobe"), (19, "ip link add"), (100, "ip link set"), (1, "seccomp")]
+        for (number, advice) in [(97, "modprobe"), (19, "ip link add"), (100, "ip link set"), (1, "seccomp")]
         {
             let said = InterfaceError::of("vcan0", &io::Error::from_raw_os_error(number)).to_string();
             assert!(said.starts_with("vcan0: ") && said.contains(advice), "{said}");
