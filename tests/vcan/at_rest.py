@@ -20,8 +20,9 @@ def decoder(record):
 
 
 with open(sys.argv[1], "rb") as stream:
-    records = list(make_reader(stream).iter_messages(topics=["/gangwerk/sim_state"]))
-    read = list(make_reader(stream).iter_messages(topics=["/gangwerk/sensors"]))[-1]
+    reader = make_reader(stream)
+    records = list(reader.iter_messages(topics=["/gangwerk/sim_state"]))
+    read = list(reader.iter_messages(topics=["/gangwerk/sensors"]))[-1]
     sensors = decoder(read)(read[2].data)
     decode = decoder(records[0])
     states = [decode(message.data) for _, _, message in records[::10] + records[-LAST:]]
