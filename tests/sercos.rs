@@ -1,7 +1,9 @@
 //! A walk over Sercos III: joint loop and simulated robot as master and slaves on veth pairs. Needs root; elsewhere left out
 //! and said so, but a failure where CI is true.
 
-use harness::{Said, Site, doze};
+use harness::{Running, Said, Site, doze};
+use messages::topics::{POWER, SENSORS};
+use messages::{Event, EventCode, Power, Process, Sensors, StartUp, Topic};
 use recording::payload_hashes;
 use std::collections::BTreeMap;
 use std::process::Command;
@@ -117,6 +119,51 @@ fn a_cable_pulled_while_walking_changes_nothing() {
         assert!(format!("{}{}", said.out, said.err).contains(event), "{event} of {said:#?}");
     }
     assert_eq!(shared["/gangwerk/joint_targets"], hashes(&site)["/gangwerk/joint_targets"]);
+}
+
+/// The host stops the joint loop for longer than the slaves bear: they leave operation, and are taken back. Nothing moves
+/// before a reset and an enable; then the robot stands as before. On a machine that stops often, all of that comes again.
+#[test]
+fn slaves_that_fell_out_after_a_stall_are_taken_back_and_the_robot_waits_for_its_operator() {
+    let Some(ring) = Ring::new('s') else { return };
+    let site = Site::new(EXE);
+    site.scene("stand", 60.0, "[[command]]\ntime = 0.2\ntopic = \"walk/stand\"\n");
+    let mut run = site.run("stand", &["--bus", &ring.bus()]);
+    let space = run.space();
+    let mut sensors = space.reader::<Sensors>(&SENSORS).unwrap();
+    let mut events = space.reader::<Event>(Topic::find("events/lowlevel").unwrap()).unwrap();
+    let mut stands = || sensors.latest().map_or(0, |s| s.start_up) == StartUp::Standing as u64;
+    let until = |what: &str, run: &mut Running, met: &mut dyn FnMut() -> bool| {
+        for _ in 0..1500 {
+            if met() {
+                return;
+            }
+            assert!(run.is_alive(), "{what}: {}", run.err());
+            doze(0.01);
+        }
+        panic!("{what}: {}", run.err());
+    };
+    until("stands", &mut run, &mut stands);
+    run.pause(Process::Lowlevel, 0.2);
+    let mut told = |code: EventCode| {
+        std::iter::from_fn(|| events.follow().copied()).any(|event| event.code == code as u64)
+    };
+    until("taken back", &mut run, &mut || told(EventCode::BusRestart));
+    until("heard again", &mut run, &mut || told(EventCode::NodeBack));
+    let mut power = space.reader::<Power>(&POWER).unwrap();
+    for _ in 0..50 {
+        doze(0.01);
+        assert_eq!(power.latest().map(|p| p.on), Some(0), "nobody has said reset and enable");
+    }
+    until("stands again", &mut run, &mut || {
+        site.topic(&["pub", "system/reset"]).well();
+        doze(0.2);
+        site.topic(&["pub", "system/enable"]).well();
+        doze(0.5);
+        stands()
+    });
+    run.interrupt();
+    run.end().well();
 }
 
 /// Each of them is one error with what to do, and nothing has moved.

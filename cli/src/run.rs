@@ -336,7 +336,7 @@ impl View {
                         EventCode::PowerOff | EventCode::SafeStop => {
                             format!("{:?}", EventCode::from_number(e.detail).unwrap_or(EventCode::None))
                         }
-                        EventCode::DriveTripped => {
+                        EventCode::DriveTripped | EventCode::DriveHeld => {
                             let (joint, error) =
                                 (self.joints.get((e.detail & 0xFFFF) as usize), e.detail >> 16);
                             let text = Fault::from_code(error as u16).map_or("", Fault::text);

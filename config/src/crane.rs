@@ -14,7 +14,7 @@
 //! temperature = { all = 25.0 } # [deg C] of the windings; without it the surroundings'
 //! ```
 
-use crate::section::{POSITIVE, Section};
+use crate::section::Section;
 use crate::sensors::PerJoint;
 
 /// Crane with a rope that holds the robot at the start of a scene.
@@ -42,7 +42,7 @@ impl Crane {
             rope: table.number("rope", "m", 0.1..=20.0),
             stiffness: table.number("stiffness", "N/m", 1e3..=1e7),
             damping: table.number("damping", "N s/m", 0.0..=1e5),
-            speed: table.number("speed", "m/s", POSITIVE),
+            speed: table.number("speed", "m/s", 1e-9..=1.0),
         }
     }
 }

@@ -41,6 +41,8 @@ pub struct Drive {
     pub elasticity: Option<Elasticity>,
     /// \[A\], \[s\] Current that may flow for ever, and time constant of the winding's temperature, if they are known.
     pub winding: Option<[f64; 2]>,
+    /// \[1\] Counts of the motor's encoder in a turn, if they are not those of the other drives.
+    pub encoder_counts: Option<u32>,
     /// How it is controlled: as the row says, or the robot, or the scene instead of both.
     pub control: JointControl,
 }
@@ -52,6 +54,7 @@ struct MotorType {
     rotor_inertia: f64,
     voltage_limit: f64,
     winding: Option<[f64; 2]>,
+    encoder_counts: Option<u32>,
 }
 
 /// `[gear.NAME]`: a harmonic drive.
@@ -132,6 +135,7 @@ impl MotorType {
         rotor_inertia: f64::NAN,
         voltage_limit: f64::NAN,
         winding: Some([f64::NAN; 2]),
+        encoder_counts: None,
     };
 
     fn build(table: &Section<'_, '_>) -> Self {
@@ -147,6 +151,7 @@ impl MotorType {
                 let current = table.number("continuous_current", "A", POSITIVE);
                 [current, table.number("thermal_time", "s", POSITIVE)]
             }),
+            encoder_counts: joint_control::encoder_counts(table),
         }
     }
 }
@@ -194,7 +199,7 @@ impl Drive {
             if row.has("joint_control") { row.table("joint_control", joint_control::build) } else { None };
         let bought = named(row, "motor", motors).unwrap_or(MotorType::NONE);
         let train = Train::build(row, joints, gears);
-        Self {
+        let mut drive = Self {
             name: row.text("name"),
             transmission: train.transmission,
             joints: train.joints,
@@ -207,7 +212,18 @@ impl Drive {
             friction: train.friction,
             elasticity: train.elasticity,
             winding: bought.winding,
-            control: own.unwrap_or(control),
+            encoder_counts: bought.encoder_counts,
+            control,
+        };
+        drive.set_control(own.unwrap_or(control));
+        drive
+    }
+
+    /// Controls it like this; where counts are asked for, an encoder with a number of its own keeps it.
+    pub fn set_control(&mut self, control: JointControl) {
+        self.control = control;
+        if let Some(counts) = &mut self.control.resolution.encoder_counts {
+            *counts = self.encoder_counts.unwrap_or(*counts);
         }
     }
 }

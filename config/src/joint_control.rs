@@ -36,12 +36,14 @@ pub(crate) fn build(table: &Section<'_, '_>) -> JointControl {
     if matches!(law, Law::Voltage(_)) && sampling == Sampling::Continuous {
         table.problem("sampling", "the law \"voltage\" is computed once per cycle; it takes \"cycle\"");
     }
-    let whole = |key, range| table.has(key).then(|| table.integer(key, range) as u32);
-    let resolution = Resolution {
-        table_points: whole("table_points", TABLE_POINTS),
-        encoder_counts: whole("encoder_counts", ENCODER_COUNTS),
-    };
+    let points = table.has("table_points").then(|| table.integer("table_points", TABLE_POINTS) as u32);
+    let resolution = Resolution { table_points: points, encoder_counts: encoder_counts(table) };
     JointControl { law, sampling, resolution }
+}
+
+/// Counts in a turn of the motor: of all drives in `[joint_control]`, of some in `[motor.NAME]`.
+pub(crate) fn encoder_counts(table: &Section<'_, '_>) -> Option<u32> {
+    table.has("encoder_counts").then(|| table.integer("encoder_counts", ENCODER_COUNTS) as u32)
 }
 
 fn cascade(table: &Section<'_, '_>) -> Cascade {

@@ -33,7 +33,7 @@ impl Setup {
         let scene = Scene::load_hashed(&path, &mut hash)?;
         let mut robot = Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut hash)?;
         if let Some(control) = scene.joint_control {
-            robot.drives.iter_mut().for_each(|drive| drive.control = control);
+            robot.drives.iter_mut().for_each(|drive| drive.set_control(control));
         }
         let gait =
             Gait::load_hashed(&root.join("gaits").join(&scene.gait).with_extension("toml"), &mut hash)?;
@@ -99,8 +99,17 @@ impl Setup {
             let (gait, robot) = (&scene.gait, &scene.robot);
             note("gait".to_owned(), format!("gait {gait} has arm_swing, but robot {robot} has no [arms]"));
         }
+        let lowers = |c: &Command| matches!(c, Command::Lower(_)) && scene.crane.is_none();
+        if let Some(i) = scene.commands.iter().position(|(_, c)| lowers(c)) {
+            note(format!("command[{i}]"), "sim/lower: the scene has no [crane]".to_owned());
+        }
         if scene.drives.is_some() && self.robot.protection.is_none() {
             note("drives".to_owned(), format!("robot {} has no [protection]", scene.robot));
+        }
+        let homeless = self.robot.homes.iter().all(Option::is_none);
+        if scene.drives.as_ref().is_some_and(|drives| drives.homing) && homeless {
+            let text = format!("robot {} has no [home.JOINT]: every joint knows its angle", scene.robot);
+            note("drives.homing".to_owned(), text);
         }
         let heated = scene.drives.iter().flat_map(|drives| &drives.temperature.own);
         for (name, _) in heated.filter(|(name, _)| !joints.contains(&name.as_str())) {

@@ -3,7 +3,7 @@
 use config::{Robot, dbc};
 use messages::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
 use messages::layout::{Carries, Layout};
-use messages::{BusFrames, Sensors};
+use messages::{BusFrames, JointTargets, Sensors};
 
 fn robots() -> Vec<Robot> {
     let load = |name| Robot::load(&config::root(None).join("robots").join(name)).unwrap();
@@ -139,6 +139,34 @@ fn old_repeated_short_foreign_and_error_frames_are_counted_and_move_nothing() {
         assert_eq!((received.missed(), received.stale, received.wrong_length), (5, 1, 1));
         assert_eq!((received.unknown, received.errors, received.repeated), (2, 1, 1));
         assert!(received.complete(8) && !received.complete(0), "of {all} frames");
+    }
+}
+
+/// Up to one cycle less than the narrowest counter counts.
+#[test]
+fn a_frame_of_the_cycle_before_is_late_on_every_bus_of_every_robot() {
+    for robot in robots() {
+        for layout in [&robot.classic, &robot.layout] {
+            for tick in [300, 256, 0x1_0000] {
+                let (mut seen, mut told) = (Sensors::default(), DriveCommand::default());
+                let (mut from, mut to) = (BusFrames::default(), BusFrames::default());
+                for late in [1, 2, 20, 255] {
+                    encode_sensors(layout, &sensors(&robot, tick - late), &mut from);
+                    let command = DriveCommand {
+                        targets: JointTargets { header: from.header, ..JointTargets::default() },
+                        control: [15; messages::MAX_JOINTS],
+                    };
+                    encode_targets(layout, &command, &mut to);
+                    (from.header.tick, to.header.tick) = (tick, tick);
+                    let came = decode_sensors(layout, &from, &mut seen);
+                    assert_eq!((u64::from(came.stale), came.missed()), (from.count, from.count as u32));
+                    let came = decode_targets(layout, &to, &mut told);
+                    assert_eq!((u64::from(came.stale), came.missed()), (to.count, to.count as u32));
+                }
+                let nothing = (Sensors::default().joint_angle, [0; messages::MAX_JOINTS]);
+                assert_eq!((seen.joint_angle, told.control), nothing, "{}: nothing of them is used", robot.name);
+            }
+        }
     }
 }
 

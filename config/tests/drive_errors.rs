@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use config::Robot;
+use config::{Robot, Setup};
 use config::efficiency::Efficiencies;
 
 /// A file of the shipped configuration with replacements, in a directory of its own, gone when dropped.
@@ -204,6 +204,24 @@ fn resolution_that_cannot_be() {
     );
 }
 
+/// Counts of the encoders are asked for by `[joint_control]`; toes and head have other encoders than the legs.
+#[test]
+fn encoders_with_counts_of_their_own() {
+    let counts = |setup: &Setup| -> Vec<Option<u32>> {
+        let drive = |name: &str| setup.robot.drives.iter().find(|drive| drive.name == name).unwrap();
+        let names = ["left_knee_flexion", "left_toe_flexion", "head_pan"];
+        names.map(|name| drive(name).control.resolution.encoder_counts).into()
+    };
+    let load = |scene: &str| Setup::load(&config::root(None), scene).unwrap();
+    assert_eq!(counts(&load("walk_tables")), [Some(11520), Some(4000), Some(2000)]);
+    assert_eq!(counts(&load("walk_2kmh_type3")), [None; 3], "nobody asked");
+    refused(
+        "counts",
+        &[("encoder_counts = 4000", "encoder_counts = 4000.5")],
+        &["motor.cha_14_toe.encoder_counts: is of type float; it takes a whole number from 2 to 16777216"],
+    );
+}
+
 #[test]
 fn drives_without_joint_control() {
     refused("uncontrolled", &[("[joint_control]", "[joint_contrl]")], &["joint_control: ", "joint_contrl: "]);
@@ -219,4 +237,70 @@ fn joint_control_of_one_drive() {
     let robot = Robot::load(&spoilt.0).unwrap();
     let differ = robot.drives.iter().filter(|d| matches!(d.control.law, drives::Law::Voltage(_)));
     assert_eq!(differ.map(|d| d.name.as_str()).collect::<Vec<_>>(), ["right_knee_flexion"]);
+}
+
+#[test]
+fn protection_that_cannot_be() {
+    refused(
+        "protection",
+        &[
+            ("following_error = 0.06 # [rad] at rest", "following_eror = 0.06"),
+            ("following_time = 0.02 #", "following_time = -0.02 #"),
+            ("over_current = 1.2 # [1]", "over_current = 0.9 # [1]"),
+            ("surroundings = 25.0", "surroundings = nan"),
+            ("\nwarning = 100.0", "\nwarning = 120.0"),
+            ("continuous_current = 20.0 # [A]\nthermal_time = 60.0 # [s]\n", ""),
+        ],
+        &[
+            "protection.following_error: missing; it takes a number above 0 rad",
+            "protection.following_eror: unknown key; the nearest known one is `following_error`",
+            "protection.following_time: -0.02 is not allowed; it takes a number of at least 0 s",
+            "protection.over_current: 0.9 is not allowed; it takes a number from 1 to 10",
+            "protection.surroundings: NaN is not allowed; it takes a number from -40 to 60 deg C",
+            "protection.warning: 120 deg C must lie between surroundings = NaN and temperature = 120 deg C",
+            "protection.temperature: needs continuous_current and thermal_time of the motor of drive `right_hip_flexion`",
+            "protection.temperature: needs continuous_current and thermal_time of the motor of drive `right_knee_flexion`",
+            "protection.temperature: needs continuous_current and thermal_time of the motor of drive `left_hip_flexion`",
+            "protection.temperature: needs continuous_current and thermal_time of the motor of drive `left_knee_flexion`",
+        ],
+    );
+    refused(
+        "cold",
+        &[("\nwarning = 100.0", "\nwarning = 45.0"), ("surroundings = 25.0", "surroundings = 45.0")],
+        &["protection.warning: 45 deg C must lie between surroundings = 45 and temperature = 120 deg C"],
+    );
+    refused(
+        "thermal",
+        &[("thermal_time = 60.0 # [s]\n", "")],
+        &["motor.cha_25.thermal_time: missing; it takes a number above 0 s"],
+    );
+}
+
+#[test]
+fn home_switches_that_cannot_be() {
+    let pan = "[home.head_pan]\nangle_deg = 0.0\nfast = 0.3 # [rad/s]\nslow = 0.015 # [rad/s]";
+    refused(
+        "home",
+        &[(pan, "[home.head_pam]\nangle_deg = 400.0\nfast = 0.3\nslow = true"), ("fast = 0.3 # [rad/s]", "fast = 0.0")],
+        &[
+            "home.head_pam: there is no joint `head_pam`; the nearest is `head_pan`",
+            "home.head_pam.angle_deg: 400 is not allowed; it takes a number from -360 to 360 deg",
+            "home.head_pam.slow: is of type boolean; it takes a number above 0 rad/s",
+            "home.head_tilt.fast: 0 is not allowed; it takes a number above 0 rad/s",
+        ],
+    );
+    refused(
+        "unreachable",
+        &[(pan, "[home.head_pan]\nangle_deg = -120.0\nfast = 30.0\nslow = 31.0")],
+        &[
+            "home.head_pan.angle_deg: -120 lies outside of the joint's range_deg [-108.0, 108.0]",
+            "home.head_pan.fast: 30 rad/s is above the joint's speed_limit, 3 rad/s",
+            "home.head_pan.slow: 31 rad/s must not be above fast = 30 rad/s",
+        ],
+    );
+    refused(
+        "home-type",
+        &[(pan, "home.head_pan = 0.0\n[homes]")],
+        &["protection.home: unknown key", "homes: unknown key; the nearest known one is `home`"],
+    );
 }

@@ -357,6 +357,74 @@ fn what_the_software_is_not_told() {
 }
 
 #[test]
+fn crane_that_cannot_be() {
+    let crane = "seed = 1\n\
+                 [crane]\n\
+                 height = -0.1\n\
+                 hook = \"high\"\n\
+                 rope = 0.0\n\
+                 stifness = 6e4\n\
+                 damping = nan\n\
+                 speed = 2.0";
+    let copy = Copy::new("crane").spoil("scenes/stand.toml", "seed = 1", crane);
+    assert_eq!(
+        text(&copy.scene("stand")),
+        "stand.toml: 7 problems\n  \
+         line 11: crane.stiffness: missing; it takes a number from 1000 to 10000000 N/m\n  \
+         line 12: crane.height: -0.1 is not allowed; it takes a number from 0 to 2 m\n  \
+         line 13: crane.hook: is of type string; it takes a number from 0 to 2 m\n  \
+         line 14: crane.rope: 0 is not allowed; it takes a number from 0.1 to 20 m\n  \
+         line 15: crane.stifness: unknown key; the nearest known one is `stiffness`\n  \
+         line 16: crane.damping: NaN is not allowed; it takes a number from 0 to 100000 N s/m\n  \
+         line 17: crane.speed: 2 is not allowed; it takes a number above 0, up to 1 m/s"
+    );
+    let copy = Copy::new("no-crane").spoil(
+        "scenes/stand.toml",
+        "topic = \"walk/stand\"",
+        "topic = \"sim/lower\"\ndistance = 0.1",
+    );
+    assert_eq!(text(&copy.scene("stand")), "stand.toml: command[0]: sim/lower: the scene has no [crane]");
+    let copy = Copy::new("crane-type").spoil("scenes/stand.toml", "seed = 1", "seed = 1\ncrane = true");
+    assert_eq!(text(&copy.scene("stand")), "stand.toml: line 11: crane: is of type boolean; it takes a table");
+}
+
+#[test]
+fn drives_at_switch_on_that_cannot_be() {
+    let drives = "seed = 1\n[drives]\nhomming = true\nhoming = 1\ntemperature = { all = -50, head_pan = \"hot\" }";
+    let copy = Copy::new("drives").spoil("scenes/stand.toml", "seed = 1", drives);
+    assert_eq!(
+        text(&copy.scene("stand")),
+        "stand.toml: 4 problems\n  \
+         line 12: drives.homming: unknown key; the nearest known one is `homing`\n  \
+         line 13: drives.homing: is of type integer; it takes true or false\n  \
+         line 14: drives.temperature.all: -50 is not allowed; it takes a number from -40 to 300 deg C\n  \
+         line 14: drives.temperature.head_pan: is of type string; it takes a number from -40 to 300 deg C"
+    );
+    let heated = "seed = 1\n[drives]\ntemperature = { head_pam = 30.0 }";
+    let copy = Copy::new("drives-joint").spoil("scenes/stand.toml", "seed = 1", heated);
+    assert_eq!(
+        text(&copy.scene("stand")),
+        "stand.toml: drives.temperature: robot lola has no joint `head_pam`; the nearest is `head_pan`"
+    );
+}
+
+/// A robot that can neither protect its drives nor find references.
+#[test]
+fn drives_of_a_robot_without_protection_and_home_switches() {
+    let copy = Copy::new("unprotected").spoil("scenes/stand.toml", "seed = 1", "seed = 1\n[drives]\nhoming = true");
+    let file = copy.path("robots/lola/robot.toml");
+    let whole = fs::read_to_string(&file).unwrap();
+    let (from, to) = (whole.find("[protection]").unwrap(), whole.find("[gear.").unwrap());
+    fs::write(&file, whole.replace(&whole[from..to], "")).unwrap();
+    assert_eq!(
+        text(&copy.scene("stand")),
+        "stand.toml: 2 problems\n  \
+         drives: robot lola has no [protection]\n  \
+         drives.homing: robot lola has no [home.JOINT]: every joint knows its angle"
+    );
+}
+
+#[test]
 fn system_row_of_no_process() {
     let copy = Copy::new("system").spoil("system.toml", "[process.planner]", "[process.planer]");
     let error = System::load(&copy.path("system.toml")).unwrap_err();

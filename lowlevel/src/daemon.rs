@@ -1,5 +1,6 @@
 //! The process around the joint loop: `gangwerk lowlevel --run DIR`. It is the clock of all others.
 
+use crate::joint_loop::State;
 use crate::{Fieldbus, JointLoop, fieldbus};
 use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
@@ -98,6 +99,7 @@ fn lockstep(
             break;
         }
         take_commands(p, joints, tick);
+        let off = joints.state() == State::Off;
         let (frames, reset) = joints.send(p.targets.held(), None);
         p.reset.write(reset);
         d.ring(p.bell_reset);
@@ -105,6 +107,7 @@ fn lockstep(
         if !d.wait(&p.waiter, "watchdog", || power.latest().is_some_and(|w| w.header.tick == tick))? {
             break;
         }
+        p.bus.set_idle(off);
         p.bus.send(frames);
         d.ring(p.bell_bus);
         if !p.bus.wait(d, &p.waiter, tick)? || !wait_for_log(d, p, tick)? {
@@ -144,7 +147,10 @@ fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -
         d.ring(p.bell_sensors);
         wait_for_targets(p, tick, period.planned() + answer_ns);
         take_commands(p, joints, tick);
+        let off = joints.state() == State::Off;
+        cause = cause.filter(|_| !off); // a stop is latched until the supply was off
         let (frames, reset) = joints.send(p.targets.latest(), cause);
+        p.bus.set_idle(off);
         p.bus.send(frames);
         d.ring(p.bell_bus);
         p.reset.write(reset);

@@ -27,6 +27,9 @@ pub trait Fieldbus {
         None
     }
 
+    /// Whether the motor supply is off in this cycle: then nothing depends on the bus, and who left it may be taken back.
+    fn set_idle(&mut self, _: bool) {}
+
     /// Sends the frames of this cycle to the drives.
     fn send(&mut self, frames: &BusFrames);
 

@@ -42,6 +42,8 @@ pub struct JointLoop {
     used: u64,
     /// Cycles since targets were new.
     stale: u32,
+    /// Drives with a fault that was told.
+    named: [bool; messages::MAX_JOINTS],
     guard: LineGuard,
     start_up: StartUpSequence,
     sensors: Sensors,
@@ -63,6 +65,7 @@ impl JointLoop {
             last: [Motion { angle: 0.0, speed: 0.0 }; messages::MAX_JOINTS],
             used: 0,
             stale: 0,
+            named: [false; messages::MAX_JOINTS],
             guard: LineGuard::new(robot, system, dt),
             start_up: StartUpSequence::new(robot.joints.len(), robot.total_mass * GRAVITY),
             sensors: Sensors::default(),
@@ -126,7 +129,8 @@ impl JointLoop {
             self.follow_measured(); // whatever comes next begins where the joints are
         }
         self.choose_state(targets, cause);
-        self.start_up.step(&self.sensors, matches!(self.state, State::Stop(_)));
+        let stopped = matches!(self.state, State::Stop(_));
+        self.start_up.step(&self.sensors, stopped, |j| self.guard.spares(j));
         match self.state {
             State::Off => self.follow_measured(),
             State::Hold => self.brake_all(),
@@ -136,6 +140,7 @@ impl JointLoop {
         self.follow_the_unable();
         self.check_following();
         self.check_lines();
+        self.name_faults();
         self.write_frames();
         (&self.frames, &self.reset)
     }
@@ -151,9 +156,9 @@ impl JointLoop {
             self.stale = self.stale.saturating_add(1);
         }
         let late = self.stale > self.system.targets_missed;
-        let joints = 0..self.robot.joints.len();
-        let tripped = joints.clone().find_map(|j| fault(&self.sensors, j));
-        let off = joints.clone().find(|&j| !is_enabled(&self.sensors, j));
+        let needed = (0..self.robot.joints.len()).filter(|&j| !self.spares(j));
+        let tripped = needed.clone().find_map(|j| fault(&self.sensors, j));
+        let off = needed.clone().find(|&j| !is_enabled(&self.sensors, j));
         let mute = self.guard.cause();
         self.state = match self.state {
             _ if !powered => State::Off,
@@ -185,6 +190,29 @@ impl JointLoop {
     fn stop(&mut self, why: EventCode, detail: u64) -> State {
         self.event = Some((why, detail));
         State::Stop(why)
+    }
+
+    /// Whether the robot stands, and can do so without the local controller of joint `j`.
+    fn spares(&self, j: usize) -> bool {
+        self.start_up.state() == StartUp::Standing && self.guard.spares(j)
+    }
+
+    /// Tells of drives with a fault, each once, one in a cycle: those that stop nobody, and those whose frames come back
+    /// after the stop.
+    fn name_faults(&mut self) {
+        for j in 0..self.robot.joints.len() {
+            let Some(detail) = fault(&self.sensors, j) else {
+                self.named[j] = false;
+                continue;
+            };
+            let held = if self.spares(j) { EventCode::DriveHeld } else { EventCode::DriveTripped };
+            let tells = !self.named[j] && self.event.is_none();
+            if tells {
+                self.event = Some((held, detail));
+            }
+            // The one that stopped the joints was told in this cycle.
+            self.named[j] |= tells || self.event == Some((EventCode::DriveTripped, detail));
+        }
     }
 
     fn follow_measured(&mut self) {

@@ -164,6 +164,11 @@ impl LineGuard {
         self.nodes.iter().position(|node| node.line == ErrorState::Off)
     }
 
+    /// Whether the robot can walk without the node of a joint.
+    pub(crate) fn spares(&self, joint: usize) -> bool {
+        self.nodes[self.node_of[joint]].spare
+    }
+
     /// Whether a joint was read in this cycle.
     pub(crate) fn reads(&self, joint: usize) -> bool {
         self.nodes[self.node_of[joint]].missed == 0

@@ -31,6 +31,8 @@ pub(crate) struct SercosBus {
     asked: u64,
     /// Telegrams have been sent, and the cycle has not been ended.
     open: bool,
+    /// The motor supply is off.
+    idle: bool,
     period_ns: u64,
     /// \[ns\] How long the first answer is waited for in lockstep.
     patience: u64,
@@ -58,6 +60,7 @@ impl SercosBus {
             rx: BusFrames::default(),
             asked: 0,
             open: false,
+            idle: true,
             period_ns: d.period_ns(),
             patience: d.patience().as_nanos() as u64,
         })
@@ -76,6 +79,16 @@ impl SercosBus {
             if let Some(data) = self.near.master().feedback(node) {
                 self.feedback.unpack(&self.layout, node, data, &mut self.rx);
             }
+        }
+    }
+
+    /// Slaves that fell out of operation are started again, all of them. While some still work and the motor supply is on,
+    /// that waits: they would lose their data.
+    fn take_back(&mut self) {
+        let fallen = self.near.master().fallen();
+        let failed = matches!(self.near.master().stage(), Stage::Failed(_));
+        if failed || fallen == self.nodes() || fallen > 0 && self.idle {
+            self.near.master_mut().restart();
         }
     }
 
@@ -119,7 +132,12 @@ impl Fieldbus for SercosBus {
         Ok(false)
     }
 
+    fn set_idle(&mut self, idle: bool) {
+        self.idle = idle;
+    }
+
     fn send(&mut self, frames: &BusFrames) {
+        self.take_back();
         self.asked = frames.header.tick;
         self.commands.pack(&self.layout, frames);
         for node in 0..self.nodes() {
@@ -169,6 +187,7 @@ impl Fieldbus for SercosBus {
                     return Some((EventCode::RingBroken, address(left) << 16 | address(right)));
                 }
                 Event::RingClosed => return Some((EventCode::RingClosed, 0)),
+                Event::Restart => return Some((EventCode::BusRestart, 0)),
                 // Silent nodes are told by the joint loop, on every bus the same.
                 Event::Phase(_) | Event::Lost(_) | Event::Back(_) => {}
             }

@@ -113,12 +113,14 @@ impl StartUpSequence {
         }
     }
 
-    /// One cycle: `stopped` while a controlled stop is latched.
-    pub fn step(&mut self, sensors: &Sensors, stopped: bool) {
+    /// One cycle: `stopped` while a controlled stop is latched; a robot that stands goes on without the joints that it
+    /// `spares`.
+    pub fn step(&mut self, sensors: &Sensors, stopped: bool, spares: impl Fn(usize) -> bool) {
         self.cycles = self.cycles.saturating_add(1);
         self.reset = self.reset.saturating_sub(1);
         let unknown = (0..self.joints).find(|&j| sensors.drive_status[j] & u32::from(REFERENCED) == 0);
-        let off = (0..self.joints).find(|&j| !is_enabled(sensors, j));
+        let stands = self.state == StartUp::Standing;
+        let off = (0..self.joints).find(|&j| !(is_enabled(sensors, j) || stands && spares(j)));
         let load: f64 = sensors.foot_wrench.iter().map(|w| w.force[2]).sum();
         let carried = load > LANDED * self.weight;
         self.landed = if carried { self.landed.saturating_add(1) } else { 0 };

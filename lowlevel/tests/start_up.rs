@@ -5,6 +5,7 @@ use drives::cia402::{self, Fault, Inputs, REFERENCED};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::State;
 use messages::frames::{DriveCommand, decode_targets, encode_sensors};
+use messages::layout::Carries;
 use messages::{BusFrames, Command, EventCode, JointMode, JointTargets, Sensors, StartUp};
 
 /// \[N\] Lola's weight.
@@ -12,6 +13,8 @@ const WEIGHT: f64 = 60.885 * 9.81;
 /// Joint without an absolute encoder, and one with.
 const HEAD: usize = 22;
 const KNEE: usize = 5;
+/// Joint of an arm, which a robot that stands can do without.
+const ARM: usize = 17;
 
 /// Drives at the far end, which go where they are told at once.
 struct Rig {
@@ -27,6 +30,8 @@ struct Rig {
     wanted: messages::Joints,
     /// A joint that creeps away instead of following.
     creeps: Option<usize>,
+    /// A joint whose local controller is not heard.
+    mute: Option<usize>,
     events: Vec<(EventCode, u64)>,
     tick: u64,
 }
@@ -56,6 +61,7 @@ impl Rig {
             told: DriveCommand::default(),
             wanted: said.joint_angle,
             creeps: None,
+            mute: None,
             said,
             events: Vec::new(),
             tick: 0,
@@ -88,6 +94,9 @@ impl Rig {
             self.said.drive_error[j] = drive.error().map_or(0, |fault| fault as u32);
         }
         encode_sensors(&self.robot.layout, &self.said, &mut answer);
+        if let Some(j) = self.mute {
+            self.cut(j, &mut answer);
+        }
         self.tick += 1;
         self.seen = *self.loop_.receive(self.tick, self.tick * 1_000_000, Some(&answer));
         command.iter().for_each(|command| self.loop_.command(command));
@@ -114,6 +123,27 @@ impl Rig {
                 self.said.joint_angle[j] = self.told.targets.angle[j];
             }
         }
+    }
+
+    /// Takes away what the local controller of joint `j` says.
+    fn cut(&self, j: usize, frames: &mut BusFrames) {
+        let reads = |m: &&messages::layout::Message| m.signals.iter().any(|s| s.carries == Carries::Angle(j));
+        let line = self.robot.layout.messages.iter().find(reads).unwrap().node as u32;
+        let all = *frames;
+        frames.count = 0;
+        for frame in all.as_slice().iter().filter(|frame| frame.line != line) {
+            frames.push(frame);
+        }
+    }
+
+    /// Supply off and on again, with a reset between or without.
+    fn again(&mut self, reset: bool) {
+        self.said.power = 0;
+        self.cycles(5);
+        self.cycle(reset.then_some(Command::Reset));
+        self.cycles(5);
+        self.said.power = 1;
+        self.cycles(10);
     }
 
     fn state(&self) -> StartUp {
@@ -233,18 +263,53 @@ fn a_drive_with_a_fault_is_a_controlled_stop_that_names_it_and_only_a_reset_ends
     assert_eq!(rig.enabled(), 23, "the others hold");
     assert!((0..24).all(|j| rig.told.targets.speed[j] == 0.0));
 
-    let again = |reset: bool, rig: &mut Rig| {
-        rig.said.power = 0;
-        rig.cycles(5);
-        rig.cycle(reset.then_some(Command::Reset));
-        rig.cycles(5);
-        rig.said.power = 1;
-        rig.cycles(10);
-    };
-    again(false, &mut rig);
+    rig.again(false);
     assert_eq!(rig.events, [(EventCode::DriveTripped, named); 2], "a fault is not forgotten by itself");
-    again(true, &mut rig);
+    rig.again(true);
     assert_eq!((rig.state(), rig.enabled(), rig.events.len()), (StartUp::Standing, 24, 2));
+}
+
+/// The drives of a silent node have stopped by themselves: told when they are heard again.
+#[test]
+fn a_fault_behind_a_silent_line_is_named_when_its_frames_come_back() {
+    let mut rig = Rig::on(WEIGHT);
+    rig.mute = Some(KNEE);
+    rig.cycles(21);
+    rig.fault = Some((KNEE, Fault::Heartbeat));
+    rig.cycles(10);
+    (rig.fault, rig.mute) = (None, None);
+    assert_eq!(rig.loop_.state(), State::Stop(EventCode::NodeSilent));
+    let named = (EventCode::DriveTripped, KNEE as u64 + (0x8130 << 16));
+    assert!(!rig.events.contains(&named), "nobody has said so yet: {:?}", rig.events);
+    rig.cycles(50);
+    assert_eq!(rig.events.iter().filter(|event| **event == named).count(), 1, "{:?}", rig.events);
+    assert_eq!((rig.loop_.state(), rig.enabled()), (State::Stop(EventCode::NodeSilent), 23));
+    rig.again(false);
+    assert_eq!((rig.loop_.state(), rig.enabled()), (State::Stop(EventCode::DriveTripped), 23));
+    rig.again(true);
+    assert_eq!((rig.state(), rig.loop_.state(), rig.enabled()), (StartUp::Standing, State::Track, 24));
+}
+
+/// Of each node that can be spared; only a robot that stands goes on.
+#[test]
+fn a_robot_that_stands_goes_on_without_a_drive_it_can_spare() {
+    let mut rig = Rig::on(WEIGHT);
+    rig.fault = Some((ARM, Fault::Heartbeat));
+    rig.cycles(3);
+    rig.fault = None;
+    rig.cycles(300);
+    let detail = ARM as u64 + (0x8130 << 16);
+    assert_eq!(rig.events, [(EventCode::DriveHeld, detail)]);
+    assert_eq!((rig.state(), rig.loop_.state(), rig.enabled()), (StartUp::Standing, State::Track, 23));
+    rig.again(false);
+    assert_eq!(rig.loop_.state(), State::Stop(EventCode::DriveTripped), "it does not begin so");
+    rig.again(true);
+    assert_eq!((rig.state(), rig.loop_.state(), rig.enabled()), (StartUp::Standing, State::Track, 24));
+
+    let mut hangs = Rig::on(0.0);
+    hangs.fault = Some((ARM, Fault::Heartbeat));
+    hangs.cycles(3);
+    assert_eq!(hangs.loop_.state(), State::Stop(EventCode::DriveTripped));
 }
 
 #[test]

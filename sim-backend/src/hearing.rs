@@ -1,14 +1,14 @@
 //! Which local controllers heard their targets, and what they do when they did not.
 //!
-//! A node that misses a cycle carries its joints on at their last speed. After [`UNHEARD_CYCLES`] of them it brings them to
-//! rest by itself, as fast as the joints allow, and stays there until the drives were off: whoever was silent for so long
-//! does not get a joint back in mid-motion.
+//! A node that misses a cycle carries its joints on at their last speed. After [`UNHEARD_CYCLES`] of them it is deaf: its
+//! drives have a fault ([`crate::stages`]). They bring their joints to rest by themselves, and only a reset leads back:
+//! whoever was silent for so long does not get a joint back in mid-motion.
 
 use messages::MAX_JOINTS;
 use messages::frames::Received;
 use messages::layout::{Carries, Layout, MAX_NODES};
 
-/// Cycles without targets after which a local controller stops its joints.
+/// Cycles without targets after which the drives of a local controller have a fault.
 pub const UNHEARD_CYCLES: u32 = 20;
 
 /// \[rad\] A target further from where the joint was to be than this ...
@@ -23,8 +23,6 @@ pub enum Follows {
     Target,
     /// Nothing new: its last speed.
     LastSpeed,
-    /// Nothing new for too long: it brakes.
-    Stop,
 }
 
 /// What the nodes of a robot heard.
@@ -36,7 +34,6 @@ pub struct Hearing {
     unheard: [u32; MAX_NODES],
     /// Cycles since each node heard its targets, before this one.
     before: [u32; MAX_NODES],
-    stopped: [bool; MAX_NODES],
 }
 
 impl Hearing {
@@ -55,19 +52,17 @@ impl Hearing {
             nodes: layout.nodes.len(),
             unheard: [0; MAX_NODES],
             before: [0; MAX_NODES],
-            stopped: [false; MAX_NODES],
         }
     }
 
-    /// One cycle: what came of it, none if nothing did; true if some node heard. `driven`: the drives work.
-    pub fn step(&mut self, received: Option<&Received>, driven: bool) -> bool {
+    /// One cycle: what came of it, none if nothing did; true if some node heard.
+    pub fn step(&mut self, received: Option<&Received>) -> bool {
         let mut any = false;
         for i in 0..self.nodes {
             let heard = received.is_some_and(|received| received.complete(i));
             any |= heard;
             self.before[i] = self.unheard[i];
             self.unheard[i] = if heard { 0 } else { self.unheard[i].saturating_add(1) };
-            self.stopped[i] = driven && (self.stopped[i] || self.unheard[i] > UNHEARD_CYCLES);
         }
         any
     }
@@ -78,15 +73,19 @@ impl Hearing {
         let node = self.node_of[joint];
         let cycles = f64::from(self.before[node] + 1);
         match self.unheard[node] {
-            _ if self.stopped[node] => Follows::Stop,
             0 if away.abs() <= JUMP + JUMP_SPEED * reach * cycles => Follows::Target,
             _ => Follows::LastSpeed,
         }
     }
 
-    /// Whether a node stopped its joints by itself in this cycle; which.
-    pub fn stopped_now(&self) -> Option<usize> {
-        (0..self.nodes).find(|&i| self.stopped[i] && self.unheard[i] == UNHEARD_CYCLES + 1)
+    /// Whether the local controller of a joint has heard nothing for too long.
+    pub fn is_deaf(&self, joint: usize) -> bool {
+        self.unheard[self.node_of[joint]] > UNHEARD_CYCLES
+    }
+
+    /// The local controller of a joint.
+    pub fn node_of(&self, joint: usize) -> usize {
+        self.node_of[joint]
     }
 }
 
@@ -132,38 +131,34 @@ mod tests {
     #[test]
     fn a_target_that_no_joint_can_reach_is_none() {
         let mut h = Hearing::new(&layout());
-        h.step(Some(&received(9)), true);
+        h.step(Some(&received(9)));
         assert_eq!(h.follows(0, 0.06, 0.008), Follows::Target);
         assert_eq!([0.07, -0.07, f64::NAN].map(|away| h.follows(0, away, 0.008)), [Follows::LastSpeed; 3]);
         for _ in 0..3 {
-            h.step(None, true);
+            h.step(None);
         }
-        h.step(Some(&received(9)), true);
+        h.step(Some(&received(9)));
         assert_eq!(h.follows(0, 0.11, 0.008), Follows::Target, "further away after a gap");
     }
 
     #[test]
-    fn a_node_alone_carries_on_then_stops_and_stays_stopped_until_the_drives_were_off() {
+    fn a_node_alone_carries_on_then_it_is_deaf_until_it_hears() {
         let mut h = Hearing::new(&layout());
-        assert!(h.step(Some(&received(9)), true));
+        assert!(h.step(Some(&received(9))));
         for cycle in 1..=50 {
-            assert!(h.step(Some(&received(1)), true), "the other one hears");
-            let wanted = if cycle <= UNHEARD_CYCLES { Follows::LastSpeed } else { Follows::Stop };
-            assert_eq!((follows(&h, 0), follows(&h, 1)), (Follows::Target, wanted), "cycle {cycle}");
-            assert_eq!(h.stopped_now(), (cycle == UNHEARD_CYCLES + 1).then_some(1));
+            assert!(h.step(Some(&received(1))), "the other one hears");
+            assert_eq!((follows(&h, 0), follows(&h, 1)), (Follows::Target, Follows::LastSpeed));
+            assert_eq!([h.is_deaf(0), h.is_deaf(1)], [false, cycle > UNHEARD_CYCLES], "cycle {cycle}");
         }
-        h.step(Some(&received(9)), true);
-        assert_eq!(follows(&h, 1), Follows::Stop, "heard again, and still stopped");
-        h.step(Some(&received(9)), false);
-        h.step(Some(&received(9)), true);
-        assert_eq!(follows(&h, 1), Follows::Target);
+        h.step(Some(&received(9)));
+        assert_eq!((follows(&h, 1), h.is_deaf(1)), (Follows::Target, false));
     }
 
     #[test]
     fn nothing_at_all_is_heard_by_nobody() {
         let mut h = Hearing::new(&layout());
-        h.step(Some(&received(9)), true);
-        assert!(!h.step(None, true));
+        h.step(Some(&received(9)));
+        assert!(!h.step(None));
         assert_eq!([follows(&h, 0), follows(&h, 1)], [Follows::LastSpeed; 2]);
     }
 }

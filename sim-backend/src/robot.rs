@@ -7,7 +7,7 @@ use config::{Robot, Scene};
 use fieldbus::Injector;
 use messages::command::{LowerCommand, PushCommand};
 use messages::frames::{DriveCommand, decode_targets, encode_sensors};
-use messages::{BusFrames, EventCode, Imu, JointMode, Power, Sensors, SimState, Wrench};
+use messages::{BusFrames, EventCode, Imu, Power, Sensors, SimState, Wrench};
 use multibody::Frame;
 use nalgebra::Vector3;
 
@@ -240,18 +240,16 @@ impl SimBackend {
         let dt = self.scene.cycle;
         let new = frames.filter(|f| f.header.tick > self.followed);
         let received = new.map(|f| decode_targets(&self.robot.layout, f, &mut self.command));
-        let driven = powered && self.command.targets.mode != JointMode::Off as u64;
-        if self.hearing.step(received.as_ref(), driven) {
+        if self.hearing.step(received.as_ref()) {
             self.followed = self.command.targets.header.tick;
-        }
-        if let Some(node) = self.hearing.stopped_now() {
-            self.event.get_or_insert((EventCode::NodeStopped, node as u64));
         }
         let DriveCommand { control, targets } = &self.command;
         let motors = self.plant.layout().motors > 0;
         let current = motors.then_some(&self.sensors.motor_current[..]);
-        let told = Told { control, mode: targets.mode };
-        self.stages.step(&told, powered, dt, &self.goals, &self.motions, current);
+        let told = Told { control, mode: targets.mode, hearing: &self.hearing };
+        if let Some(joint) = self.stages.step(&told, powered, dt, &self.goals, &self.motions, current) {
+            self.event.get_or_insert((EventCode::NodeStopped, self.hearing.node_of(joint) as u64));
+        }
         let mut braked = 0;
         for (j, joint) in self.robot.joints.iter().enumerate() {
             let (from, action) = (self.goals[j], self.stages.action(j));
@@ -269,7 +267,6 @@ impl SimBackend {
                 (Action::Follow, Follows::LastSpeed) => {
                     Drive::follow(from, from.angle + from.speed * dt, from.speed, dt)
                 }
-                (Action::Follow, Follows::Stop) => Drive::brake(joint, from, dt),
             };
             braked |= u64::from(action == Action::Brake) << j;
         }

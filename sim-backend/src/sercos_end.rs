@@ -130,8 +130,9 @@ impl FarEnd for SercosEnd {
     fn wait(&mut self, at_most: Duration) {
         let at_most = at_most.as_nanos() as u64;
         let at_most = if self.since.is_some() { at_most.min(self.grace) } else { at_most };
-        if !self.far.await_telegrams(at_most) && at_most >= self.period_ns {
-            self.far.chain_mut().silence(); // of real time only: in lockstep nobody knows how long a cycle takes
+        if !self.far.await_telegrams(at_most) {
+            // Of real time only: in lockstep nobody knows how long a cycle takes.
+            (0..at_most / self.period_ns).for_each(|_| self.far.chain_mut().silence());
         }
     }
 

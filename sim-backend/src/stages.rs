@@ -1,15 +1,17 @@
 //! The drives' own electronics: states of CiA 402, references, protection; one power stage per drive.
 //!
 //! Row i of the drives drives joint i. States are always there; references and protection only where the scene asks for
-//! them by `[drives]`, and what needs motors only where the model has motors. Silence of the bus: [`crate::hearing`].
+//! them by `[drives]`, and what needs motors only where the model has motors. A local controller that heard nothing for too
+//! long ([`crate::hearing`]) is a fault of its drives in every scene.
 
 use config::protection::Protection;
 use config::{Robot, Scene};
-use drives::cia402::{self, Fault, Inputs, REFERENCED, WARNING};
+use drives::cia402::{self, Fault, Inputs, REFERENCED, WARNING, WORDS};
 use drives::homing::{HomeSwitch, Homing};
 use messages::{JointMode, MAX_JOINTS, Sensors};
 
 use crate::drive::Motion;
+use crate::hearing::Hearing;
 
 /// \[rad/s\] Speed of a reference below which it is at rest, but for rounding.
 const REST: f64 = 1e-9;
@@ -33,6 +35,8 @@ pub(crate) struct Told<'a> {
     pub control: &'a [u32; MAX_JOINTS],
     /// What the joints shall do, a [`JointMode`].
     pub mode: u64,
+    /// Who heard it.
+    pub hearing: &'a Hearing,
 }
 
 /// A joint without absolute encoder.
@@ -88,7 +92,11 @@ impl Stages {
     }
 
     /// One bus cycle of `dt` \[s\]: states, and what every joint does. `goals` and `now` are where the joints were to be
-    /// and are; `current` \[A\], if there are motors with protection to look after.
+    /// and are; `current` \[A\], if there are motors with protection to look after. Returns the first joint whose drive
+    /// has stopped in this cycle because it hears nothing.
+    ///
+    /// A controlword that no master sends is a bent one: the one before holds. From the one that enables operation, and
+    /// from a fault, no single bit leads to another that is sent.
     pub(crate) fn step(
         &mut self,
         told: &Told<'_>,
@@ -97,20 +105,29 @@ impl Stages {
         goals: &[Motion],
         now: &[Motion],
         current: Option<&[f64]>,
-    ) {
+    ) -> Option<usize> {
+        let mut stopped = None;
         let home = told.mode == JointMode::Home as u64;
         for j in 0..self.drives.len() {
             let drive = self.drives[j];
+            let deaf = drive.drives() && told.hearing.is_deaf(j);
+            let word = told.control[j] as u16;
             let inputs = Inputs {
-                control: Some(told.control[j] as u16),
+                control: WORDS.contains(&word).then_some(word),
                 supply,
                 permit: home || self.knows(j),
-                fault: self.fault(j, &drive, dt, goals[j], now[j], current),
+                fault: self
+                    .fault(j, &drive, dt, goals[j], now[j], current)
+                    .or(deaf.then_some(Fault::Heartbeat)),
                 still: goals[j].speed.abs() < REST,
             };
             self.drives[j].step(&inputs);
+            if drive.error().is_none() && self.drives[j].error() == Some(Fault::Heartbeat) {
+                stopped = stopped.or(Some(j));
+            }
             self.actions[j] = self.choose(j, now[j].angle);
         }
+        stopped
     }
 
     /// What a joint does in this cycle.
@@ -188,7 +205,9 @@ impl Stages {
 mod tests {
     use super::*;
     use config::{Setup, root};
-    use drives::cia402::State;
+    use crate::hearing::UNHEARD_CYCLES;
+    use drives::cia402::{DISABLE_VOLTAGE, ENABLE_OPERATION, FAULT_RESET, SHUTDOWN, State};
+    use messages::frames::Received;
 
     const KNEE: usize = 5;
     const HEAD: usize = 22;
@@ -203,6 +222,9 @@ mod tests {
         mode: JointMode,
         supply: bool,
         word: u16,
+        hearing: Hearing,
+        hears: bool,
+        stopped: Option<usize>,
     }
 
     impl Rig {
@@ -220,6 +242,9 @@ mod tests {
                 mode: JointMode::Hold,
                 supply: true,
                 word: 0x06,
+                hearing: Hearing::new(&setup.robot.layout),
+                hears: true,
+                stopped: None,
             };
             rig.step();
             rig.word = 0x0F;
@@ -228,8 +253,16 @@ mod tests {
         }
 
         fn step(&mut self) {
-            let told = Told { control: &[u32::from(self.word); MAX_JOINTS], mode: self.mode as u64 };
-            self.stages.step(&told, self.supply, DT, &self.goals, &self.now, Some(&self.current));
+            let heard = Received::default();
+            self.hearing.step(self.hears.then_some(&heard));
+            let control = &[u32::from(self.word); MAX_JOINTS];
+            let told = Told { control, mode: self.mode as u64, hearing: &self.hearing };
+            let (goals, now, current) = (&self.goals, &self.now, Some(&self.current[..]));
+            self.stopped = self.stages.step(&told, self.supply, DT, goals, now, current);
+        }
+
+        fn steps(&mut self, count: u32) {
+            (0..count).for_each(|_| self.step());
         }
 
         fn state(&self, j: usize) -> State {
@@ -311,6 +344,60 @@ mod tests {
         rig.goals[KNEE].speed = 0.0;
         rig.step();
         assert_eq!((rig.error(KNEE), rig.stages.action(KNEE)), (Some(Fault::FollowingError), Action::Ramp));
+    }
+
+    /// Its reference comes to rest, the brake closes; frames alone do not wake it, nor does an old reset.
+    #[test]
+    fn a_drive_that_hears_nothing_stops_by_itself_and_only_a_reset_leads_back() {
+        let mut rig = Rig::new(false);
+        (rig.goals[KNEE].speed, rig.hears) = (1.0, false);
+        rig.steps(UNHEARD_CYCLES);
+        assert_eq!((rig.state(KNEE), rig.stopped), (State::OperationEnabled, None));
+        rig.step();
+        assert_eq!((rig.state(KNEE), rig.stopped), (State::FaultReaction, Some(0)));
+        assert_eq!((rig.error(KNEE), rig.stages.action(KNEE)), (Some(Fault::Heartbeat), Action::Ramp));
+        rig.step();
+        assert_eq!((rig.state(KNEE), rig.stopped), (State::FaultReaction, None), "not yet at rest");
+        rig.goals[KNEE].speed = 0.0;
+        rig.steps(2);
+        assert_eq!((rig.state(KNEE), rig.stages.action(KNEE)), (State::Fault, Action::Brake));
+        rig.hears = true;
+        rig.steps(100);
+        let mut out = Sensors::default();
+        rig.stages.report(&mut out);
+        assert_eq!((rig.state(KNEE), out.drive_error[KNEE]), (State::Fault, 0x8130));
+        rig.word = FAULT_RESET;
+        rig.step();
+        assert_eq!((rig.state(KNEE), rig.error(KNEE)), (State::SwitchOnDisabled, None));
+    }
+
+    #[test]
+    fn a_drive_without_torque_may_hear_nothing() {
+        let mut rig = Rig::new(false);
+        rig.word = SHUTDOWN;
+        rig.step();
+        rig.hears = false;
+        rig.steps(1000);
+        assert_eq!((rig.state(KNEE), rig.error(KNEE)), (State::Ready, None));
+    }
+
+    #[test]
+    fn a_bent_controlword_changes_nothing() {
+        let mut rig = Rig::new(false);
+        for bit in 0..16 {
+            rig.word = ENABLE_OPERATION ^ 1 << bit;
+            rig.step();
+            assert_eq!(rig.state(KNEE), State::OperationEnabled, "bit {bit}");
+        }
+        rig.now[KNEE].angle -= 0.2;
+        rig.word = DISABLE_VOLTAGE;
+        rig.steps(2);
+        rig.now[KNEE] = rig.goals[KNEE];
+        for bit in 0..16 {
+            rig.word = DISABLE_VOLTAGE ^ 1 << bit;
+            rig.step();
+            assert_eq!(rig.state(KNEE), State::Fault, "bit {bit}");
+        }
     }
 
     #[test]

@@ -25,6 +25,7 @@
 //! 3 and 4 at once. Quick stop brakes on the ramp and then holds (option code 6): a leg that lets go is a fall. A supply
 //! that goes off is no fault but transitions 9, 10 and 12: who took it away says why. Switching on takes a supply and, for
 //! transition 4 and for staying there, what the drive itself demands ([`Inputs::permit`]): a reference for its angle.
+//! A bus that falls silent under torque is a fault (abort connection option code 0x6007 = 1); a drive without torque waits.
 
 /// States of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -57,8 +58,13 @@ pub const ENABLE_OPERATION: u16 = 0x0F;
 pub const DISABLE_VOLTAGE: u16 = 0x00;
 /// Controlword: quick stop, transition 11; elsewhere 7, 10.
 pub const QUICK_STOP: u16 = 0x02;
-/// Controlword: fault reset, transition 15, on its rising edge.
-pub const FAULT_RESET: u16 = 0x80;
+/// Bit of the controlword whose rising edge resets a fault, transition 15.
+const RESET: u16 = 1 << 7;
+/// Controlword: fault reset. Its other bits mean nothing there, and keep it three bits away from [`DISABLE_VOLTAGE`].
+pub const FAULT_RESET: u16 = RESET | SHUTDOWN;
+
+/// The controlwords that [`controlword`] gives: whatever else a drive is sent is a bent one.
+pub const WORDS: [u16; 5] = [DISABLE_VOLTAGE, QUICK_STOP, SHUTDOWN, ENABLE_OPERATION, FAULT_RESET];
 
 /// Bit of the statusword: voltage at the power stage.
 pub const VOLTAGE: u16 = 1 << 4;
@@ -75,13 +81,16 @@ pub enum Fault {
     OverCurrent = 0x2310,
     /// Winding too hot.
     OverTemperature = 0x4310,
+    /// No sign of life of the master (CiA 301: life guard or heartbeat).
+    Heartbeat = 0x8130,
     /// The joint does not follow.
     FollowingError = 0x8611,
 }
 
 impl Fault {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::OverCurrent, Self::OverTemperature, Self::FollowingError];
+    pub const ALL: [Self; 4] =
+        [Self::OverCurrent, Self::OverTemperature, Self::Heartbeat, Self::FollowingError];
 
     /// The fault of an error code.
     pub fn from_code(code: u16) -> Option<Self> {
@@ -98,6 +107,7 @@ impl Fault {
         match self {
             Self::OverCurrent => "over-current",
             Self::OverTemperature => "winding too hot",
+            Self::Heartbeat => "heard nothing on the bus",
             Self::FollowingError => "following error",
         }
     }
@@ -157,9 +167,9 @@ impl Drive {
     /// One cycle.
     pub fn step(&mut self, inputs: &Inputs) -> State {
         let before = self.control;
-        self.control = inputs.control.unwrap_or(self.control & !FAULT_RESET);
+        self.control = inputs.control.unwrap_or(self.control & !RESET);
         self.supply = inputs.supply;
-        let reset = self.control & !before & FAULT_RESET != 0;
+        let reset = self.control & !before & RESET != 0;
         let brakes = inputs.supply && inputs.fault.is_none_or(Fault::ramps);
         self.state = match (self.state, inputs.fault) {
             (State::FaultReaction, _) if inputs.still || !brakes => State::Fault, // 14

@@ -115,14 +115,15 @@ pub enum EventCode {
     BusOff = 50,
     /// The controller of a line takes part again; detail: the line.
     BusActive = 51,
-    /// A local controller heard no targets for so long that it brought its joints to rest by itself; detail: the node.
+    /// A local controller heard no targets for so long that its drives have a fault and bring their joints to rest by
+    /// themselves; detail: the node.
     NodeStopped = 52,
     /// The ring of the field bus is open; detail: address of the station before the gap << 16 | of the one behind it; 0: the
     /// master.
     RingBroken = 53,
     /// The ring of the field bus is closed again.
     RingClosed = 54,
-    /// A drive has a fault of its own: controlled stop; detail: joint index + 65536 times its error code.
+    /// A drive has a fault of its own: controlled stop, if none was before; detail: joint index + 65536 times its error code.
     DriveTripped = 55,
     /// A drive was not switched on, or is off while the supply is on: nothing is followed; detail: joint index.
     DriveNotEnabled = 56,
@@ -137,6 +138,12 @@ pub enum EventCode {
     ZeroRefused = 60,
     /// A walking command was refused: the robot does not stand on its feet yet; detail: its message id.
     NotStanding = 61,
+    /// A drive that a standing robot can do without has a fault: its joint is held, the robot goes on; detail as of
+    /// [`Self::DriveTripped`].
+    DriveHeld = 62,
+    /// Drives fell out of the operation of the field bus, after a pause of lowlevel: all are started again. That they are
+    /// back is told by [`Self::NodeBack`].
+    BusRestart = 63,
 }
 
 /// Why a frame or a reading was refused, in the detail of [`EventCode::FrameRefused`].
@@ -156,7 +163,7 @@ pub enum Refused {
 
 impl EventCode {
     /// All codes, in order of their numbers.
-    pub const ALL: [Self; 62] = [
+    pub const ALL: [Self; 64] = [
         Self::None,
         Self::Started,
         Self::Ended,
@@ -219,6 +226,8 @@ impl EventCode {
         Self::ForceZeroed,
         Self::ZeroRefused,
         Self::NotStanding,
+        Self::DriveHeld,
+        Self::BusRestart,
     ];
 
     /// The code of a number from a record.

@@ -13,6 +13,9 @@
 //! | CP4: operation | |
 //!
 //! Between two phases: [`ANNOUNCED`] beats that announce the next one, then a pause without telegrams.
+//!
+//! Slaves that missed too many beats are in NRT: they pass telegrams on and take no part ([`Master::fallen`]). Only a start
+//! from CP0 takes them back, and that is one for all: [`Master::restart`], when whoever drives the master thinks fit.
 
 mod phases;
 
@@ -147,6 +150,8 @@ pub struct Master {
     controls: Vec<Control>,
     open: u32,
     broken: bool,
+    /// Cycles in a row in which stations that were passed through took no part.
+    absent: u32,
     counts: Counts,
     events: VecDeque<Event>,
 }
@@ -179,6 +184,8 @@ impl Master {
         };
         let nodes: Vec<_> = setup.stations.iter().enumerate().map(node).collect();
         let count = nodes.len();
+        let mut events = VecDeque::with_capacity(EVENTS);
+        events.push_back(Event::Phase(Phase::Cp0));
         Ok(Self {
             layout,
             phase: Phase::Cp0,
@@ -199,8 +206,9 @@ impl Master {
             controls: vec![Control::default(); count],
             open: 0,
             broken: false,
+            absent: 0,
             counts: Counts::default(),
-            events: VecDeque::with_capacity(EVENTS),
+            events,
             setup,
         })
     }
@@ -247,6 +255,30 @@ impl Master {
     /// Cycles in a row without data of station `i`.
     pub fn missed(&self, i: usize) -> u32 {
         self.nodes[i].missed
+    }
+
+    /// Stations that are there and have taken no part for longer than permitted: they fell to NRT.
+    pub fn fallen(&self) -> usize {
+        let absent = self.nodes.iter().filter(|n| n.status.is_none());
+        if self.absent > u32::from(self.setup.losses) { absent.count() } else { 0 }
+    }
+
+    /// Starts all stations anew from CP0, between two cycles. Before that no telegram is sent for so long that every one of
+    /// them is in NRT.
+    pub fn restart(&mut self) {
+        let silence = (u32::from(self.setup.beat_losses) + 2).max(PAUSE / self.setup.cycle);
+        (self.phase, self.state) = (Phase::Cp0, State::Pause(silence));
+        (self.open, self.broken, self.absent) = (0, false, 0);
+        self.found.clear();
+        self.repair.reset();
+        for node in &mut self.nodes {
+            node.control = Control::default();
+            node.status = None;
+            node.service = Client::new(SERVICE_TIME / self.setup.cycle);
+            node.feedback_control = Connection::default();
+            node.fresh = false;
+        }
+        self.tell(Event::Restart);
     }
 
     /// Begins a cycle: writes its telegrams.

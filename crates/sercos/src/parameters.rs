@@ -142,6 +142,18 @@ impl Parameters {
         Self { all, command, feedback }
     }
 
+    /// Everything as after switching on.
+    pub fn reset(&mut self) {
+        for p in self.all.iter_mut().filter(|p| !p.fixed) {
+            p.value = match p.value.shape() {
+                Shape::Word => Value::word(0),
+                Shape::Long => Value::long(0),
+                Shape::Words => Value::words([0; TELEGRAMS]),
+            };
+            (p.state, p.passed) = (0, false);
+        }
+    }
+
     /// Place of a parameter in the table.
     pub fn find(&self, idn: Idn) -> Option<usize> {
         self.all.iter().position(|p| p.idn == idn)

@@ -80,6 +80,11 @@ impl Repair {
         Self { state: State::Watch, before: vec![Topology::Through; stations] }
     }
 
+    /// Begins anew.
+    pub fn reset(&mut self) {
+        self.state = State::Watch;
+    }
+
     /// One cycle: looks at the device states, and commands. The stations are those that answered.
     pub fn step(&mut self, states: &[Option<Status>], controls: &mut [Control]) {
         match self.state {

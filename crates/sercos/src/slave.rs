@@ -67,7 +67,6 @@ pub struct Counts {
 /// One slave.
 pub struct Slave {
     address: u16,
-    sizes: (usize, usize),
     parameters: Parameters,
     server: Server,
     phase: Option<Phase>,
@@ -101,7 +100,6 @@ impl Slave {
     pub fn new(address: u16, command: usize, feedback: usize) -> Self {
         Self {
             address,
-            sizes: (command, feedback),
             parameters: Parameters::new(address, command, feedback),
             server: Server::default(),
             phase: None,
@@ -280,7 +278,7 @@ impl Slave {
 
     /// CP0: everything as after switching on.
     fn begin(&mut self, from: Side, channel: Channel) {
-        self.parameters = Parameters::new(self.address, self.sizes.0, self.sizes.1);
+        self.parameters.reset();
         self.server = Server::default();
         self.topology_address = 0;
         self.source = Some(if channel == Channel::P { from } else { from.other() });

@@ -17,6 +17,8 @@ pub enum Event {
     RingBroken(Option<u16>, Option<u16>),
     /// The ring is closed again.
     RingClosed,
+    /// All stations are started anew, from CP0.
+    Restart,
     /// A station's data are missing for longer than permitted.
     Lost(u16),
     /// Its data are back.

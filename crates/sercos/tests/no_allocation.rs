@@ -1,5 +1,5 @@
-//! A cycle of operation allocates nothing: neither master nor slaves, with a closed ring, a broken one, and while it is
-//! closed again.
+//! A cycle of operation allocates nothing: neither master nor slaves, with a closed ring, a broken one, while it is closed
+//! again, and while slaves that fell to NRT are started again.
 
 use realtime::{CountingAllocator, allocations};
 use sercos::{Chain, Master, Setup, Side, Slave, Stage, Station};
@@ -49,9 +49,15 @@ fn a_cycle_allocates_nothing() {
         }
         assert_eq!(cycle(&mut master, &mut chain), Stage::Running);
     }
+    assert_eq!(master.counts().missed, 0);
+    assert!(master.counts().open > 300 && !master.is_broken());
+    (0..3).for_each(|_| chain.silence());
+    while master.fallen() == 0 {
+        cycle(&mut master, &mut chain);
+    }
+    master.restart();
+    while cycle(&mut master, &mut chain) != Stage::Running {}
     let counted = allocations::counted();
     allocations::disarm();
     assert_eq!(counted, [0, 0], "allocations and frees");
-    assert_eq!(master.counts().missed, 0);
-    assert!(master.counts().open > 300 && !master.is_broken());
 }

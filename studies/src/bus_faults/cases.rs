@@ -143,8 +143,8 @@ pub(super) fn all(setup: &Setup) -> Vec<Case> {
     let case =
         |name: &str, fault: BusFault, demand: Demand| Case { name: name.into(), faults: vec![fault], demand };
     use EventCode::{
-        BusActive, BusOff, BusPassive, BusSilent, BusWarning, FrameRefused, FramesLost, NodeBack, NodeHeld,
-        NodeSilent,
+        BusActive, BusOff, BusPassive, BusSilent, BusWarning, DriveHeld, DriveTripped, FrameRefused,
+        FramesLost, NodeBack, NodeHeld, NodeSilent,
     };
     use FaultKind::{Corrupted, Duplicated, Flipped, Late, Lost, Pulled, Reordered, Shorted, Silent};
     let lost = |rate: f64| share(rate, fault(Lost));
@@ -157,6 +157,12 @@ pub(super) fn all(setup: &Setup) -> Vec<Case> {
             "lost for ever, from all drives",
             from_drives(for_ever(Lost)),
             Demand::stops(BusSilent, silent..=silent),
+        ),
+        // The drives' fault is in the next answer, and believed when it is said twice.
+        case(
+            "lost for ever, to a knee: its drives stop by themselves",
+            on(KNEE, to_drives(for_ever(Lost))),
+            Demand::stops(DriveTripped, silent + 2..=silent + 2).noticed_in(silent + 2),
         ),
         case("late by 1 cycle, 10 %", share(0.1, cycles(1, fault(Late))), refused()),
         case(
@@ -202,12 +208,27 @@ pub(super) fn all(setup: &Setup) -> Vec<Case> {
             Demand::walks(&[]),
         ),
         case(
+            "one bit flipped unseen, 1 % of frames to the drives",
+            share(0.01, to_drives(fault(Flipped))),
+            Demand::walks(&[]),
+        ),
+        case(
             "knee silent for 10 cycles",
             on(KNEE, brief(Silent, 10)),
             Demand::walks(&[FramesLost, NodeHeld, NodeBack]),
         ),
         case("knee silent for ever", on(KNEE, for_ever(Silent)), Demand::stops(NodeSilent, silent..=silent)),
+        case(
+            "knee silent for 30 cycles: its drives have stopped when it is back",
+            on(KNEE, brief(Silent, 30)),
+            Demand::stops(NodeSilent, silent..=silent).and_tells(&[NodeBack, DriveTripped]),
+        ),
         case("arm silent for ever", on(ARM, for_ever(Silent)), Demand::walks(&[NodeHeld])),
+        case(
+            "arm silent for 30 cycles",
+            on(ARM, brief(Silent, 30)),
+            Demand::walks(&[NodeHeld, NodeBack, DriveHeld]),
+        ),
         case(
             "cable of a knee pulled for 10 cycles",
             on(KNEE, brief(Pulled, 10)),

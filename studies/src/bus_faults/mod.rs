@@ -157,6 +157,6 @@ fn row(case: &Case, trials: &[Trial]) -> Row {
 
 /// Events that are a stop or no power.
 fn is_reaction(code: EventCode) -> bool {
-    use EventCode::{BusOff, BusSilent, FollowingError, NodeSilent, PowerOff, SafeStop};
-    matches!(code, BusOff | BusSilent | FollowingError | NodeSilent | PowerOff | SafeStop)
+    use EventCode::{BusOff, BusSilent, DriveTripped, FollowingError, NodeSilent, PowerOff, SafeStop};
+    matches!(code, BusOff | BusSilent | DriveTripped | FollowingError | NodeSilent | PowerOff | SafeStop)
 }

@@ -162,6 +162,7 @@ impl Loop {
             friction: self.friction,
             elasticity: Some(Elasticity::linear(self.joint.stiffness)),
             winding: None,
+            encoder_counts: None,
             control: JointControl {
                 law: Law::Cascade(cascade),
                 sampling: self.sampled.map_or(Sampling::Continuous, |(_, sampled)| Sampling::Cycle(sampled)),

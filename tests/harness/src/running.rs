@@ -91,6 +91,14 @@ impl Running {
         signal(self.pid(process), Signal::KILL);
     }
 
+    /// Stops one process of the run for so long \[s\], as a host does that has no time for it.
+    pub fn pause(&self, process: Process, seconds: f64) {
+        let pid = self.pid(process);
+        signal(pid, Signal::STOP);
+        doze(seconds);
+        signal(pid, Signal::CONT);
+    }
+
     /// Process id of one process of the run.
     pub fn pid(&self, process: Process) -> u32 {
         let path = self.run_dir.join(format!("{}.lock", process.name()));

@@ -19,9 +19,6 @@ impl Master {
     }
 
     pub(super) fn identify(&mut self, cycles: u32, stable: u32) {
-        if cycles == 1 {
-            self.tell(Event::Phase(Phase::Cp0));
-        }
         let port = if self.setup.ports[1].is_some() { 1 } else { 0 };
         let trouble = self.check_ring(port);
         let data = self.received[port][0].data();
@@ -81,7 +78,8 @@ impl Master {
             (node.asked, node.busy) = (0, false);
         }
         self.state = match self.phase {
-            Phase::Cp0 | Phase::Cp1 => State::Validate { cycles: 0, valid: 0 },
+            Phase::Cp0 => State::Identify { cycles: 0, stable: 0 },
+            Phase::Cp1 => State::Validate { cycles: 0, valid: 0 },
             Phase::Cp2 | Phase::Cp3 => State::Ask,
             Phase::Cp4 => State::Run,
         };
@@ -195,6 +193,10 @@ impl Master {
 
     pub(super) fn run(&mut self) {
         self.look();
+        let absent = self.nodes.iter().filter(|n| n.status.is_none()).count();
+        // Who is not there because of a cable, or of lost telegrams, has not fallen.
+        let passed = self.shape() == self.wanted_shape() || absent == self.nodes.len() && self.has_some();
+        self.absent = if absent > 0 && passed { self.absent + 1 } else { 0 };
         for i in 0..self.nodes.len() {
             self.nodes[i].fresh = self.take_feedback(i);
             self.count(i);
