@@ -11,9 +11,15 @@ const ADDRESSES: [u16; 4] = [3, 7, 12, 20];
 fn running(two_ports: bool) -> Wire {
     let mut wire = Wire::new(&ADDRESSES, two_ports);
     wire.start(2000);
-    (0..20).for_each(|number| drop(wire.exchange(number)));
+    exchange(&mut wire, 20);
     wire.events.clear();
     wire
+}
+
+fn exchange(wire: &mut Wire, cycles: u8) {
+    for number in 0..cycles {
+        wire.exchange(number);
+    }
 }
 
 /// The master pauses for so long that every slave misses too many beats.
@@ -105,9 +111,9 @@ fn cables_and_lost_telegrams_are_no_reason_to_start_again() {
 fn a_restart_that_fails_can_be_tried_again() {
     let mut wire = running(true);
     wire.chain.set_cable(2, false);
-    (0..20).for_each(|number| drop(wire.exchange(number)));
+    exchange(&mut wire, 20);
     pause(&mut wire);
-    (0..20).for_each(|number| drop(wire.exchange(number)));
+    exchange(&mut wire, 20);
     assert_eq!(wire.master.fallen(), ADDRESSES.len());
     wire.master.restart();
     let failed = (0..2000).any(|_| matches!(wire.exchange(1), Stage::Failed(_)));
