@@ -1,7 +1,7 @@
 //! Which local controllers heard their targets, and what they do when they did not.
 //!
 //! A node that misses a cycle carries its joints on at their last speed. After [`UNHEARD_CYCLES`] of them it is deaf: its
-//! drives have a fault ([`crate::stages`]). They bring their joints to rest by themselves, and only a reset leads back:
+//! drives have a fault. They bring their joints to rest by themselves, and only a reset leads back:
 //! whoever was silent for so long does not get a joint back in mid-motion.
 
 use messages::MAX_JOINTS;
