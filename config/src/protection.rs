@@ -30,7 +30,8 @@ impl Protection {
         let winding = |drive: &Drive| {
             let [continuous_current, time_constant] = drive.winding.unwrap_or_else(|| {
                 let name = &drive.name;
-                let text = format!("needs continuous_current and thermal_time of the motor of drive `{name}`");
+                let text =
+                    format!("needs continuous_current and thermal_time of the motor of drive `{name}`");
                 table.problem("temperature", text);
                 [f64::NAN; 2]
             });
@@ -91,7 +92,8 @@ fn switch(row: &Section<'_, '_>, joint: Option<&Joint>) -> HomeSwitch {
         row.problem("angle_deg", text);
     }
     if switch.fast > joint.speed_limit {
-        let text = format!("{} rad/s is above the joint's speed_limit, {} rad/s", switch.fast, joint.speed_limit);
+        let text =
+            format!("{} rad/s is above the joint's speed_limit, {} rad/s", switch.fast, joint.speed_limit);
         row.problem("fast", text);
     }
     switch

@@ -164,7 +164,12 @@ fn a_frame_of_the_cycle_before_is_late_on_every_bus_of_every_robot() {
                     assert_eq!((u64::from(came.stale), came.missed()), (to.count, to.count as u32));
                 }
                 let nothing = (Sensors::default().joint_angle, [0; messages::MAX_JOINTS]);
-                assert_eq!((seen.joint_angle, told.control), nothing, "{}: nothing of them is used", robot.name);
+                assert_eq!(
+                    (seen.joint_angle, told.control),
+                    nothing,
+                    "{}: nothing of them is used",
+                    robot.name
+                );
             }
         }
     }

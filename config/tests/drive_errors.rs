@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::PathBuf;
 
-use config::{Robot, Setup};
 use config::efficiency::Efficiencies;
+use config::{Robot, Setup};
 
 /// A file of the shipped configuration with replacements, in a directory of its own, gone when dropped.
 struct Spoilt(PathBuf);
@@ -281,7 +281,10 @@ fn home_switches_that_cannot_be() {
     let pan = "[home.head_pan]\nangle_deg = 0.0\nfast = 0.3 # [rad/s]\nslow = 0.015 # [rad/s]";
     refused(
         "home",
-        &[(pan, "[home.head_pam]\nangle_deg = 400.0\nfast = 0.3\nslow = true"), ("fast = 0.3 # [rad/s]", "fast = 0.0")],
+        &[
+            (pan, "[home.head_pam]\nangle_deg = 400.0\nfast = 0.3\nslow = true"),
+            ("fast = 0.3 # [rad/s]", "fast = 0.0"),
+        ],
         &[
             "home.head_pam: there is no joint `head_pam`; the nearest is `head_pan`",
             "home.head_pam.angle_deg: 400 is not allowed; it takes a number from -360 to 360 deg",

@@ -385,12 +385,16 @@ fn crane_that_cannot_be() {
     );
     assert_eq!(text(&copy.scene("stand")), "stand.toml: command[0]: sim/lower: the scene has no [crane]");
     let copy = Copy::new("crane-type").spoil("scenes/stand.toml", "seed = 1", "seed = 1\ncrane = true");
-    assert_eq!(text(&copy.scene("stand")), "stand.toml: line 11: crane: is of type boolean; it takes a table");
+    assert_eq!(
+        text(&copy.scene("stand")),
+        "stand.toml: line 11: crane: is of type boolean; it takes a table"
+    );
 }
 
 #[test]
 fn drives_at_switch_on_that_cannot_be() {
-    let drives = "seed = 1\n[drives]\nhomming = true\nhoming = 1\ntemperature = { all = -50, head_pan = \"hot\" }";
+    let drives =
+        "seed = 1\n[drives]\nhomming = true\nhoming = 1\ntemperature = { all = -50, head_pan = \"hot\" }";
     let copy = Copy::new("drives").spoil("scenes/stand.toml", "seed = 1", drives);
     assert_eq!(
         text(&copy.scene("stand")),
@@ -411,7 +415,8 @@ fn drives_at_switch_on_that_cannot_be() {
 /// A robot that can neither protect its drives nor find references.
 #[test]
 fn drives_of_a_robot_without_protection_and_home_switches() {
-    let copy = Copy::new("unprotected").spoil("scenes/stand.toml", "seed = 1", "seed = 1\n[drives]\nhoming = true");
+    let copy =
+        Copy::new("unprotected").spoil("scenes/stand.toml", "seed = 1", "seed = 1\n[drives]\nhoming = true");
     let file = copy.path("robots/lola/robot.toml");
     let whole = fs::read_to_string(&file).unwrap();
     let (from, to) = (whole.find("[protection]").unwrap(), whole.find("[gear.").unwrap());

@@ -1,8 +1,8 @@
 //! Which local controllers heard their targets, and what they do when they did not.
 //!
 //! A node that misses a cycle carries its joints on at their last speed. After [`UNHEARD_CYCLES`] of them it is deaf: its
-//! drives have a fault. They bring their joints to rest by themselves, and only a reset leads back:
-//! whoever was silent for so long does not get a joint back in mid-motion.
+//! drives have a fault. They bring their joints to rest by themselves, and only a reset leads back: whoever was silent for
+//! so long does not get a joint back in mid-motion.
 
 use messages::MAX_JOINTS;
 use messages::frames::Received;
@@ -47,12 +47,7 @@ impl Hearing {
                 }
             }
         }
-        Self {
-            node_of,
-            nodes: layout.nodes.len(),
-            unheard: [0; MAX_NODES],
-            before: [0; MAX_NODES],
-        }
+        Self { node_of, nodes: layout.nodes.len(), unheard: [0; MAX_NODES], before: [0; MAX_NODES] }
     }
 
     /// One cycle: what came of it, none if nothing did; true if some node heard.

@@ -204,8 +204,8 @@ impl Stages {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use config::{Setup, root};
     use crate::hearing::UNHEARD_CYCLES;
+    use config::{Setup, root};
     use drives::cia402::{DISABLE_VOLTAGE, ENABLE_OPERATION, FAULT_RESET, SHUTDOWN, State};
     use messages::frames::Received;
 
