@@ -36,6 +36,8 @@ pub(crate) struct SercosEnd {
     whole: BusFrames,
     period_ns: u64,
     grace: u64,
+    /// Until when cycles without telegrams were counted \[ns\].
+    counted: u64,
 }
 
 impl SercosEnd {
@@ -64,6 +66,7 @@ impl SercosEnd {
             whole: BusFrames::default(),
             period_ns: d.period_ns(),
             grace,
+            counted: clock::now(),
         })
     }
 
@@ -130,10 +133,12 @@ impl FarEnd for SercosEnd {
     fn wait(&mut self, at_most: Duration) {
         let at_most = at_most.as_nanos() as u64;
         let at_most = if self.since.is_some() { at_most.min(self.grace) } else { at_most };
-        if !self.far.await_telegrams(at_most) {
-            // Of real time only: in lockstep nobody knows how long a cycle takes.
-            (0..at_most / self.period_ns).for_each(|_| self.far.chain_mut().silence());
-        }
+        let heard = self.far.await_telegrams(at_most);
+        let now = clock::now();
+        // Of real time only: in lockstep nobody knows how long a cycle takes.
+        let periods = if heard { 0 } else { (now - self.counted) / self.period_ns };
+        (0..periods).for_each(|_| self.far.chain_mut().silence());
+        self.counted = if heard { now } else { self.counted + periods * self.period_ns };
     }
 
     fn next(&mut self, d: &Daemon) -> Result<bool, Box<dyn Error>> {
