@@ -250,6 +250,9 @@ impl JointLoop {
             return self.brake_all();
         }
         for (j, joint) in self.robot.joints.iter().enumerate() {
+            if !self.leads(j) {
+                continue; // its brake holds it
+            }
             let last = self.last[j];
             let wanted = match fresh {
                 Some(t) => Motion { angle: t.angle[j], speed: t.speed[j] },

@@ -162,7 +162,7 @@ pub(super) fn all(setup: &Setup) -> Vec<Case> {
         case(
             "lost for ever, to a knee: its drives stop by themselves",
             on(KNEE, to_drives(for_ever(Lost))),
-            Demand::stops(DriveTripped, silent + 2..=silent + 2).noticed_in(silent + 2),
+            Demand::stops(DriveTripped, silent + 1..=silent + 1).noticed_in(silent + 1),
         ),
         case("late by 1 cycle, 10 %", share(0.1, cycles(1, fault(Late))), refused()),
         case(
@@ -210,7 +210,7 @@ pub(super) fn all(setup: &Setup) -> Vec<Case> {
         case(
             "one bit flipped unseen, 1 % of frames to the drives",
             share(0.01, to_drives(fault(Flipped))),
-            Demand::walks(&[]),
+            Demand::bears(&[]),
         ),
         case(
             "knee silent for 10 cycles",
