@@ -144,10 +144,12 @@ fn old_repeated_short_foreign_and_error_frames_are_counted_and_move_nothing() {
 
 /// Up to one cycle less than the narrowest counter counts.
 #[test]
-fn a_frame_of_the_cycle_before_is_late_on_every_bus_of_every_robot() {
+fn a_frame_of_the_cycle_before_is_late() {
     for robot in robots() {
         for layout in [&robot.classic, &robot.layout] {
-            for tick in [300, 256, 0x1_0000] {
+            let counts = layout.messages.iter().all(|message| message.counter().is_some());
+            assert!(counts || robot.name == "archie", "{}: only bought drives have none", robot.name);
+            for tick in [300, 256, 0x1_0000].into_iter().filter(|_| counts) {
                 let (mut seen, mut told) = (Sensors::default(), DriveCommand::default());
                 let (mut from, mut to) = (BusFrames::default(), BusFrames::default());
                 for late in [1, 2, 20, 255] {
