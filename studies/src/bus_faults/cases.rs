@@ -208,11 +208,6 @@ pub(super) fn all(setup: &Setup) -> Vec<Case> {
             Demand::walks(&[]),
         ),
         case(
-            "one bit flipped unseen, 1 % of frames to the drives",
-            share(0.01, to_drives(fault(Flipped))),
-            Demand::bears(&[]),
-        ),
-        case(
             "knee silent for 10 cycles",
             on(KNEE, brief(Silent, 10)),
             Demand::walks(&[FramesLost, NodeHeld, NodeBack]),
