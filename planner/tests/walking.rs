@@ -249,15 +249,19 @@ fn shipped(name: &str) -> Gait {
 
 /// Thesis 8.1.1: Lola speeds up in approximately four steps, and stops as fast. The step that closes the feet is one.
 #[test]
-fn shipped_gaits_are_at_top_speed_with_the_fourth_step() {
-    for (gait, kmh) in [(shipped("lola.toml"), 3.34), (shipped("lola_fast.toml"), 5.0)] {
+fn top_speed_is_reached_with_the_fourth_step_and_left_within_four() {
+    // The fast gait is given half of its last change: the whole one would move the zero-moment point out of the support.
+    for (gait, kmh, steps) in [(shipped("lola.toml"), 3.34, 4), (shipped("lola_fast.toml"), 5.0, 5)] {
         let mut r = Robot::new(&gait);
         r.stand();
         r.step(&[forward(kmh), Command::Start]);
         r.run(10.0);
         r.step(&[Command::Stop]);
         r.run(8.0);
-        check(&r, &gait);
+        for p in &r.plans {
+            let margins = [zmp_margin(p), implied_margin(p, &gait)];
+            assert!(margins[0] > -1e-6 && margins[1] > -1e-3, "plan {}: {margins:?} m inside", p.id);
+        }
         assert!(r.events.is_empty(), "{:?}", r.events);
         // The first step of every plan is walked, and all of the last one.
         let (last, before) = r.plans[1..].split_last().expect("plans");
@@ -266,7 +270,7 @@ fn shipped_gaits_are_at_top_speed_with_the_fourth_step() {
         let full = lengths.iter().copied().fold(0.0, f64::max);
         assert!((full - kmh / 3.6 * gait.step.by_speed.last().expect("rows")[2]).abs() < 0.02, "{full}");
         let is_full = |l: &f64| *l > 0.97 * full;
-        assert_eq!(lengths.iter().position(is_full), Some(3), "{lengths:?}");
+        assert_eq!(lengths.iter().position(is_full), Some(steps - 1), "{lengths:?}");
         let down = lengths.len() - 1 - lengths.iter().rposition(is_full).expect("a full one");
         assert_eq!(down, 4, "{lengths:?}");
         assert!(lengths[0] <= gait.step.first_length + 1e-12, "{lengths:?}");
