@@ -1,7 +1,7 @@
 //! What the plan wants of a foot against what its sensor feels: swing, early contact, stance, late contact.
 //!
-//! Contact that comes before its time stops the foot where it is: it presses lightly and is not pushed on. Contact
-//! that does not come at its time is searched for downwards, slowly and not far. What either has changed in height is
+//! Contact that comes before its time stops the foot where it is: it presses lightly and is not pushed on, and is followed
+//! if the foot bounces off. Contact that does not come at its time is searched for downwards, slowly and not far. What either has changed in height is
 //! kept while the foot carries and given up in the next swing (5.32).
 
 use config::gait::Control;
@@ -38,6 +38,8 @@ pub struct Contact {
     pub phase: Phase,
     /// \[1\] 0 without felt force, 1 from the upper force of `force_blend` on.
     pub felt: f64,
+    /// Whether it has come and its load has not: until then it keeps the ground with the upper force of `force_blend`.
+    pub waits: bool,
 }
 
 impl Contact {
@@ -58,6 +60,7 @@ impl Contact {
             _ if felt || !loading => Phase::Stance,
             _ => Phase::Late,
         };
+        self.waits = self.phase == Phase::Early || (self.phase == Phase::Stance && loading && now < HALF);
     }
 
     /// \[1\] alpha_lambda: 1 force controlled, 0 position controlled.
@@ -113,6 +116,21 @@ mod tests {
     }
 
     #[test]
+    fn a_foot_that_came_waits_until_it_carries() {
+        let mut c = Contact::default();
+        let mut waits = |load, rise, force| {
+            after(&mut c, load, rise, force);
+            c.waits
+        };
+        assert!(!waits([0.0; 2], -0.1, 0.0), "in the air");
+        assert!(waits([0.0; 2], -0.1, 60.0), "came early");
+        assert!(waits([0.1, 0.2], 0.0, 60.0), "its load comes");
+        assert!(!waits([0.1, 0.2], 0.0, 0.0), "lost the ground: searches for it");
+        assert!(!waits([0.7, 0.8], 0.0, 400.0), "carries");
+        assert!(!waits([0.2, 0.1], 0.0, 100.0), "its load goes");
+    }
+
+    #[test]
     fn ground_is_searched_for_while_load_shall_come_or_is_there() {
         let mut c = Contact::default();
         assert_eq!(after(&mut c, [0.1, 0.2], 0.0, 0.0), Phase::Late);
@@ -127,7 +145,7 @@ mod tests {
 
     #[test]
     fn who_finds_no_ground_is_carried_for() {
-        let felt = |felt| Contact { phase: Phase::Stance, felt };
+        let felt = |felt| Contact { phase: Phase::Stance, felt, ..Contact::default() };
         assert_eq!(felt_load([0.4, 0.6], &[felt(1.0), felt(0.0)]), [1.0, 0.0]);
         assert_eq!(felt_load([0.4, 0.6], &[felt(1.0); 2]), [0.4, 0.6]);
         assert_eq!(felt_load([0.4, 0.6], &[felt(0.0); 2]), [0.4, 0.6], "in the air the plan is all there is");

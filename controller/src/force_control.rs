@@ -39,6 +39,9 @@ pub fn contact_stiffness(
     k
 }
 
+/// \[s\] A search is at its full speed after so long: what a foot misses is mostly just below it.
+const HASTE: f64 = 0.05;
+
 /// What a foot's contact resists.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compliance {
@@ -145,7 +148,8 @@ pub fn modify(
     next.limited = false;
     for (i, (compliance, guide)) in feet.iter().enumerate() {
         let value = last.value.fixed_rows::<3>(3 * i).into_owned();
-        let rate = force_part.fixed_rows::<3>(3 * i) + free_part(control, compliance, guide, &value);
+        let fall = search_speed(control, value[0], -last.rate[3 * i] - guide.rise, dt);
+        let rate = force_part.fixed_rows::<3>(3 * i) + free_part(control, compliance, guide, &value, fall);
         for c in 0..3 {
             next.step(control, (3 * i + c, c), rate[c], dt);
         }
@@ -153,8 +157,15 @@ pub fn modify(
     next
 }
 
-/// Rate of what is not force controlled: (5.32), second line, and what early and late contact ask for.
-fn free_part(control: &Control, foot: &Compliance, guide: &Guide, value: &Vector3<f64>) -> Vector3<f64> {
+/// Rate of what is not force controlled: (5.32), second line, and what early and late contact ask for; a foot
+/// that is late, or has bounced off, goes down at `fall` \[m/s\].
+fn free_part(
+    control: &Control,
+    foot: &Compliance,
+    guide: &Guide,
+    value: &Vector3<f64>,
+    fall: f64,
+) -> Vector3<f64> {
     let alpha = guide.contact.force_share();
     let back = (guide.target - value) * control.position_gain;
     let mut rate = back - foot.resisted * back * alpha;
@@ -162,13 +173,18 @@ fn free_part(control: &Control, foot: &Compliance, guide: &Guide, value: &Vector
         // A foot that rises must not be held down by what it gives up.
         Phase::Swing if guide.rise >= 0.0 => rate[0] = rate[0].max(-guide.rise),
         Phase::Swing | Phase::Stance => {}
-        Phase::Early => rate[0] -= guide.rise,
-        Phase::Late => {
-            let [speed, depth] = control.search;
-            rate[0] = if value[0] > -depth { -speed } else { 0.0 };
-        }
+        Phase::Early if guide.contact.felt > 0.0 => rate[0] -= guide.rise,
+        Phase::Early => rate[0] -= guide.rise + fall,
+        Phase::Late => rate[0] = -fall,
     }
     rate
+}
+
+/// \[m/s\] How fast a foot goes down that searches for the ground, whose modification is `height` \[m\] and that went down
+/// at `last` \[m/s\].
+fn search_speed(control: &Control, height: f64, last: f64, dt: f64) -> f64 {
+    let [most, depth] = control.search;
+    if height > -depth { most.min(last.max(0.0) + most * dt / HASTE) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -186,7 +202,11 @@ mod tests {
     }
 
     fn foot(phase: Phase, felt: f64) -> (Compliance, Guide) {
-        let guide = Guide { contact: Contact { phase, felt }, rise: 0.0, target: Vector3::zeros() };
+        let guide = Guide {
+            contact: Contact { phase, felt, ..Contact::default() },
+            rise: 0.0,
+            target: Vector3::zeros(),
+        };
         (Compliance::new(&stiffness()), guide)
     }
 
@@ -287,6 +307,10 @@ mod tests {
         let mut m = Modification::default();
         m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
         assert!((m.rate[0] + feet[0].1.rise).abs() < 1e-12, "does not go on down");
+        assert!((m.rate[3] + control.search[0] * 1e-3 / HASTE).abs() < 1e-12, "begins gently");
+        for _ in 0..50 {
+            m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
+        }
         assert!((m.rate[3] + control.search[0]).abs() < 1e-12);
         for _ in 0..1000 {
             m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Matrix6, Rotation3, SMatrix, Vector2, Vector3, Vector6};
 
 use super::Controller;
 use super::task::pitched;
-use crate::contact::{Signs, felt_load};
+use crate::contact::{Contact, Signs, felt_load};
 use crate::contact_force::{FootWrench, Support, distribute, stabilize};
 use crate::estimate::Estimate;
 use crate::following::Desired;
@@ -25,7 +25,8 @@ impl Controller {
         let stabilizing = stabilize(&self.control, error, rate, height, height_rate);
         let nothing = (Vector3::zeros(), 0.0);
         let felt = |at: &Desired| felt_load(at.load, &self.contacts);
-        let modified = self.foot_forces(now, felt(now), stabilizing);
+        let mut modified = self.foot_forces(now, felt(now), stabilizing);
+        keep_ground(&mut modified, &self.contacts, self.control.force_blend[1]);
         let planned = coordinates(&self.foot_forces(now, felt(now), nothing));
         let planned_next = coordinates(&self.foot_forces(end, felt(end), nothing));
         if self.control.planned_deformation > 0.0 {
@@ -178,10 +179,40 @@ impl Controller {
     }
 }
 
+/// A foot that has come before its load presses with at least `press` \[N\], which the other foot need not carry: without
+/// it the foot leaves the ground again, and strikes when its load comes.
+fn keep_ground(wrenches: &mut [FootWrench; 2], contacts: &[Contact; 2], press: f64) {
+    for (foot, _) in contacts.iter().enumerate().filter(|(_, contact)| contact.waits) {
+        let lack = (press - wrenches[foot].force.z).max(0.0);
+        wrenches[foot].force.z += lack;
+        wrenches[1 - foot].force.z -= lack;
+    }
+}
+
 /// (F_z, T_x, T_y) of both feet.
 fn coordinates(wrenches: &[FootWrench; 2]) -> Vector6<f64> {
     Vector6::from_fn(|i, _| {
         let w = &wrenches[i / 3];
         [w.force.z, w.moment.x, w.moment.y][i % 3]
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_foot_that_waits_for_its_load_presses_and_the_sum_stays() {
+        let wrench = |z| FootWrench { force: Vector3::new(1.0, 2.0, z), moment: Vector3::new(3.0, 4.0, 0.0) };
+        let contact = |waits| Contact { waits, ..Contact::default() };
+        for (forces, waits, expected) in [
+            ([600.0, 0.0], [false, true], [550.0, 50.0]),
+            ([600.0, 0.0], [false, false], [600.0, 0.0]),
+            ([80.0, 520.0], [true, false], [80.0, 520.0]),
+        ] {
+            let mut wrenches = forces.map(wrench);
+            keep_ground(&mut wrenches, &waits.map(contact), 50.0);
+            assert_eq!(wrenches, expected.map(wrench));
+        }
+    }
 }
