@@ -8,17 +8,17 @@ said() {
     grep -qE "$1" "$work/fault/said"
 }
 
-# disturbed PATTERN COMMAND...: walks, does that at cycle 400, in mid-step, and waits until the run tells of it.
+# disturbed PATTERN COMMAND...: walks, does that at cycle 1000, in mid-step, and waits until the run tells of it.
 disturbed() {
     pattern=$1
     shift
-    brief can_2kmh 3.5
-    timeout 800 candump -n 400 vcan0,080:7FF >/dev/null &
+    brief can_2kmh 4.5
+    timeout 800 candump -n 1000 vcan0,080:7FF >/dev/null &
     waiting=$!
     within 20 listened vcan0 || return 1
     walk fault can_2kmh --lockstep --bus can:vcan0-8 &
     running=$!
-    wait "$waiting" || because "cycle 400 was not reached: $(tail -n 5 "$work/fault/said")" || return 1
+    wait "$waiting" || because "cycle 1000 was not reached: $(tail -n 5 "$work/fault/said")" || return 1
     "$@" || because "could not: $*"
     within 240 said "$pattern" || because "no event like '$pattern': $(tail -n 5 "$work/fault/said")" || return 1
     grep -E "$pattern" "$work/fault/said" | sed 's/^/        /'

@@ -5,10 +5,10 @@
 
 # The bus must not be seen in what is walked: shared memory carries the same frames as CAN FD.
 fd() {
-    brief walk_2kmh 1.6
+    brief walk_2kmh 3.5
     recorded fd walk_2kmh --lockstep --bus canfd:vcan0-8 || return 1
     "$GANGWERK" sim walk_2kmh --config "$work/config" --log "$work/fd/shm.mcap" --json >/dev/null || return 1
-    awk -v CYCLES=1600 -v PREFIX=vcan -f "$here/every_frame.awk" "$robots/lola/can/lola_fd.dbc" "$work/fd.log" || return 1
+    awk -v CYCLES=3500 -v PREFIX=vcan -f "$here/every_frame.awk" "$robots/lola/can/lola_fd.dbc" "$work/fd.log" || return 1
     "$python" "$here/same.py" "$work/fd/shm.mcap" "$work/fd/walk_2kmh.mcap"
 }
 
