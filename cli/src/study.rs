@@ -102,10 +102,10 @@ pub(super) enum Task {
         /// Whose frames they carry.
         #[arg(long, default_value = "lola")]
         robot: String,
-        /// Bus cycle [ms].
+        /// Bus cycle \[ms\].
         #[arg(long, value_name = "MS", default_value_t = 3.5)]
         cycle: f64,
-        /// How long [s]; cyclictest runs as long before, and again beside it.
+        /// How long \[s\]; cyclictest runs as long before, and again beside it.
         #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=3600))]
         seconds: u64,
     },
