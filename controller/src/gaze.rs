@@ -15,7 +15,8 @@
 //! R_tilt^T R_pan^T r = (d, c_y, c_z) with d > c_x.
 //!
 //! The heading of the stance foot is planned, not measured, and soles turn on the ground: measured, 20 mrad to and fro in
-//! every step at 2 km/h. So within seconds the head believes the IMU's heading, and over longer times odometry's.
+//! every step at 2 km/h, and 27 mrad for good when Lola starts. So within `heading_time` the head believes the IMU's heading,
+//! and over longer times odometry's; and it reckons where it is by the way of odometry, turned into that heading.
 
 use config::Robot;
 use config::limbs::Head;
@@ -89,6 +90,9 @@ pub struct Gaze {
     acceleration: [f64; AXES],
     /// \[rad\] Heading in I_0 less the one that the IMU says, over a longer time.
     turn: Option<f64>,
+    /// \[m\] @I_0 Where odometry has the torso; and how far beside that the head believes it.
+    odometry: Option<Vector3<f64>>,
+    beside: Vector3<f64>,
     /// Why the point cannot be looked at, as in [`EventCode::GazeHeld`].
     held: Option<u64>,
     /// News of the point and of the way there.
@@ -119,6 +123,8 @@ impl Gaze {
             motion: Motion::Pursuit,
             acceleration: [0.0; AXES],
             turn: None,
+            odometry: None,
+            beside: Vector3::zeros(),
             held: None,
             event: None,
             jump: None,
@@ -220,15 +226,25 @@ impl Gaze {
         targets
     }
 
-    /// The torso with the IMU's heading at short times, odometry's at long ones.
+    /// The torso with the IMU's heading at short times, odometry's at long ones, and where that heading has led it.
     fn stabilized(&mut self, torso: &TorsoMotion, dt: f64) -> TorsoMotion {
-        let now = torso.origin[2] + torso.turn;
+        let [x, y, heading] = torso.origin;
+        let now = heading + torso.turn;
         let before = self.turn.filter(|turn| turn.is_finite()).unwrap_or(now);
         let wrapped = |angle: f64| angle - TAU * (angle / TAU).round();
         let turn = before + wrapped(now - before) * (dt / self.head.heading_time).min(1.0);
         self.turn = Some(turn);
-        let more = Rotation3::from_axis_angle(&Vector3::z_axis(), wrapped(turn - now));
-        TorsoMotion { rotation: more * torso.rotation, ..*torso }
+        let about_z = |angle: f64| Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
+        let more = about_z(wrapped(turn - now));
+        let mut odometry = about_z(heading) * torso.position + Vector3::new(x, y, 0.0);
+        odometry.z = 0.0;
+        let way = self.odometry.replace(odometry).map_or(Vector3::zeros(), |last| odometry - last);
+        let aside = more * way - way;
+        if aside.iter().all(|a| a.is_finite()) {
+            self.beside += aside;
+        }
+        let origin = [x + self.beside.x, y + self.beside.y, heading];
+        TorsoMotion { origin, rotation: more * torso.rotation, ..*torso }
     }
 
     /// From C to P and its rate, torso axes (4.55), (4.56).

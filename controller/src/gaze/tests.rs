@@ -112,6 +112,35 @@ fn targets_move_as_the_torso_makes_them() {
     }
 }
 
+/// The sole turns by 50 mrad under a robot that then walks 3 m, turning by 0.4 rad, over footholds whose frames jump:
+/// odometry ends 0.15 m beside, the head does not.
+#[test]
+fn the_way_is_reckoned_with_the_heading_that_is_believed() {
+    let mut gaze = gaze(|h| h.heading_time = 1e9);
+    gaze.stabilized(&still(), DT);
+    let (slip, steps) = (0.05, 3000);
+    let (mut real, mut believed) = (Vector3::<f64>::zeros(), Vector3::<f64>::zeros());
+    let about_z = |angle| Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
+    let mut seen = Vector3::zeros();
+    let point = Vector3::new(4.0, 1.0, 0.9);
+    for k in 1..=steps {
+        let heading = 0.4 * f64::from(k) / f64::from(steps);
+        let ahead = Vector3::new(1e-3, 0.0, 0.0);
+        real += about_z(heading + slip) * ahead;
+        believed += about_z(heading) * ahead;
+        let frame = f64::from(k / 700); // a foothold every 0.7 m
+        let origin = [0.7 * frame, 0.02 * frame, 0.1 * frame];
+        let rotation = *about_z(heading - origin[2]).matrix();
+        let position = about_z(-origin[2]) * (believed - Vector3::new(origin[0], origin[1], 0.0));
+        let torso = TorsoMotion { origin, turn: -origin[2] - slip, rotation, position, ..still() };
+        let torso = gaze.stabilized(&torso, DT);
+        seen = gaze.seen(&torso, &point).0 + gaze.centre;
+    }
+    let expected = about_z(-0.4 - slip) * (point - real);
+    assert!((real - believed).norm() > 0.14);
+    assert!((seen - expected).norm() < 1e-4, "{seen} {expected}");
+}
+
 #[test]
 fn what_cannot_be_looked_at_is_held_and_said() {
     let torso = still();
