@@ -258,6 +258,9 @@ fn top_speed_is_reached_with_the_fourth_step_and_left_within_four() {
         r.run(10.0);
         r.step(&[Command::Stop]);
         r.run(8.0);
+        if steps == 4 {
+            check(&r, &gait); // the fast gait's first plan misses its zero-moment point by 1.8 mm: margins only
+        }
         for p in &r.plans {
             let margins = [zmp_margin(p), implied_margin(p, &gait)];
             assert!(margins[0] > -1e-6 && margins[1] > -1e-3, "plan {}: {margins:?} m inside", p.id);
