@@ -1,9 +1,9 @@
 //! `gangwerk topic`: commands that reach a running robot and act, and looks at what it does.
 
-use harness::{Running, Site, doze};
+use harness::{Running, Signal, Site, doze, turn};
 use ipc::{Reader, Space};
-use messages::topics::{CONTROLLER_STATE, EVENTS_WATCHDOG, POWER, SIM_STATE};
-use messages::{ControllerState, Event, EventCode, GaitState, Power, Record, SimState};
+use messages::topics::{CONTROLLER_STATE, EVENTS_PLANNER, EVENTS_WATCHDOG, POWER, SIM_STATE};
+use messages::{Command, ControllerState, Event, EventCode, GaitState, Power, Process, Record, SimState};
 use realtime::clock;
 
 const EXE: &str = harness::executable!();
@@ -23,6 +23,35 @@ fn standing(site: &Site) -> (Running, Space) {
     let mut state = space.reader::<ControllerState>(&CONTROLLER_STATE).unwrap();
     until(&mut run, &mut state, |s| s.tick() > 3000 && s.gait == GaitState::Standing as u64);
     (run, space)
+}
+
+/// An operator who lets the robot walk and stays.
+fn walk(site: &Site) -> Running {
+    let dir = site.run_dir().display().to_string();
+    site.start(&["topic", "pub", "walk/velocity", "forward=0.278", "--dir", &dir])
+}
+
+/// A walking robot in real time, its operator, and what the planner tells.
+fn walking(site: &Site) -> (Running, Running, Space) {
+    site.scene("wait", 600.0, WAIT);
+    let mut run = site.run("wait", &["--no-log"]);
+    let space = run.space();
+    let mut state = space.reader::<ControllerState>(&CONTROLLER_STATE).unwrap();
+    until(&mut run, &mut state, |s| s.tick() > 3000 && s.gait == GaitState::Standing as u64);
+    let operator = walk(site);
+    until(&mut run, &mut state, |s| s.gait == GaitState::Walking as u64);
+    (run, operator, space)
+}
+
+/// The robot comes to a stand because the lease is over, and says so.
+fn stands_without_lease(run: &mut Running, space: &Space) {
+    let mut events = space.reader::<Event>(&EVENTS_PLANNER).unwrap();
+    let mut state = space.reader::<ControllerState>(&CONTROLLER_STATE).unwrap();
+    until(run, &mut events, |e| e.code == EventCode::LeaseLost as u64);
+    let end = until(run, &mut state, |s| s.gait == GaitState::Standing as u64);
+    let mut sim = space.reader::<SimState>(&SIM_STATE).unwrap();
+    let still = until(run, &mut sim, |s| s.tick() > end.tick() + 500);
+    assert_eq!((still.fallen, still.power), (0, 1));
 }
 
 trait Tick {
@@ -53,17 +82,20 @@ fn until<T: Record>(run: &mut Running, reader: &mut Reader<T>, what: impl Fn(&T)
 
 #[test]
 fn walk_velocity_and_walk_stop_walk_and_stop() {
-    let site = Site::new(EXE);
+    let _turn = turn();
+    let site = Site::patient(EXE);
     let (mut run, space) = standing(&site);
     let mut sim = space.reader::<SimState>(&SIM_STATE).unwrap();
     let mut state = space.reader::<ControllerState>(&CONTROLLER_STATE).unwrap();
     let before = until(&mut run, &mut sim, |_| true).position[0];
-    let said = site.topic(&["pub", "walk/velocity", "forward=0.278"]).well();
-    assert_eq!(said.out, "walk/velocity taken by 1 process\n");
+    let operator = walk(&site);
     until(&mut run, &mut state, |s| s.gait == GaitState::Walking as u64);
     let walked = until(&mut run, &mut sim, |s| s.position[0] > before + 1.0);
     assert_eq!((walked.fallen, walked.power), (0, 1));
-    site.topic(&["pub", "walk/stop"]).well();
+    assert_eq!(site.topic(&["pub", "walk/stop"]).well().out, "walk/stop accepted by planner\n");
+    let said = operator.end().well();
+    assert!(said.out.starts_with("walk/velocity accepted by planner\n"), "{}", said.out);
+    assert!(said.out.contains("stopped by somebody else: walk/stop"), "{}", said.out);
     until(&mut run, &mut state, |s| s.gait == GaitState::Standing as u64);
     let now = until(&mut run, &mut sim, |s| s.header.tick > walked.header.tick + 1000);
     let later = until(&mut run, &mut sim, |s| s.header.tick > now.header.tick + 20_000);
@@ -79,7 +111,8 @@ fn walk_velocity_and_walk_stop_walk_and_stop() {
 
 #[test]
 fn sim_push_pushes_for_as_long_as_it_says() {
-    let site = Site::new(EXE);
+    let _turn = turn();
+    let site = Site::patient(EXE);
     let (mut run, space) = standing(&site);
     let mut sim = space.reader::<SimState>(&SIM_STATE).unwrap();
     site.topic(&["pub", "sim/push", "force.y=40", "duration=0.2"]).well();
@@ -92,9 +125,10 @@ fn sim_push_pushes_for_as_long_as_it_says() {
 
 #[test]
 fn an_emergency_stop_cuts_the_supply_in_the_cycle_that_hears_it() {
-    let site = Site::new(EXE);
+    let _turn = turn();
+    let site = Site::patient(EXE);
     let (mut run, space) = standing(&site);
-    site.topic(&["pub", "walk/velocity", "forward=0.278"]).well();
+    let _operator = walk(&site);
     let mut state = space.reader::<ControllerState>(&CONTROLLER_STATE).unwrap();
     until(&mut run, &mut state, |s| s.gait == GaitState::Walking as u64);
     let mut power = space.reader::<Power>(&POWER).unwrap();
@@ -115,7 +149,8 @@ fn an_emergency_stop_cuts_the_supply_in_the_cycle_that_hears_it() {
 
 #[test]
 fn hz_and_echo_show_the_sensors_of_a_robot_in_real_time() {
-    let site = Site::new(EXE);
+    let _turn = turn();
+    let site = Site::patient(EXE);
     site.scene("wait", 60.0, WAIT);
     let mut run = site.run("wait", &["--no-log"]);
     let space = run.space();
@@ -135,4 +170,98 @@ fn hz_and_echo_show_the_sensors_of_a_robot_in_real_time() {
     assert_eq!(field("power"), [1.0]);
     assert_eq!(field("imu.orientation").len(), 4);
     assert_eq!(said.out.matches("---").count(), 1, "only one record");
+}
+
+/// Issue 10, C7: the operator's link was lost, and the robot walked on for ever.
+#[test]
+fn an_operator_who_is_killed_or_hangs_stops_the_walk() {
+    let _turn = turn();
+    for signal in [Signal::KILL, Signal::STOP] {
+        let site = Site::patient(EXE);
+        let (mut run, operator, space) = walking(&site);
+        operator.signal_supervisor(signal);
+        stands_without_lease(&mut run, &space);
+        operator.signal_supervisor(Signal::KILL);
+    }
+}
+
+/// The lease ends by the clock of the process that walks: nobody has to tell it.
+#[test]
+fn a_broker_that_hangs_or_dies_stops_the_walk() {
+    let _turn = turn();
+    for signal in [Signal::STOP, Signal::KILL] {
+        let site = Site::patient(EXE);
+        let (mut run, operator, space) = walking(&site);
+        run.signal(Process::Broker, signal);
+        stands_without_lease(&mut run, &space);
+        operator.signal_supervisor(Signal::KILL);
+        run.signal(Process::Broker, Signal::KILL);
+    }
+}
+
+/// Issue 10, C3: a velocity sent to a stalled broker from a connection that is closed by now started the walk 0.46 s after
+/// the broker went on; so does nothing that waits in a stalled planner.
+#[test]
+fn a_command_that_waited_in_a_stalled_process_moves_nothing() {
+    let _turn = turn();
+    let site = Site::patient(EXE);
+    site.scene("wait", 600.0, WAIT);
+    let mut run = site.run("wait", &["--no-log"]);
+    let space = run.space();
+    let mut state = space.reader::<ControllerState>(&CONTROLLER_STATE).unwrap();
+    until(&mut run, &mut state, |s| s.tick() > 3000 && s.gait == GaitState::Standing as u64);
+    for process in [Process::Broker, Process::Planner] {
+        let mut client = broker::StreamClient::connect(&site.run_dir(), "closed by now").unwrap();
+        client.ping().unwrap();
+        run.signal(process, Signal::STOP);
+        client.send(&Command::parse("walk/velocity", "forward=0.4").unwrap()).unwrap();
+        doze(0.3);
+        if process == Process::Broker {
+            drop(client);
+        }
+        run.signal(process, Signal::CONT);
+        let now = until(&mut run, &mut state, |_| true).tick();
+        while until(&mut run, &mut state, |_| true).tick() < now + 1500 {
+            let s = until(&mut run, &mut state, |_| true);
+            assert_eq!(s.gait, GaitState::Standing as u64, "after a stall of {}", process.name());
+        }
+    }
+}
+
+#[test]
+fn a_refused_command_ends_topic_pub_with_the_reason_and_the_limit() {
+    let _turn = turn();
+    let site = Site::patient(EXE);
+    let (run, _space) = standing(&site);
+    let said = site.topic(&["pub", "walk/velocity", "forward=1.9"]);
+    assert_eq!(said.code, Some(1), "{said:#?}");
+    assert_eq!(said.err.trim(), "error: walk/velocity refused by planner: forward = 1.9 m/s: at most 0.943");
+    let said = site.topic(&["pub", "walk/velocity", "forward=0.278", "--for", "0.5"]).well();
+    assert!(said.out.ends_with("walk/stop accepted by planner\n"), "{}", said.out);
+    run.interrupt();
+}
+
+/// The same protocol from another language, written from its page of the documentation.
+#[test]
+fn the_python_client_speaks_to_the_broker() {
+    let _turn = turn();
+    let site = Site::patient(EXE);
+    let key = "00112233445566778899aabbccddeeff".repeat(2);
+    let path = site.config("keys");
+    std::fs::write(&path, format!("console walk {key}\n")).unwrap();
+    std::fs::set_permissions(&path, std::os::unix::fs::PermissionsExt::from_mode(0o600)).unwrap();
+    site.edit("system.toml", "tcp_keys = \"\"", "tcp_keys = \"keys\"");
+    let (mut run, _space) = standing(&site);
+    let address = std::fs::read_to_string(site.run_dir().join("broker.tcp")).unwrap();
+    let (host, port) = address.trim().rsplit_once(':').unwrap();
+    let script = harness::root().join("tests/python_client.py");
+    let said = std::process::Command::new("python3")
+        .arg(script)
+        .arg(site.run_dir())
+        .args([host, port, "console", &key])
+        .output()
+        .expect("python3 is there");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    assert!(said.status.success(), "{}{}{}", text(&said.stdout), text(&said.stderr), run.err());
+    assert!(run.is_alive());
 }

@@ -6,6 +6,7 @@
 use config::Setup;
 use harness::{Site, doze};
 use ipc::{Reader, Space};
+use messages::power::QUIET_CYCLES;
 use messages::topics::{
     CONTROLLER_STATE, JOINT_TARGETS, POWER, SIM_STATE, STATS_SIM_BACKEND, STATS_WATCHDOG,
 };
@@ -240,10 +241,10 @@ fn judge(e: &Evidence, setup: &Setup) -> Result<(), String> {
         }
         Process::Watchdog => {
             let last = e.seen.power.all.last().ok_or("no power record")?.header.tick;
-            // The toggle of tick n reaches the robot in its cycle n or n + 1; three cycles without follow.
+            // The toggle of tick n reaches the robot in its cycle n to n + 2; the cycles without follow.
             let line = cycles_after(e, last, |s| s.power == 0).ok_or("the power line did not fall")?;
             check(
-                (3..=4).contains(&line),
+                (QUIET_CYCLES..=QUIET_CYCLES + 2).contains(&(line as u64)),
                 &format!("the power line fell in cycle {line} after the last toggle"),
             )?;
             let rest = e.at_rest().ok_or("the joints did not come to rest")?;

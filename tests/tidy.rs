@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Layers from the bottom to the top. A crate depends only on crates of layers below its own, or of its own layer if
 /// that is not the processes'.
 const LAYERS: [&[&str]; 6] = [
-    &["contact", "curves", "drawing", "drives", "environment", "multibody"],
+    &["contact", "curves", "drawing", "drives", "environment", "multibody", "terminal"],
     &["messages"],
     &["ipc", "realtime", "config", "recording", "daemon", "fieldbus", "sercos"],
     &["planner", "controller", "lowlevel", "sim-backend", "broker", "watchdog", "logger"],
@@ -155,7 +155,7 @@ fn only_realtime_may_name_clocks() {
     ];
     let may = |here: &str| {
         // A time of tokio's is its own; the recorder stamps no message with it.
-        let reasons = ["crates/realtime/", "broker/src/tcp", "tests/peers/", "tests/tidy.rs"];
+        let reasons = ["crates/realtime/", "broker/src/connection_tests.rs", "tests/peers/", "tests/tidy.rs"];
         reasons.iter().any(|path| here.starts_with(path))
             || here.contains("/benches/")
             || here.contains("/examples/")
@@ -165,6 +165,37 @@ fn only_realtime_may_name_clocks() {
         for word in clocks.iter().filter(|_| !may(&here)) {
             assert!(!code(&path).contains(word), "{here} names {word}: only crates/realtime reads clocks");
         }
+    }
+}
+
+/// `println!` and `eprintln!` of the standard library wait for a paused terminal and panic when the reader is gone. The command
+/// has those of `crates/terminal` instead; a process says something with `tracing`.
+#[test]
+fn nothing_prints_but_through_the_terminal_crate() {
+    let may = |here: &str| {
+        // The program that starts a process alone ends after its one line.
+        let reasons = ["cli/src/", "crates/terminal/", "watchdog/src/main.rs"];
+        reasons.iter().any(|path| here.starts_with(path))
+            || ["/benches/", "/examples/", "/tests/", "tests/"].iter().any(|part| here.contains(part))
+    };
+    for path in files(&[".rs"]) {
+        let here = path.display().to_string();
+        for word in ["println!(", "print!("].iter().filter(|_| !may(&here)) {
+            assert!(!code(&path).contains(word), "{here} holds {word}: use tracing, or crates/terminal");
+        }
+    }
+    for root in ["cli/src/lib.rs", "cli/src/main.rs"] {
+        assert!(
+            text(root).contains("#[macro_use(println, eprintln)]"),
+            "{root} prints with the standard library"
+        );
+    }
+    for path in files(&[".rs"]).iter().filter(|path| path.starts_with("cli/src")) {
+        assert!(
+            !code(path).contains("std::eprint") && !code(path).contains("std::print"),
+            "{}",
+            path.display()
+        );
     }
 }
 

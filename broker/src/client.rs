@@ -1,63 +1,88 @@
 //! A process's connection to the global broker.
 //!
-//! A thread of the ordinary scheduler moves messages between the inter-process queues and two pairs of rings (urgent
-//! and other); the control cycle only touches the rings. It renews the registration all the time: so a broker that
-//! was started again knows its clients after one period, and one that hears nothing of a client lets go of its queue.
+//! A thread of the ordinary scheduler, the courier, moves messages between the inter-process queues and the rings of the
+//! control cycle, which touches nothing else: commands in and out (urgent and other), verdicts out, answers in. What the
+//! cycle hands over rings the courier's doorbell, one system call that never blocks. The courier renews the registration
+//! all the time: so a broker that was started again knows its clients after one period, and one that hears nothing of a
+//! client lets go of its queue.
+//!
+//! Age and lease of a command are looked at in [`Client::next`], in the cycle in which it takes effect: a stalled courier
+//! or a stalled cycle lets no old command through.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering::Relaxed};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use ipc::{QueueReceiver, QueueSender, QueueWaiter, Space};
-use messages::Command;
+use ipc::{Doorbell, QueueReceiver, QueueSender, QueueWaiter, Space};
 use messages::command::{Domain, Priority};
+use messages::{Command, CommandSource, Lease, Live, Stamp, Verdict};
 use realtime::clock::{SECOND, now};
 use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::message::{
     BROKER_BELL, MAX_BYTES, Message, PUBLISH, REGISTRATION, SERVICE, client_queue, domain_mask, service,
-    service_message, write_command,
+    service_message, split_u32, split_u64, write_command,
 };
 
-/// Room in each ring.
+/// Room in each ring; more than the broker sends without an answer.
 const RING: usize = 128;
-/// How often the thread looks for what the control cycle publishes; what comes in wakes it.
+/// How often the thread looks whether it shall end; what comes in or goes out wakes it.
 const POLL: Duration = Duration::from_millis(10);
 /// Time from one renewal of the registration to the next \[ns\].
 const RENEW: u64 = SECOND / 5;
 /// Renewals without an answer after which the broker counts as gone.
 const SILENT: u32 = 4;
+/// End of a lease in the shared word: low bits, in units of 2^20 ns.
+const UNTIL_BITS: u32 = 40;
 
 /// The real-time side of the connection. Dropping it leaves the broker.
 #[derive(Debug)]
 pub struct Client {
     urgent: Ends,
     other: Ends,
-    counts: Arc<Counts>,
+    verdicts: Producer<(Live, Verdict)>,
+    answers: Consumer<Answered>,
+    doorbell: Doorbell,
+    /// Of the last command sent.
+    sequence: u64,
+    /// Name without process id: which commands this process decides about.
+    role: String,
+    shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
 
 /// One pair of rings, as the control cycle sees it.
 #[derive(Debug)]
 struct Ends {
-    out: Producer<(Command, Priority)>,
-    received: Consumer<Command>,
+    out: Producer<(Live, Priority)>,
+    received: Consumer<Live>,
 }
 
 /// The same pair, as the thread sees it.
 struct FarEnds {
-    out: Consumer<(Command, Priority)>,
-    received: Producer<Command>,
+    out: Consumer<(Live, Priority)>,
+    received: Producer<Live>,
+}
+
+/// What became of a command that this client sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Answered {
+    /// Number that [`Client::publish`] gave it.
+    pub sequence: u64,
+    /// 0: accepted; otherwise the reason, as in the protocol.
+    pub code: u8,
 }
 
 #[derive(Debug, Default)]
-struct Counts {
+struct Shared {
     connected: AtomicBool,
     end: AtomicBool,
     lost_out: AtomicU64,
     lost_in: AtomicU64,
     refused: AtomicU64,
+    /// The lease: grant above [`UNTIL_BITS`], its end below; one word, so that both are of one moment.
+    lease: AtomicU64,
 }
 
 /// What a client has seen so far.
@@ -69,7 +94,7 @@ pub struct ClientStatistics {
     pub lost_out: u64,
     /// Messages that were on their way to this client and did not reach its control cycle.
     pub lost_in: u64,
-    /// Messages received that were no commands or out of range.
+    /// Messages received that were no commands, out of range, too old, or without the lease.
     pub refused: u64,
 }
 
@@ -84,56 +109,70 @@ impl Client {
             .map_err(|e| format!("{name} cannot connect to the broker's queues: {e}"))
     }
 
-    fn open(name: &str, domains: &[Domain], space: &Space) -> Result<Self, Box<dyn std::error::Error>> {
+    fn open(role: &str, domains: &[Domain], space: &Space) -> Result<Self, Box<dyn std::error::Error>> {
         let (urgent, far_urgent) = rings();
         let (other, far_other) = rings();
-        let counts = Arc::new(Counts::default());
-        let name = unique(name);
+        let (verdicts, given) = RingBuffer::new(2 * RING);
+        let (answered, answers) = RingBuffer::new(2 * RING);
+        let shared = Arc::new(Shared::default());
+        let name = unique(role);
         let inbox = client_queue(&name);
         let [high, normal, low] = PUBLISH.map(|queue| space.queue_sender(queue, BROKER_BELL));
+        let bell = space.queue_waiter(&inbox)?;
+        let doorbell = bell.doorbell();
         let courier = Courier {
             domains: domain_mask(domains),
             rings: [far_urgent, far_other],
-            counts: counts.clone(),
+            verdicts: given,
+            answers: answered,
+            shared: shared.clone(),
             publish: [high?, normal?, low?],
             registration: space.queue_sender(REGISTRATION, BROKER_BELL)?,
             inbox: space.queue_receiver(&inbox)?,
-            bell: space.queue_waiter(&inbox)?,
+            bell,
             no_room: 0,
             link: Link::Unknown,
             unanswered: 0,
+            token: token(&name),
             name,
         };
         let thread = std::thread::Builder::new().name("courier".into()).spawn(move || courier.run())?;
-        Ok(Self { urgent, other, counts, thread: Some(thread) })
+        let (role, thread) = (role.into(), Some(thread));
+        Ok(Self { urgent, other, verdicts, answers, doorbell, sequence: 0, role, shared, thread })
     }
 
-    /// Sends a command to the other processes. False, and counted, if the ring is full. Never waits.
-    pub fn publish(&mut self, command: &Command) -> bool {
+    /// Sends a command to the other processes; the number under which it will be [answered](Client::answered). None, and
+    /// counted, if the ring is full. Never waits.
+    pub fn publish(&mut self, command: &Command) -> Option<u64> {
         self.publish_as(command, command.priority())
     }
 
     /// The same with another priority; an emergency stop is always High and nothing else is.
-    pub fn publish_as(&mut self, command: &Command, priority: Priority) -> bool {
+    pub fn publish_as(&mut self, command: &Command, priority: Priority) -> Option<u64> {
         let urgent = command.priority() == Priority::High;
         let priority = if urgent { Priority::High } else { priority.max(Priority::Normal) };
         let ends = if urgent { &mut self.urgent } else { &mut self.other };
-        let sent = ends.out.push((*command, priority)).is_ok();
-        if !sent {
-            self.counts.lost_out.fetch_add(1, Relaxed);
+        self.sequence += 1;
+        let stamp = Stamp { sequence: self.sequence, sent_ns: now(), ..Stamp::default() };
+        let sent = ends.out.push((Live { command: *command, stamp }, priority)).is_ok();
+        if sent {
+            self.doorbell.ring();
+        } else {
+            self.shared.lost_out.fetch_add(1, Relaxed);
         }
-        sent
+        sent.then_some(self.sequence)
     }
 
-    /// The next message that waits, urgent ones first. Never waits.
-    pub fn receive(&mut self) -> Option<Command> {
-        self.urgent.received.pop().or_else(|_| self.other.received.pop()).ok()
+    /// The next answer to a command that this client sent.
+    pub fn answered(&mut self) -> Option<Answered> {
+        self.answers.pop().ok()
     }
 
-    /// What came since the last call, urgent messages first. At most what the rings hold at the time of the call.
+    /// The commands that came and may take effect now, urgent ones first, each accepted if this process decides about it.
+    /// At most what the rings hold at the time of the call.
     pub fn received(&mut self) -> impl Iterator<Item = Command> + '_ {
         let waiting = self.waiting();
-        std::iter::from_fn(|| self.receive()).take(waiting)
+        std::iter::from_fn(|| self.accept()).take(waiting)
     }
 
     /// How many messages wait.
@@ -143,19 +182,51 @@ impl Client {
 
     /// What this client has seen so far.
     pub fn statistics(&self) -> ClientStatistics {
-        let c = &self.counts;
+        let s = &self.shared;
         ClientStatistics {
-            connected: c.connected.load(Relaxed),
-            lost_out: c.lost_out.load(Relaxed),
-            lost_in: c.lost_in.load(Relaxed),
-            refused: c.refused.load(Relaxed),
+            connected: s.connected.load(Relaxed),
+            lost_out: s.lost_out.load(Relaxed),
+            lost_in: s.lost_in.load(Relaxed),
+            refused: s.refused.load(Relaxed),
         }
+    }
+}
+
+impl CommandSource for Client {
+    fn next(&mut self) -> Option<Live> {
+        loop {
+            let live = self.urgent.received.pop().or_else(|_| self.other.received.pop()).ok()?;
+            match live.check(self.lease(), now()) {
+                Ok(()) => return Some(live),
+                Err(reason) => {
+                    self.shared.refused.fetch_add(1, Relaxed);
+                    self.answer(&live, Err(reason));
+                }
+            }
+        }
+    }
+
+    fn answer(&mut self, live: &Live, verdict: Verdict) {
+        // A verdict that finds no room is missed by the broker, which then says that this process did not answer.
+        if live.stamp.origin != 0
+            && live.command.decided_by() == self.role
+            && self.verdicts.push((*live, verdict)).is_ok()
+        {
+            self.doorbell.ring();
+        }
+    }
+
+    fn lease(&self) -> Lease {
+        let word = self.shared.lease.load(Relaxed);
+        let until = word & ((1 << UNTIL_BITS) - 1);
+        Lease { grant: (word >> UNTIL_BITS) as u32, until_ns: until << 20 }
     }
 }
 
 impl Drop for Client {
     fn drop(&mut self) {
-        self.counts.end.store(true, Relaxed);
+        self.shared.end.store(true, Relaxed);
+        self.doorbell.ring();
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
@@ -174,18 +245,21 @@ fn unique(name: &str) -> String {
     format!("{name}-{}-{}", std::process::id(), CLIENTS.fetch_add(1, Relaxed))
 }
 
-/// Number of a client in the queues to the broker; numbers with the highest bit set are TCP connections.
+/// Number of a client in the queues to the broker; numbers with the highest bit set are streams.
 fn token(name: &str) -> u32 {
     let hash = name.bytes().fold(0x811c_9dc5u32, |h, b| (h ^ u32::from(b)).wrapping_mul(0x0100_0193));
-    hash & 0x7fff_ffff
+    (hash & 0x7fff_ffff).max(1)
 }
 
 /// What the thread owns.
 struct Courier {
     name: String,
+    token: u32,
     domains: u32,
     rings: [FarEnds; 2],
-    counts: Arc<Counts>,
+    verdicts: Consumer<(Live, Verdict)>,
+    answers: Producer<Answered>,
+    shared: Arc<Shared>,
     publish: [QueueSender; 3],
     registration: QueueSender,
     inbox: QueueReceiver,
@@ -208,19 +282,23 @@ enum Link {
 
 impl Courier {
     fn run(mut self) {
+        // Behind a busy chain on its core it would bring a stop too late, and a renewal of the lease.
+        realtime::run_on_any_core();
         let mut next_renewal = 0;
-        while !self.counts.end.load(Relaxed) {
+        while !self.shared.end.load(Relaxed) {
             if now() >= next_renewal {
                 next_renewal = now() + RENEW;
                 self.register();
             }
             self.bring_in();
             self.carry_out();
-            self.counts.connected.store(self.link == Link::Up, Relaxed);
+            self.carry_verdicts();
+            self.shared.connected.store(self.link == Link::Up, Relaxed);
             self.bell.wait(POLL);
         }
         self.carry_out();
-        self.registration.send(&service_message(service::LEAVE, &token(&self.name).to_le_bytes()));
+        self.carry_verdicts();
+        self.registration.send(&service_message(service::LEAVE, 0, now(), &self.token.to_le_bytes()));
     }
 
     fn register(&mut self) {
@@ -228,11 +306,11 @@ impl Courier {
         if self.unanswered > SILENT {
             self.link = Link::Down;
         }
-        let lost = self.counts.lost_in.load(Relaxed) as u32;
-        let numbers = [token(&self.name), self.domains, lost];
+        let lost = self.shared.lost_in.load(Relaxed) as u32;
+        let numbers = [self.token, self.domains, lost];
         let mut payload: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
         payload.extend(self.name.bytes());
-        self.registration.send(&service_message(service::REGISTER, &payload));
+        self.registration.send(&service_message(service::REGISTER, 0, now(), &payload));
     }
 
     /// From the rings to the broker. While there is none, nothing is kept for later: an old command must not move the
@@ -243,13 +321,28 @@ impl Courier {
                 continue;
             }
             for _ in 0..RING {
-                let Ok((command, priority)) = ring.out.pop() else { break };
+                let Ok((live, priority)) = ring.out.pop() else { break };
                 let mut buffer = [0; MAX_BYTES];
+                let stamp = Stamp { origin: self.token, ..live.stamp };
                 let sent = (urgent || self.link == Link::Up)
-                    && write_command(&command, priority, token(&self.name), &mut buffer)
+                    && write_command(&live.command, priority, &stamp, &mut buffer)
                         .is_ok_and(|bytes| self.publish[priority as usize].send(bytes));
-                self.counts.lost_out.fetch_add(u64::from(!sent), Relaxed);
+                self.shared.lost_out.fetch_add(u64::from(!sent), Relaxed);
             }
+        }
+    }
+
+    /// What the control cycle made of commands: here numbers become text.
+    fn carry_verdicts(&mut self) {
+        while let Ok((live, verdict)) = self.verdicts.pop() {
+            let (code, text) = verdict
+                .map_or_else(|reason| (reason.code(), reason.text(&live.command)), |()| (0, String::new()));
+            let mut payload = self.token.to_le_bytes().to_vec();
+            payload.extend(live.stamp.origin.to_le_bytes());
+            payload.push(code);
+            payload.extend(text.bytes());
+            let message = service_message(service::VERDICT, live.stamp.sequence, now(), &payload);
+            self.registration.send(&message);
         }
     }
 
@@ -258,17 +351,41 @@ impl Courier {
         for _ in 0..2 * RING {
             let Some(bytes) = self.inbox.receive() else { break };
             let message = Message::parse(bytes);
-            if message.as_ref().is_ok_and(|m| m.domain == SERVICE) {
+            if let Ok(message) = &message
+                && message.domain == SERVICE
+            {
                 (self.link, self.unanswered) = (Link::Up, 0);
+                hear(message, &self.shared, &mut self.answers);
                 continue;
             }
-            let Ok(command) = message.and_then(|m| m.command()) else {
-                self.counts.refused.fetch_add(1, Relaxed);
+            let Ok(live) = message.and_then(|m| Ok(Live { command: m.command()?, stamp: m.stamp })) else {
+                self.shared.refused.fetch_add(1, Relaxed);
                 continue;
             };
-            let ring = &mut self.rings[usize::from(command.priority() != Priority::High)];
-            self.no_room += u64::from(ring.received.push(command).is_err());
+            let ring = &mut self.rings[usize::from(live.command.priority() != Priority::High)];
+            self.no_room += u64::from(ring.received.push(live).is_err());
         }
-        self.counts.lost_in.store(self.no_room + self.inbox.lost(), Relaxed);
+        self.shared.lost_in.store(self.no_room + self.inbox.lost(), Relaxed);
+    }
+}
+
+/// What the broker says to this client itself.
+fn hear(message: &Message<'_>, shared: &Shared, answers: &mut Producer<Answered>) {
+    let sequence = message.stamp.sequence;
+    match message.id {
+        service::LEASE => {
+            let state = split_u32(message.payload)
+                .and_then(|(grant, rest)| split_u64(rest).map(|(until, _)| (grant, until)));
+            if let Some((grant, until)) = state {
+                shared.lease.store(u64::from(grant) << UNTIL_BITS | until >> 20, Relaxed);
+            }
+        }
+        service::ACCEPTED | service::REFUSED if sequence != 0 => {
+            let refused = message.id == service::REFUSED;
+            let code = if refused { message.payload.first().copied().unwrap_or(1) } else { 0 };
+            // Who does not ask for answers lets the ring run full.
+            let _ = answers.push(Answered { sequence, code });
+        }
+        _ => {}
     }
 }

@@ -1,30 +1,45 @@
 //! The broker process: `gangwerk broker --run DIR`.
 //!
-//! Not a real-time process, in either way to run: it sleeps until a queue rings, and looks after TCP connections, if it
-//! serves any, a thousand times a second.
+//! Not a real-time process, in either way to run: it sleeps until a queue or a stream rings.
 
 use std::error::Error;
-use std::path::Path;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use config::System;
 use ipc::{Reader, Run, Space, Writer};
 use messages::{Event, EventCode, Process, Sensors, topics};
-use realtime::{Schedule, Stop, prepare_thread};
+use realtime::{Schedule, Stop, clock, prepare_thread};
 
 use crate::exchange::{Exchange, Report};
-use crate::tcp;
+use crate::{doors, inlet, keys};
 
-/// Longest time a message of a TCP connection waits while nothing else happens.
-const POLL: Duration = Duration::from_millis(1);
-/// Without TCP, between two looks whether to end.
-const LOOK: Duration = Duration::from_millis(20);
+/// Between two looks whether to end, and at what is a matter of time.
+const LOOK: Duration = Duration::from_millis(10);
 
-/// Runs until asked to end. `tcp_port`: another port than that of `system.toml`; 0: no TCP.
+/// Whether and how TCP is served.
+#[derive(Clone, Debug, Default)]
+pub struct Tcp {
+    /// Where; none: not at all. Port 0 lets the system choose one.
+    pub address: Option<SocketAddr>,
+    /// File of keys; none: no keys.
+    pub keys: Option<PathBuf>,
+}
+
+impl Tcp {
+    /// What `system.toml` says; a relative path of the keys counts from the configuration directory.
+    pub fn of(system: &System, config: &Path) -> Self {
+        let keys = (!system.tcp_keys.is_empty()).then(|| config.join(&system.tcp_keys));
+        Self { address: system.tcp_listen, keys }
+    }
+}
+
+/// Runs until asked to end.
 ///
 /// # Errors
 /// The process cannot start.
-pub fn main(dir: &Path, tcp_port: Option<u16>) -> Result<(), Box<dyn Error>> {
+pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
     let stop = Stop::on_signals()?;
     let run = Run::load(dir)?;
     let system = System::load(&run.config.join("system.toml"))?;
@@ -33,30 +48,35 @@ pub fn main(dir: &Path, tcp_port: Option<u16>) -> Result<(), Box<dyn Error>> {
     for missing in &granted.missing {
         tracing::warn!("broker degraded: {missing}");
     }
-    Ok(serve(&run, tcp_port.unwrap_or(system.tcp_port), &stop)?)
+    Ok(serve(&run, &Tcp::of(&system, &run.config), &stop)?)
 }
 
-/// Forwards messages until `stop`. `tcp_port` 0: no TCP.
+/// Forwards messages until `stop`.
 ///
 /// # Errors
-/// Another broker serves this run, a queue cannot be made, or the port is taken.
-pub fn serve(run: &Run, tcp_port: u16, stop: &Stop) -> Result<(), String> {
+/// Another broker serves this run, a queue or the socket cannot be made, the keys are not in order, or the port is taken.
+pub fn serve(run: &Run, tcp: &Tcp, stop: &Stop) -> Result<(), String> {
     let space = run.enter(Process::Broker).map_err(|e| e.to_string())?;
-    let (gate, inlet) = tcp::gate();
-    let mut exchange = Exchange::new(&space, inlet).map_err(|e| e.to_string())?;
+    let (gate, inlet) = inlet::gate();
+    let mut exchange = Exchange::new(&space, inlet, clock::now()).map_err(|e| e.to_string())?;
     let mut events = Events::open(&space).map_err(|e| e.to_string())?;
-    if tcp_port != 0 {
-        tcp::serve(tcp::bind(tcp_port)?, gate)?;
+    let gate = gate.ringing(exchange.doorbell());
+    if let Some(address) = tcp.address {
+        let keys = tcp.keys.as_deref().map_or_else(|| Ok(Vec::new()), keys::load)?;
+        let listener = doors::bind_tcp(address, &keys)?;
+        doors::publish_address(&run.dir, &listener)?;
+        doors::serve_tcp(listener, keys, gate.clone())?;
     }
-    let nap = if tcp_port == 0 { LOOK } else { POLL };
+    let (socket, owner) = doors::bind_socket(&run.dir)?;
+    doors::serve_socket(socket, owner, gate)?;
     events.write(EventCode::Started, 0);
     while !stop.asked() {
-        let busy = exchange.turn(&mut |report| match report {
+        let busy = exchange.turn(clock::now(), &mut |report| match report {
             Report::Refused(address) => events.write(EventCode::CommandRefused, address.into()),
             Report::Lost(messages) => events.write(EventCode::MessagesLost, messages),
         });
         if !busy {
-            exchange.wait(nap);
+            exchange.wait(LOOK);
         }
     }
     events.write(EventCode::Ended, 0);

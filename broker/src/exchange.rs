@@ -1,28 +1,42 @@
-//! The global broker without its loop: who subscribed to which domain, forwarding, and what each client has lost.
+//! The global broker without its loop: admission, forwarding, answers, and what each client has lost.
 //!
 //! Urgency: before every message that it forwards, the broker looks into the queues of the higher classes; so a
 //! message of High waits for one message of a lower class at most, however many there are of those.
 
+mod clients;
+
 use std::time::Duration;
 
-use ipc::{IpcError, QueueReceiver, QueueSender, QueueWaiter, Space};
-use messages::command::{Domain, Priority};
-use realtime::clock::{SECOND, now};
-use tokio::sync::mpsc;
+use ipc::{Doorbell, IpcError, QueueReceiver, QueueWaiter, Space};
+use messages::command::Priority;
+use messages::{Command, Stamp};
+use realtime::clock::SECOND;
 
+use crate::admission::{Denied, Sender, admit};
+use crate::inlet::Inlet;
+use crate::lease::LeaseKeeper;
+use crate::log_gate::LogGate;
+use crate::members::Member;
 use crate::message::{
-    BROKER_BELL, Message, PUBLISH, REGISTRATION, Refusal, client_queue, service, service_message, split_u32,
+    BROKER_BELL, Message, PUBLISH, REGISTRATION, service, service_message, split_u32, write_stamp,
 };
-use crate::tcp::{FIRST_TOKEN, Inlet, Request};
+use crate::pending::{Pending, Queued};
+use crate::refusal::Refusal;
 
+/// Numbers of connections by stream begin here; those below belong to processes of the run.
+pub const FIRST_STREAM: u32 = 0x8000_0000;
 /// Clients by queue that have not renewed their registration for this long are let go \[ns\].
-const LEASE: u64 = 2 * SECOND;
+const SILENCE: u64 = 2 * SECOND;
 /// Clients by queue, at most.
-const MAX_CLIENTS: usize = 32;
+const MAX_PROCESSES: usize = 32;
 /// Messages forwarded before the service queue and the leases get their turn, and the other way round.
 const AT_ONCE: usize = 64;
-/// How often leases and losses are looked at \[ns\].
+/// Commands of one process that are on their way at once; a stream has a limit of its own.
+const UNANSWERED: usize = 256;
+/// How often silent clients and losses are looked at \[ns\].
 const ROUND: u64 = SECOND / 4;
+/// How often the state of the lease is told \[ns\].
+const LEASE_ROUND: u64 = SECOND / 20;
 
 /// What the broker has to report, for the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,39 +47,6 @@ pub enum Report {
     Lost(u64),
 }
 
-/// The way to a client.
-enum Exit {
-    Queue { sender: Box<QueueSender>, renewed: u64 },
-    Tcp(mpsc::Sender<Vec<u8>>),
-}
-
-struct Member {
-    token: u32,
-    name: String,
-    domains: u32,
-    exit: Exit,
-    sent: u64,
-    lost: u64,
-}
-
-impl Member {
-    /// A client that does not keep up loses its own messages; the broker never waits for it.
-    fn deliver(&mut self, bytes: &[u8]) {
-        self.sent += 1;
-        match &mut self.exit {
-            // The receiving end counts what is lost and tells it with its registration.
-            Exit::Queue { sender, .. } => _ = sender.send(bytes),
-            Exit::Tcp(frames) => self.lost += u64::from(frames.try_send(bytes.to_vec()).is_err()),
-        }
-    }
-
-    fn describe(&self) -> String {
-        let subscribed = Domain::ALL.into_iter().filter(|d| self.domains & 1 << *d as u16 != 0);
-        let domains = subscribed.map(Domain::name).collect::<Vec<_>>().join(", ");
-        format!("{}: sent {}, lost {}; subscribed to {domains}", self.name, self.sent, self.lost)
-    }
-}
-
 /// The broker's state.
 pub struct Exchange<'a> {
     space: &'a Space,
@@ -74,18 +55,23 @@ pub struct Exchange<'a> {
     bell: QueueWaiter,
     inlet: Inlet,
     members: Vec<Member>,
+    lease: LeaseKeeper,
+    pending: Pending,
     forwarded: [u64; 3],
     refused: u64,
     reported_lost: u64,
     next_round: u64,
+    next_lease: u64,
+    log: LogGate,
+    now: u64,
 }
 
 impl<'a> Exchange<'a> {
-    /// Opens the broker's ends of the queues. `inlet` is where TCP connections hand in their messages.
+    /// Opens the broker's ends of the queues. `inlet` is where streams hand in their messages.
     ///
     /// # Errors
     /// A queue cannot be opened.
-    pub fn new(space: &'a Space, inlet: Inlet) -> Result<Self, IpcError> {
+    pub fn new(space: &'a Space, inlet: Inlet, now_ns: u64) -> Result<Self, IpcError> {
         let [high, normal, low] = PUBLISH.map(|queue| space.queue_receiver(queue));
         Ok(Self {
             publish: [high?, normal?, low?],
@@ -94,21 +80,32 @@ impl<'a> Exchange<'a> {
             space,
             inlet,
             members: Vec::new(),
+            lease: LeaseKeeper::new(now_ns >> 20),
+            pending: Pending::default(),
             forwarded: [0; 3],
             refused: 0,
             reported_lost: 0,
-            next_round: now(),
+            next_round: now_ns,
+            next_lease: now_ns,
+            log: LogGate::default(),
+            now: now_ns,
         })
     }
 
-    /// Sleeps until a queue has something, at most `limit`.
-    pub fn wait(&mut self, limit: Duration) {
+    /// Sleeps until a queue or a stream has something, at most `limit`.
+    pub fn wait(&self, limit: Duration) {
         self.bell.wait(limit);
     }
 
-    /// Forwards what waits, at most a bounded number of messages, then serves registrations. Returns whether there
-    /// was anything to do; never waits.
-    pub fn turn(&mut self, report: &mut dyn FnMut(Report)) -> bool {
+    /// What a stream rings after it has handed something in.
+    pub fn doorbell(&self) -> Doorbell {
+        self.bell.doorbell()
+    }
+
+    /// Forwards what waits, at most a bounded number of messages, then serves registrations and answers. Returns
+    /// whether there was anything to do; never waits.
+    pub fn turn(&mut self, now_ns: u64, report: &mut dyn FnMut(Report)) -> bool {
+        self.now = now_ns;
         let mut busy = false;
         for _ in 0..AT_ONCE {
             if !self.forward_next(report) {
@@ -117,138 +114,234 @@ impl<'a> Exchange<'a> {
             busy = true;
         }
         for _ in 0..AT_ONCE {
-            if !(self.register_next() || self.answer_next()) {
+            let (registered, asked) = (self.serve_queue(report), self.serve_stream());
+            if !(registered || asked) {
                 break;
             }
             busy = true;
         }
-        let time = now();
-        if time >= self.next_round {
-            self.next_round = time + ROUND;
-            self.release_silent(time);
+        // Answers have made room for what waits behind.
+        for _ in 0..AT_ONCE {
+            let Some(queued) = self.pending.next_in_line() else { break };
+            self.resume(queued, report);
+        }
+        self.look_around(report);
+        busy
+    }
+
+    /// Everything that is a matter of time.
+    fn look_around(&mut self, report: &mut dyn FnMut(Report)) {
+        while let Some(asked) = self.pending.overdue(self.now) {
+            let refusal = Refusal::NoAnswer(asked.command.decided_by());
+            self.refuse(asked.origin, asked.sequence, address(&asked.command), &refusal, report);
+        }
+        if let Some(former) = self.lease.expire(self.now) {
+            tracing::warn!("{} is silent: its command lease is over", self.name(former));
+            self.tell_lease();
+        }
+        if self.now >= self.next_lease && self.lease.holder(self.now).is_some() {
+            self.tell_processes_lease();
+        }
+        if self.now >= self.next_round {
+            self.next_round = self.now + ROUND;
+            self.release_silent();
             self.report_losses(report);
         }
-        busy
     }
 
     /// Forwards the most urgent message; false if none waits.
     fn forward_next(&mut self, report: &mut dyn FnMut(Report)) -> bool {
         for class in 0..Priority::ALL.len() {
             if let Some(bytes) = self.publish[class].receive() {
-                let bytes = bytes.to_vec();
-                let (token, message) = split_u32(&bytes).unwrap_or((0, &[]));
-                let _ = self.forward(token, class, message, report);
+                let mut bytes = bytes.to_vec();
+                let token = Message::parse(&bytes).map_or(0, |m| m.stamp.origin);
+                // A number of a stream cannot come out of a queue.
+                self.forward(token & (FIRST_STREAM - 1), class, &mut bytes, report);
                 return true;
             }
-            if let Ok((token, message, answer)) = self.inlet.publish[class].try_recv() {
-                let _ = answer.send(self.forward(token, class, &message, report));
+            if let Ok((token, mut bytes)) = self.inlet.publish[class].try_recv() {
+                self.forward(token, class, &mut bytes, report);
                 return true;
             }
         }
         false
     }
 
-    /// Checks a message and gives it to every client but its sender that subscribed to its domain; returns to how many.
-    fn forward(
+    /// Checks a message and gives it to every client but its sender that subscribed to its domain.
+    fn forward(&mut self, from: u32, class: usize, bytes: &mut [u8], report: &mut dyn FnMut(Report)) {
+        let checked =
+            Message::parse(bytes).and_then(|m| m.command_of_class(class).map(|command| (command, m.stamp)));
+        let sequence = Message::parse(bytes).map_or(0, |m| m.stamp.sequence);
+        let admitted = checked.and_then(|(command, stamp)| {
+            let grant = self.admit(from, &command, Priority::ALL[class], &stamp)?;
+            Ok((command, Stamp { origin: from, grant, ..stamp }))
+        });
+        let (command, stamp) = match admitted {
+            Ok(admitted) => admitted,
+            Err(refusal) => {
+                let address =
+                    bytes.first_chunk().map_or(u32::MAX, |&[a, b, c, d]| u32::from_le_bytes([c, d, a, b]));
+                return self.refuse(from, sequence, address, &refusal, report);
+            }
+        };
+        write_stamp(bytes, &stamp);
+        let name = command.decided_by();
+        // The newest of that name: one that was started again stands behind the one that died.
+        let found = self.members.iter().rfind(|m| m.sender.token != from && m.is_called(name));
+        let Some(decider) = found.map(|m| m.sender.token) else {
+            // What is refused has no effect; only a stop goes to whoever may still hear it.
+            if command.always_passes() {
+                self.deliver(from, class, &command, bytes);
+            }
+            let refusal = Refusal::NobodyListens(name);
+            return self.refuse(from, stamp.sequence, address(&command), &refusal, report);
+        };
+        if command == Command::EmergencyStop || self.pending.has_room(decider) {
+            self.pending.ask(from, stamp.sequence, command, decider, self.now);
+            self.deliver(from, class, &command, bytes);
+        } else {
+            let (bytes, sequence) = (bytes.to_vec(), stamp.sequence);
+            self.pending.wait_in_line(Queued { origin: from, sequence, class, decider, command, bytes });
+        }
+    }
+
+    /// The turn of a command that waited for room: it may have become too old.
+    fn resume(&mut self, queued: Queued, report: &mut dyn FnMut(Report)) {
+        let Queued { origin, sequence, class, decider, command, bytes } = queued;
+        let stamp = Message::parse(&bytes).map(|m| m.stamp).unwrap_or_default();
+        if !command.always_passes()
+            && let Err(reason) = stamp.check_age(self.now)
+        {
+            let refusal = Refusal::because(reason, &command);
+            return self.refuse(origin, sequence, address(&command), &refusal, report);
+        }
+        self.pending.ask(origin, sequence, command, decider, self.now);
+        self.deliver(origin, class, &command, &bytes);
+    }
+
+    fn deliver(&mut self, from: u32, class: usize, command: &Command, bytes: &[u8]) {
+        self.forwarded[class] += 1;
+        let domain = command.address().0;
+        for member in self.members.iter_mut().filter(|m| m.sender.token != from && m.hears(domain)) {
+            member.deliver(bytes);
+        }
+    }
+
+    fn admit(
         &mut self,
         from: u32,
-        class: usize,
-        bytes: &[u8],
-        report: &mut dyn FnMut(Report),
+        command: &Command,
+        class: Priority,
+        stamp: &Stamp,
     ) -> Result<u32, Refusal> {
-        let checked = Message::parse(bytes).and_then(|m| m.command_of_class(class).map(|_| m.domain));
-        let domain = checked.inspect_err(|refusal| {
-            self.refused += 1;
-            tracing::warn!(code = refusal.code(), "message refused: {refusal}");
-            let address =
-                bytes.first_chunk().map_or(u32::MAX, |&[a, b, c, d]| u32::from_le_bytes([c, d, a, b]));
-            report(Report::Refused(address));
-        })?;
-        self.forwarded[class] += 1;
-        let mut receivers = 0;
-        for member in self.members.iter_mut().filter(|m| m.token != from && m.domains & 1 << domain != 0) {
-            member.deliver(bytes);
-            receivers += 1;
+        let before = self.lease.state(self.now).grant;
+        // Somebody whose connection is closed, or who never registered, may still stop the robot.
+        let mut stranger = Sender { token: from, may: 0, last: [0; 3] };
+        let known = self.members.iter_mut().find(|m| m.sender.token == from).map(|m| &mut m.sender);
+        let sender = match known {
+            Some(sender) => sender,
+            None if command.always_passes() => &mut stranger,
+            None => return Err(Refusal::NoAccess("its connection is closed, or not registered".into())),
+        };
+        if from < FIRST_STREAM && !command.always_passes() && self.pending.of(from) >= UNANSWERED {
+            return Err(Refusal::Busy(format!("{UNANSWERED} commands have not been answered yet")));
         }
-        Ok(receivers)
-    }
-
-    /// Serves one request of a TCP connection; false if none waits.
-    fn answer_next(&mut self) -> bool {
-        let Ok(request) = self.inlet.requests.try_recv() else { return false };
-        match request {
-            Request::Subscribe { token, domains, frames, answer } => {
-                self.members.retain(|m| m.token != token);
-                let name = format!("tcp-{}", token - FIRST_TOKEN);
-                self.members.push(Member { token, name, domains, exit: Exit::Tcp(frames), sent: 0, lost: 0 });
-                let _ = answer.send(());
+        let admitted = admit(sender, &mut self.lease, command, class, stamp, self.now);
+        let granted = admitted.map_err(|denied| match denied {
+            Denied::Reason(reason) => Refusal::because(reason, command),
+            Denied::LeaseHeld(holder) => Refusal::LeaseHeld(self.name(holder)),
+            Denied::NoAccess => {
+                let domain = command.address().0.name();
+                Refusal::NoAccess(format!(
+                    "{}: this connection may not command `{domain}`; use the socket of the run directory, or a key",
+                    command.name()
+                ))
             }
-            Request::Statistics { answer } => _ = answer.send(self.statistics()),
-            Request::Leave { token } => self.members.retain(|m| m.token != token),
+        })?;
+        if granted != 0 && granted != before {
+            tracing::info!("{} has the command lease", self.name(from));
+            self.tell_lease();
         }
-        true
+        Ok(granted)
     }
 
-    /// Serves one registration; false if none waits.
-    fn register_next(&mut self) -> bool {
+    fn refuse(
+        &mut self,
+        from: u32,
+        sequence: u64,
+        address: u32,
+        refusal: &Refusal,
+        report: &mut dyn FnMut(Report),
+    ) {
+        self.refused += 1;
+        if let Some(folded) = self.log.admit(self.now) {
+            let who = self.name(from);
+            tracing::warn!(code = refusal.code(), folded, "message of {who} refused: {refusal}");
+        }
+        report(Report::Refused(address));
+        let answer = refusal.to_message(sequence, self.now);
+        self.answer(from, answer);
+    }
+
+    fn answer(&mut self, to: u32, bytes: Vec<u8>) {
+        if let Some(member) = self.members.iter_mut().find(|m| m.sender.token == to) {
+            member.answer(bytes);
+        }
+    }
+
+    fn accept(&mut self, to: u32, sequence: u64, text: &str) {
+        self.answer(to, service_message(service::ACCEPTED, sequence, self.now, text.as_bytes()));
+    }
+
+    /// Serves one registration or verdict; false if none waits.
+    fn serve_queue(&mut self, report: &mut dyn FnMut(Report)) -> bool {
         let Some(bytes) = self.registration.receive() else { return false };
         let bytes = bytes.to_vec();
-        if self.register(&bytes).is_none() {
+        let message = Message::parse(&bytes);
+        let served = match message.as_ref().map(|m| m.id) {
+            Ok(service::VERDICT) => message.ok().and_then(|m| self.verdict(&m, report)),
+            Ok(service::LEAVE) => {
+                message.ok().and_then(|m| split_u32(m.payload)).map(|(token, _)| self.leave(token))
+            }
+            Ok(service::REGISTER) => message.ok().and_then(|m| self.register(&m)),
+            _ => None,
+        };
+        if served.is_none() {
             self.refused += 1;
-            tracing::warn!("a registration of {} bytes makes no sense", bytes.len());
+            if self.log.admit(self.now).is_some() {
+                tracing::warn!("a registration of {} bytes makes no sense", bytes.len());
+            }
         }
         true
     }
 
-    fn register(&mut self, bytes: &[u8]) -> Option<()> {
-        let message = Message::parse(bytes).ok()?;
-        let (token, rest) = split_u32(message.payload)?;
-        if message.id == service::LEAVE {
-            self.members.retain(|m| m.token != token);
+    /// The process that decides has answered.
+    fn verdict(&mut self, message: &Message<'_>, report: &mut dyn FnMut(Report)) -> Option<()> {
+        let (decider, rest) = split_u32(message.payload)?;
+        let (origin, rest) = split_u32(rest)?;
+        let (&code, text) = rest.split_first()?;
+        // Given up before, or from somebody who was not asked: neither is an error of the answering process.
+        let Some(asked) = self.pending.answered(decider, origin, message.stamp.sequence) else {
             return Some(());
-        }
-        let (domains, rest) = split_u32(rest)?;
-        let (lost, name) = split_u32(rest)?;
-        let name = std::str::from_utf8(name).ok()?;
-        if token >= FIRST_TOKEN || message.id != service::REGISTER {
-            return None;
-        }
-        let known = self.members.iter().position(|m| m.token == token);
-        let Some(index) = known.or_else(|| self.join(token, name)) else { return Some(()) };
-        let member = &mut self.members[index];
-        (member.domains, member.lost) = (domains, lost.into());
-        if let Exit::Queue { sender, renewed } = &mut member.exit {
-            *renewed = now();
-            sender.send(&service_message(service::ACCEPTED, &[]));
+        };
+        let process = asked.command.decided_by();
+        if code == 0 {
+            self.accept(origin, asked.sequence, process);
+        } else {
+            self.refused += 1;
+            report(Report::Refused(address(&asked.command)));
+            let text = String::from_utf8_lossy(text);
+            let payload =
+                [&[code], format!("{} refused by {process}: {text}", asked.command.name()).as_bytes()]
+                    .concat();
+            self.answer(origin, service_message(service::REFUSED, asked.sequence, self.now, &payload));
         }
         Some(())
     }
 
-    /// Opens the queue of a new client; returns its place in the list.
-    fn join(&mut self, token: u32, name: &str) -> Option<usize> {
-        let by_queue = self.members.iter().filter(|m| m.token < FIRST_TOKEN).count();
-        if by_queue >= MAX_CLIENTS {
-            tracing::warn!("{name} cannot join: {MAX_CLIENTS} clients are connected");
-            return None;
-        }
-        let queue = client_queue(name);
-        let sender = self.space.queue_sender(&queue, &queue);
-        let sender = sender.map(Box::new).map_err(|e| tracing::warn!("{name} cannot join: {e}")).ok()?;
-        tracing::info!("{name} joined");
-        let exit = Exit::Queue { sender, renewed: now() };
-        self.members.push(Member { token, name: name.into(), domains: 0, exit, sent: 0, lost: 0 });
-        Some(self.members.len() - 1)
-    }
-
-    /// Lets go of clients that were killed or hang; one that comes back registers again.
-    fn release_silent(&mut self, time: u64) {
-        self.members.retain(|m| match &m.exit {
-            Exit::Queue { renewed, .. } if time.saturating_sub(*renewed) > LEASE => {
-                tracing::warn!("{} is silent: its queue is released", m.name);
-                false
-            }
-            _ => true,
-        });
+    fn name(&self, token: u32) -> String {
+        let known = self.members.iter().find(|m| m.sender.token == token);
+        known.map_or_else(|| format!("connection {token:#x}"), |m| m.name.clone())
     }
 
     fn lost_before_forwarding(&self) -> u64 {
@@ -276,4 +369,10 @@ impl<'a> Exchange<'a> {
         );
         std::iter::once(broker).chain(self.members.iter().map(Member::describe)).collect()
     }
+}
+
+/// (domain, id) as one number, domain first.
+fn address(command: &Command) -> u32 {
+    let (domain, id) = command.address();
+    (domain as u32) << 16 | u32::from(id)
 }

@@ -1,23 +1,31 @@
-//! The command plane (thesis 7.4): messages by (domain, id), inside a process, between processes, over TCP.
+//! The command plane (thesis 7.4): messages by (domain, id), between processes and over streams; `docs/protocol.md`.
 //!
-//! - [`local`]: inside one process: a published message calls its subscribers directly.
 //! - [`client`]: a process's connection to the global broker; its real-time side never waits, locks or allocates.
-//! - [`exchange`]: the global broker: who subscribed to which domain, and what each one has lost.
+//! - [`exchange`]: the global broker: who subscribed to which domain, what is admitted, answers, and what each has lost.
+//! - [`admission`], [`lease`]: whether a command may pass, and who may move the robot: pure, with time as an argument.
 //! - [`daemon`]: the process around it, `gangwerk broker --run DIR`.
-//! - [`tcp`] and [`tcp_client`]: the same messages for programs on the network side, on the loopback interface only.
-//! - [`message`]: how a message looks in queues and in TCP frames, and what makes it refused.
+//! - [`doors`], [`connection`], [`stream_client`]: the same messages over a Unix socket in the run directory, or over TCP.
+//! - [`message`], [`refusal`]: how a message looks in queues and in frames, and what makes it refused.
 //!
 //! What the robot does never waits for the broker: without it, publishing counts a loss and receiving finds nothing.
 
+pub mod admission;
 pub mod client;
+pub mod connection;
 pub mod daemon;
+pub mod doors;
 pub mod exchange;
-pub mod local;
+pub mod inlet;
+pub mod keys;
+pub mod lease;
+pub mod log_gate;
+mod members;
 pub mod message;
-pub mod tcp;
-pub mod tcp_client;
+mod pending;
+pub mod refusal;
+pub mod stream_client;
 
 pub use client::Client;
-pub use local::LocalBroker;
-pub use message::Refusal;
-pub use tcp_client::TcpClient;
+pub use members::Outgoing;
+pub use refusal::Refusal;
+pub use stream_client::StreamClient;

@@ -1,100 +1,98 @@
-//! A message as bytes, the same in queues and in TCP frames, and everything that makes one refused.
+//! A message as bytes, the same in queues and in frames of a stream (`docs/protocol.md`).
 //!
 //! | bytes | content |
 //! |---|---|
-//! | 0..2 | domain, u16 little endian: a [`Domain`], or [`SERVICE`] for talk with the broker itself |
-//! | 2..4 | id in the domain, u16 little endian |
+//! | 0..2 | domain, u16: a [`Domain`], or [`SERVICE`] for talk with the broker itself |
+//! | 2..4 | id in the domain, u16 |
 //! | 4 | [`Priority`], u8 |
-//! | 5.. | payload: a [`Command`] encoded by [`messages::wire`], or what the service id says |
+//! | 5..8 | zero |
+//! | 8..12 | origin, u32: number of the sender's connection; written by the broker |
+//! | 12..16 | grant, u32: the lease under which the broker admitted it; written by the broker |
+//! | 16..24 | sequence, u64: of a command, rising on its connection; of an answer, that of what it answers |
+//! | 24..32 | time, u64 \[ns\]: CLOCK_MONOTONIC of this machine when it was sent |
+//! | 32.. | payload: a [`Command`] encoded by [`messages::wire`], or what the service id says |
 //!
-//! In the queues to the broker the number of the sender, u32, stands in front.
+//! All numbers are little endian.
 
 use messages::command::{Domain, Priority};
-use messages::{Command, wire};
+use messages::command_text::COMMANDS;
+use messages::{Command, Stamp, wire};
 
+use crate::refusal::Refusal;
+
+/// Version of the protocol: changes with the layout of messages and with the meaning of services.
+pub const VERSION: u16 = 2;
 /// Longest message \[B\].
 pub const MAX_BYTES: usize = ipc::MAX_MESSAGE;
 /// Bytes before the payload.
-pub const HEAD: usize = 5;
+pub const HEAD: usize = 32;
 /// The domain of talk with the broker itself.
 pub const SERVICE: u16 = 0xffff;
 
-/// Ids in the domain [`SERVICE`]: what a client asks, then what the broker answers, one answer per message.
+/// Ids in the domain [`SERVICE`]: what a client asks, then what the broker answers.
 pub mod service {
-    /// Register or renew: `[token u32, domains u32, lost u32, name in UTF-8]` in the service queue; `lost` is what
-    /// the client has missed so far. Answered with [`ACCEPTED`] in the client's queue.
+    /// Register or renew, by queue: `[token u32, domains u32, lost u32, name]`. Answered with [`ACCEPTED`].
     pub const REGISTER: u16 = 1;
-    /// Leave: `[token u32]` in the service queue.
+    /// Leave, by queue: `[token u32]`.
     pub const LEAVE: u16 = 2;
-    /// Subscribe to domains: `[domains u32]`, bit n for domain n. TCP only.
+    /// Subscribe to domains, by stream: `[domains u32]`, bit n for domain n.
     pub const SUBSCRIBE: u16 = 3;
-    /// Ask for statistics. TCP only.
+    /// Ask for statistics, by stream.
     pub const STATISTICS: u16 = 4;
-    /// Sign of life. TCP only.
+    /// Sign of life, by stream; renews the sender's lease and is not answered.
     pub const PING: u16 = 5;
-    /// Done; `[receivers u32]`: to how many clients a command went.
+    /// Verdict on a command, by queue: `[token u32, origin u32, code u8, text]`; the head has the command's sequence.
+    pub const VERDICT: u16 = 6;
+    /// First frame of a stream: `[version u16, schema u64, nonce 16 bytes, name, 0, name of the key]`.
+    pub const HELLO: u16 = 7;
+    /// Proof of the key, by stream: `[tag 32 bytes]`.
+    pub const PROVE: u16 = 8;
+    /// Take the command lease, by stream: `[over u8]`; 1 takes it from whoever holds it.
+    pub const TAKE_LEASE: u16 = 9;
+    /// Give the command lease back, by stream.
+    pub const GIVE_LEASE: u16 = 10;
+    /// Ask for the table of commands, by stream.
+    pub const DESCRIBE: u16 = 11;
+    /// Done: `[name of the process that took it]`.
     pub const ACCEPTED: u16 = 16;
-    /// Not done: `[code u8, reason in UTF-8]`.
+    /// Not done: `[code u8, reason]`.
     pub const REFUSED: u16 = 17;
-    /// One line of statistics in UTF-8; [`ACCEPTED`] follows the last one.
+    /// One line of text; [`ACCEPTED`] follows the last one.
     pub const LINE: u16 = 18;
+    /// Answer to [`HELLO`]: `[version u16, schema u64, nonce 16 bytes, token u32, domains u32, prove u8]`.
+    pub const WELCOME: u16 = 19;
+    /// State of the command lease: `[grant u32, until u64, holder]`; grant 0: nobody holds it.
+    pub const LEASE: u16 = 20;
 }
 
-/// Why a message is refused.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Refusal {
-    /// No frame of this protocol; the connection is closed.
-    Malformed(String),
-    /// A frame or its first byte did not come in time; the connection is closed.
-    TimedOut(&'static str),
-    /// The broker has as many connections as it takes; the connection is closed.
-    TooManyConnections,
-    /// The payload is no command, or not the one that the address names.
-    NotACommand(String),
-    /// A number is not finite or out of range.
-    OutOfRange(String),
-    /// More messages than the broker takes.
-    Busy,
+/// Hash of everything that the payloads mean: names, addresses, fields and ranges of all commands (FNV-1a, 64 bits).
+pub fn schema() -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325u64;
+    for line in describe() {
+        hash = line.bytes().fold(hash, |h, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
+    }
+    hash
 }
 
-impl Refusal {
-    /// Number for the wire and the log.
-    pub const fn code(&self) -> u8 {
-        match self {
-            Self::Malformed(_) => 1,
-            Self::TimedOut(_) => 2,
-            Self::TooManyConnections => 3,
-            Self::NotACommand(_) => 4,
-            Self::OutOfRange(_) => 5,
-            Self::Busy => 6,
+/// The table of commands for programs that learn it from the broker, one command per line:
+/// `name domain id number needs_lease field:type:unit:low:high:default ...`, type as of Python's `struct`.
+pub fn describe() -> Vec<String> {
+    let line = |info: &messages::command_text::CommandInfo| {
+        let command = info.example();
+        let (domain, id) = command.address();
+        let mut bytes = [0; wire::MAX_BYTES];
+        let number = wire::encode(&command, &mut bytes).ok().and_then(|b| b.first_chunk().copied());
+        let (number, lease) = (number.map_or(0, u32::from_le_bytes), u8::from(command.needs_lease()));
+        let mut line = format!("{} {} {id} {number} {lease}", info.name, domain as u16);
+        for f in info.fields {
+            let kind = if f.name == "number" { "I" } else { "d" };
+            let default = f.default.map_or(String::new(), |d| format!("{d:?}"));
+            line += &format!(" {}:{kind}:{}:{:?}:{:?}:{default}", f.name, f.unit, f.range[0], f.range[1]);
         }
-    }
-
-    /// Whether the connection ends with it: after these the bytes that follow mean nothing.
-    pub const fn is_final(&self) -> bool {
-        matches!(self, Self::Malformed(_) | Self::TimedOut(_) | Self::TooManyConnections)
-    }
-
-    /// The answer for the client.
-    pub fn to_message(&self) -> Vec<u8> {
-        let mut payload = vec![self.code()];
-        payload.extend(self.to_string().bytes().take(MAX_BYTES - HEAD - 1));
-        service_message(service::REFUSED, &payload)
-    }
+        line
+    };
+    COMMANDS.iter().map(line).collect()
 }
-
-impl std::fmt::Display for Refusal {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Malformed(why) => write!(f, "not a frame of the broker's protocol: {why}"),
-            Self::TimedOut(what) => write!(f, "{what} did not come in time"),
-            Self::TooManyConnections => write!(f, "too many connections; close one and try again"),
-            Self::NotACommand(why) | Self::OutOfRange(why) => write!(f, "{why}"),
-            Self::Busy => write!(f, "too many messages at once; send them more slowly"),
-        }
-    }
-}
-impl std::error::Error for Refusal {}
 
 /// A view of a message's bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,6 +103,8 @@ pub struct Message<'a> {
     pub id: u16,
     /// How urgent.
     pub priority: Priority,
+    /// Who sent it, and when.
+    pub stamp: Stamp,
     /// What it says.
     pub payload: &'a [u8],
 }
@@ -113,9 +113,10 @@ impl<'a> Message<'a> {
     /// Splits the bytes; the payload is not looked at.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, Refusal> {
         let malformed = |why: String| Refusal::Malformed(why);
-        let &[d0, d1, i0, i1, class, ref payload @ ..] = bytes else {
+        let Some((head, payload)) = bytes.split_first_chunk::<HEAD>() else {
             return Err(malformed(format!("{} bytes, at least {HEAD} are needed", bytes.len())));
         };
+        let &[d0, d1, i0, i1, class, ref rest @ ..] = head;
         let priority = Priority::try_from(class)
             .map_err(|n| malformed(format!("priority {n}, there are 0 (high), 1 and 2 (low)")))?;
         let domain = u16::from_le_bytes([d0, d1]);
@@ -125,7 +126,16 @@ impl<'a> Message<'a> {
                 Domain::ALL.len() - 1
             )));
         }
-        Ok(Self { domain, id: u16::from_le_bytes([i0, i1]), priority, payload })
+        if rest[..3] != [0; 3] {
+            return Err(malformed("bytes 5 to 7 are not zero".into()));
+        }
+        let stamp = Stamp {
+            origin: u32::from_le_bytes(part(head, 8)),
+            grant: u32::from_le_bytes(part(head, 12)),
+            sequence: u64::from_le_bytes(part(head, 16)),
+            sent_ns: u64::from_le_bytes(part(head, 24)),
+        };
+        Ok(Self { domain, id: u16::from_le_bytes([i0, i1]), priority, stamp, payload })
     }
 
     /// The same for a message that came in the queue of a class, which must be its own.
@@ -160,28 +170,43 @@ impl<'a> Message<'a> {
     }
 }
 
-/// Writes a command as a message behind `prefix`; returns the bytes used. Allocates nothing.
+/// `N` bytes of the head from `at`.
+fn part<const N: usize>(head: &[u8; HEAD], at: usize) -> [u8; N] {
+    head[at..at + N].try_into().unwrap_or([0; N])
+}
+
+/// Writes a command as a message; returns the bytes used. Allocates nothing.
 pub fn write_command<'a>(
     command: &Command,
     priority: Priority,
-    prefix: u32,
+    stamp: &Stamp,
     buffer: &'a mut [u8; MAX_BYTES],
 ) -> Result<&'a [u8], wire::WireError> {
     let (domain, id) = command.address();
-    buffer[..4].copy_from_slice(&prefix.to_le_bytes());
-    buffer[4..6].copy_from_slice(&(domain as u16).to_le_bytes());
-    buffer[6..8].copy_from_slice(&id.to_le_bytes());
-    buffer[8] = priority as u8;
-    let n = wire::encode(command, &mut buffer[4 + HEAD..])?.len();
-    Ok(&buffer[..4 + HEAD + n])
+    buffer[..2].copy_from_slice(&(domain as u16).to_le_bytes());
+    buffer[2..4].copy_from_slice(&id.to_le_bytes());
+    buffer[4..8].copy_from_slice(&[priority as u8, 0, 0, 0]);
+    write_stamp(buffer, stamp);
+    let n = wire::encode(command, &mut buffer[HEAD..])?.len();
+    Ok(&buffer[..HEAD + n])
 }
 
-/// A message of the domain [`SERVICE`].
-pub fn service_message(id: u16, payload: &[u8]) -> Vec<u8> {
-    let [d0, d1] = SERVICE.to_le_bytes();
-    let [i0, i1] = id.to_le_bytes();
-    let mut bytes = vec![d0, d1, i0, i1, Priority::Low as u8];
-    bytes.extend_from_slice(payload);
+/// Writes the stamp into the head of a message.
+pub(crate) fn write_stamp(message: &mut [u8], stamp: &Stamp) {
+    message[8..12].copy_from_slice(&stamp.origin.to_le_bytes());
+    message[12..16].copy_from_slice(&stamp.grant.to_le_bytes());
+    message[16..24].copy_from_slice(&stamp.sequence.to_le_bytes());
+    message[24..32].copy_from_slice(&stamp.sent_ns.to_le_bytes());
+}
+
+/// A message of the domain [`SERVICE`], numbered `sequence`, of the time `now_ns`.
+pub fn service_message(id: u16, sequence: u64, now_ns: u64, payload: &[u8]) -> Vec<u8> {
+    let mut bytes = vec![0; HEAD];
+    bytes[..2].copy_from_slice(&SERVICE.to_le_bytes());
+    bytes[2..4].copy_from_slice(&id.to_le_bytes());
+    bytes[4] = Priority::Low as u8;
+    write_stamp(&mut bytes, &Stamp { sequence, sent_ns: now_ns, ..Stamp::default() });
+    bytes.extend_from_slice(&payload[..payload.len().min(MAX_BYTES - HEAD)]);
     bytes
 }
 
@@ -191,9 +216,15 @@ pub(crate) fn split_u32(bytes: &[u8]) -> Option<(u32, &[u8])> {
     Some((u32::from_le_bytes(*number), rest))
 }
 
+/// The u64 in front, and the rest.
+pub(crate) fn split_u64(bytes: &[u8]) -> Option<(u64, &[u8])> {
+    let (number, rest) = bytes.split_first_chunk()?;
+    Some((u64::from_le_bytes(*number), rest))
+}
+
 /// Queues to the broker by priority class.
 pub(crate) const PUBLISH: [&str; 3] = ["broker-high", "broker-normal", "broker-low"];
-/// Queue to the broker for registration.
+/// Queue to the broker for registration and verdicts.
 pub(crate) const REGISTRATION: &str = "broker-service";
 /// What the queues to the broker ring.
 pub(crate) const BROKER_BELL: &str = "broker-queues";

@@ -5,21 +5,20 @@ mod harness;
 use std::time::Duration;
 
 use broker::Client;
+use broker::client::Answered;
 use harness::{Killed, System, pause, play_role, wait_for};
-use messages::command::{Domain, Priority, StepCommand, VelocityCommand};
+use messages::command::{Domain, Priority, PushCommand, VelocityCommand};
+use messages::command_stamp::LEASE;
 use messages::topics::EVENTS_BROKER;
-use messages::{Command, Event, EventCode};
+use messages::{Command, CommandSource, Event, EventCode, Lease};
+use realtime::clock::now;
 use rustix::process::{Pid, Signal, kill_process};
 
 fn velocity(n: u32) -> Command {
     Command::Velocity(VelocityCommand { forward: f64::from(n) / 4096.0, left: 0.0, turn: 0.0 })
 }
 
-fn step(length: f64) -> Command {
-    Command::Step(StepCommand { length, side: 0.0, turn: 0.0, duration: 0.8 })
-}
-
-/// The other processes of these tests: `echo` answers every velocity with a step of that length.
+/// The other processes of these tests: `planner` answers every velocity with a stop.
 #[test]
 fn process() {
     play_role(|role, space| {
@@ -27,7 +26,7 @@ fn process() {
         let mut answers = Vec::new();
         loop {
             answers.extend(client.received().filter_map(|c| match c {
-                Command::Velocity(v) if role == "echo" => Some(step(v.forward)),
+                Command::Velocity(_) if role == "planner" => Some(Command::Stop),
                 _ => None,
             }));
             answers.drain(..).for_each(|answer| _ = client.publish(&answer));
@@ -45,16 +44,22 @@ fn a_command_goes_to_another_process_and_back() {
     let system = System::start("echo");
     let mut client = system.client("operator", &[Domain::Walk]);
     let mut other = system.client("other", &[Domain::System, Domain::Sim]);
-    let echo = system.spawn("echo");
-    wait_for("the echo", || system.line_about("echo").is_some());
-    assert!(client.publish(&velocity(1024)));
+    let echo = system.spawn("planner");
+    wait_for("the echo", || system.line_about("planner").is_some());
+    let sequence = client.publish(&velocity(1024)).expect("room");
     let mut heard = Vec::new();
     wait_for("the answer", || {
         heard.extend(client.received());
         !heard.is_empty()
     });
     drop(echo);
-    assert_eq!(heard, [step(0.25)], "its own message must not come back");
+    assert_eq!(heard, [Command::Stop], "its own message must not come back");
+    let mut answered = None;
+    wait_for("the acceptance", || {
+        answered = client.answered();
+        answered.is_some()
+    });
+    assert_eq!(answered, Some(Answered { sequence, code: 0 }));
     assert_eq!(other.received().count(), 0, "not its domain");
 }
 
@@ -64,13 +69,13 @@ fn a_command_goes_to_another_process_and_back() {
 fn an_emergency_stop_passes_a_flood() {
     let system = System::start("flood");
     let mut flood = system.client("flood", &[]);
-    let mut watchdog = system.client("watchdog", &[Domain::System, Domain::Walk]);
-    for round in 0..20 {
+    let mut watchdog = system.client("watchdog", &[Domain::System]);
+    for _ in 0..20 {
         let (mut published, mut overtaking) = (0, 0);
-        let marked = velocity(4000 + round);
+        let marked = Command::Enable;
         wait_for("the emergency stop", || {
-            for n in 0..200 {
-                let command = if published < 400 { velocity(n) } else { marked };
+            for _ in 0..200 {
+                let command = if published < 400 { Command::Reset } else { marked };
                 flood.publish_as(&command, Priority::Low);
                 published += 1;
                 if published == 400 {
@@ -97,13 +102,13 @@ fn an_emergency_stop_passes_a_flood() {
 fn a_stopped_process_loses_its_own_messages_only() {
     let system = System::start("stopped");
     let sleeper = system.spawn("sleeper");
-    let mut awake = system.client("awake", &[Domain::Walk]);
+    let mut awake = system.client("planner", &[Domain::Walk]);
     let mut sender = system.client("sender", &[]);
     wait_for("the sleeper", || system.line_about("sleeper").is_some());
     signal(&sleeper, Signal::STOP);
     let mut heard = Vec::new();
     for n in 0..1000 {
-        assert!(sender.publish(&velocity(n)));
+        assert!(sender.publish(&velocity(n)).is_some());
         if n % 50 == 49 {
             wait_for("what was sent", || {
                 heard.extend(awake.received());
@@ -128,13 +133,13 @@ fn a_stopped_process_loses_its_own_messages_only() {
 #[test]
 fn a_killed_client_is_let_go() {
     let system = System::start("killed");
-    let mut awake = system.client("awake", &[Domain::Walk]);
+    let mut awake = system.client("planner", &[Domain::Walk]);
     let mut sender = system.client("sender", &[]);
     let victim = system.spawn("victim");
     wait_for("the victim", || system.line_about("victim").is_some());
     drop(victim);
     for n in 0..100 {
-        assert!(sender.publish(&velocity(n)));
+        assert!(sender.publish(&velocity(n)).is_some());
     }
     let mut heard = 0;
     wait_for("what was sent", || {
@@ -151,9 +156,9 @@ fn a_killed_client_is_let_go() {
 fn clients_outlive_the_broker() {
     let mut system = System::start("restart");
     let mut sender = system.client("sender", &[Domain::Sim]);
-    let mut receiver = system.client("receiver", &[Domain::Walk]);
+    let mut receiver = system.client("planner", &[Domain::Walk]);
     for life in 0..3 {
-        assert!(sender.publish(&velocity(life)));
+        assert!(sender.publish(&velocity(life)).is_some());
         let mut heard = Vec::new();
         wait_for("the command", || {
             heard.extend(receiver.received());
@@ -163,7 +168,7 @@ fn clients_outlive_the_broker() {
         system.kill_broker();
         wait_for("the notice of the broker's end", || !sender.statistics().connected);
         wait_for("the notice of the broker's end", || !receiver.statistics().connected);
-        assert!(sender.publish(&velocity(7)), "publishing without a broker is an ordinary call");
+        assert!(sender.publish(&velocity(7)).is_some(), "publishing without a broker is an ordinary call");
         wait_for("the count of the loss", || sender.statistics().lost_out == u64::from(life) + 1);
         system.space.clear_dead();
         system.start_broker();
@@ -201,8 +206,101 @@ fn a_second_broker_is_refused() {
     let system = System::start("second");
     let second = system.spawn("broker").0.wait().unwrap();
     assert_eq!(second.code(), Some(2));
-    let mut client = system.tcp();
+    let mut client = system.stream();
     client.subscribe(&[Domain::Walk]).unwrap();
-    assert_eq!(system.tcp().publish(&Command::Stop), Ok(1));
+    let refused = system.stream().publish(&Command::Stop).unwrap_err();
+    assert_eq!(refused, "planner decides about this and is not there");
     assert_eq!(client.receive(Duration::from_secs(10)), Ok(Some(Command::Stop)), "the first one goes on");
+}
+
+/// Issue 10, item 3: a command that waited in a process that stood still takes no effect when the process goes on, wherever
+/// it stood still. Here the consumer's cycle does not look for 150 ms.
+#[test]
+fn an_old_command_is_dropped_in_the_cycle_that_would_take_it() {
+    let system = System::start("old");
+    let mut planner = system.client("planner", &[Domain::Walk]);
+    let mut sender = system.client("sender", &[]);
+    let old = sender.publish(&velocity(7)).unwrap();
+    let stop = sender.publish(&Command::Stop).unwrap();
+    pause(150);
+    wait_for("both", || planner.waiting() == 2);
+    assert_eq!(planner.received().collect::<Vec<_>>(), [Command::Stop], "a stop is never too old");
+    let mut answers = Vec::new();
+    wait_for("the answers", || {
+        answers.extend(sender.answered());
+        answers.len() == 2
+    });
+    assert_eq!(answers, [Answered { sequence: old, code: 20 }, Answered { sequence: stop, code: 0 }]);
+}
+
+/// The same with a broker that stands still.
+#[test]
+fn a_stalled_broker_forwards_no_old_command() {
+    let mut system = System::start("stalled");
+    let mut planner = system.client("planner", &[Domain::Walk]);
+    let mut client = system.stream();
+    client.publish(&Command::Push(PushCommand { force: [0.0; 3], duration: 0.0 })).unwrap_err();
+    system.signal_broker(Signal::STOP);
+    let walk = client.send(&velocity(7)).unwrap();
+    let stop = client.send(&Command::Stop).unwrap();
+    pause(150);
+    system.signal_broker(Signal::CONT);
+    let mut heard = Vec::new();
+    wait_for("the stop", || {
+        heard.extend(planner.received());
+        !heard.is_empty()
+    });
+    assert_eq!(heard, [Command::Stop]);
+    let refused = client.answer(walk).unwrap();
+    assert!(refused.code == 20 && refused.text.contains("ms old, at most 100 ms"), "{refused:?}");
+    assert_eq!(client.answer(stop).unwrap().accepted(), Ok("planner".into()));
+}
+
+/// Who closes the link commands nothing any more: neither what is on its way, nor what goes on by it.
+#[test]
+fn a_closed_connection_loses_its_lease_and_its_commands() {
+    let system = System::start("closed");
+    let mut planner = system.client("planner", &[Domain::Walk]);
+    let mut client = system.stream();
+    client.send(&velocity(7)).unwrap();
+    wait_for("the command", || planner.waiting() == 1);
+    assert_ne!(planner.lease(), Lease::default());
+    drop(client);
+    wait_for("the end of the lease", || planner.lease() == Lease::default());
+    assert_eq!(planner.received().count(), 0, "it had not been looked at yet");
+}
+
+/// The holder stands still, or is killed without a word: half a second later its lease is over for everybody, and also
+/// when the broker itself is dead.
+#[test]
+fn a_silent_holder_and_a_dead_broker_end_the_lease() {
+    let mut system = System::start("silent");
+    let planner = system.client("planner", &[Domain::Walk]);
+    let mut client = system.stream();
+    client.take_lease(false).unwrap();
+    wait_for("the lease", || {
+        planner.lease().covers(planner.lease().grant, now()) && planner.lease().grant != 0
+    });
+    let first = planner.lease();
+    pause(300);
+    client.ping().unwrap();
+    wait_for("the renewal", || planner.lease().until_ns > first.until_ns);
+    assert_eq!(planner.lease().grant, first.grant);
+    // Nothing is sent from here on.
+    wait_for("the end", || planner.lease() == Lease::default());
+    client.take_lease(false).unwrap();
+    wait_for("the next lease", || planner.lease().grant != 0);
+    let second = planner.lease();
+    assert_ne!(second.grant, first.grant, "what was commanded under the first does not come back");
+    system.kill_broker();
+    wait_for("the end by its time", || !planner.lease().covers(second.grant, now()));
+    assert!(planner.lease().until_ns <= second.until_ns + LEASE);
+}
+
+#[test]
+fn a_process_that_hangs_is_named_to_the_operator() {
+    let system = System::start("hangs");
+    let _planner = system.client("planner", &[Domain::Walk]); // nobody looks at what comes
+    let refused = system.stream().publish(&Command::Stand).unwrap_err();
+    assert!(refused.contains("planner has not answered in time"), "{refused}");
 }

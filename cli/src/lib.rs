@@ -1,8 +1,14 @@
 //! What the command `gangwerk` is made of, for the command itself and for tests and studies.
 
+// println! and eprintln! here do not panic: a result that cannot be written is an error, a remark is dropped.
+#[macro_use(println, eprintln)]
+extern crate terminal;
+
 pub mod can;
 pub mod choose;
+pub mod estop;
 pub mod fit_friction;
+pub mod operator;
 pub mod param;
 pub mod plot;
 pub mod run;
@@ -11,6 +17,3 @@ pub mod sim;
 pub mod topic;
 
 pub use studies::{chain, figures};
-
-/// Where the processes of a robot meet, unless said otherwise: on a tmpfs.
-pub const RUN_DIR: &str = "/dev/shm/gangwerk";

@@ -1,5 +1,10 @@
 //! The command `gangwerk`. Without arguments it shows the demonstration scene.
 
+// println! and eprintln! here do not panic: a result that cannot be written is an error, a remark is dropped.
+#[macro_use(println, eprintln)]
+extern crate terminal;
+
+mod run_command;
 mod study;
 
 use std::error::Error;
@@ -7,7 +12,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use cli::run::{Order, Outcome};
+use cli::run::Order;
 use daemon::Commands;
 use fieldbus::Address;
 use ipc::{Mode, Space};
@@ -54,9 +59,11 @@ enum Task {
         #[arg(long)]
         no_plots: bool,
         /// Where the processes meet; a second robot needs another one.
-        #[arg(long, value_name = "DIR", default_value = cli::RUN_DIR)]
+        #[arg(long, value_name = "DIR", default_value_os_t = ipc::default_dir())]
         dir: PathBuf,
     },
+    /// Emergency stop: cut the motor supply of a robot at once. See `gangwerk estop --help`.
+    Estop,
     /// Run a scene in one process, as fast as possible.
     Sim {
         /// Name of a file in config/scenes, without .toml.
@@ -76,7 +83,7 @@ enum Task {
         #[command(subcommand)]
         what: TopicTask,
         /// Where the processes meet.
-        #[arg(long, global = true, value_name = "DIR", default_value = cli::RUN_DIR)]
+        #[arg(long, global = true, value_name = "DIR", default_value_os_t = ipc::default_dir())]
         dir: PathBuf,
     },
     /// Parameters of the running stabilizer: list, read, set.
@@ -84,7 +91,7 @@ enum Task {
         #[command(subcommand)]
         what: ParamTask,
         /// Where the processes meet.
-        #[arg(long, global = true, value_name = "DIR", default_value = cli::RUN_DIR)]
+        #[arg(long, global = true, value_name = "DIR", default_value_os_t = ipc::default_dir())]
         dir: PathBuf,
     },
     /// Traffic of the joint loop's bus: record, replay, look at it, hold it against a log.
@@ -193,6 +200,9 @@ enum ParamTask {
         /// In its unit and range.
         #[arg(allow_negative_numbers = true)]
         value: f64,
+        /// Take the command lease from whoever holds it.
+        #[arg(long)]
+        take_over: bool,
     },
 }
 
@@ -216,17 +226,29 @@ enum TopicTask {
         #[arg(long, default_value_t = 2.0)]
         seconds: f64,
     },
-    /// Send a command, for example: walk/velocity forward=0.3
+    /// Send a command and tell its answer, for example: walk/velocity forward=0.3
+    ///
+    /// Who moves the robot holds the command lease: a walk goes on for as long as this program runs and ends with it.
     Pub {
         /// Name of the command.
         command: String,
         /// field=number ...
         fields: Vec<String>,
+        /// For a walk without an end: stop after so many seconds; without it, at Ctrl-C.
+        #[arg(long = "for", value_name = "SECONDS")]
+        seconds: Option<f64>,
+        /// Take the command lease from whoever holds it.
+        #[arg(long)]
+        take_over: bool,
     },
 }
 
 fn main() -> ExitCode {
-    tracing_subscriber::fmt().with_writer(std::io::stderr).without_time().with_target(false).init();
+    // Before anything else, and without it.
+    if let Some(code) = cli::estop::main(std::env::args_os()) {
+        return code;
+    }
+    tracing_subscriber::fmt().with_writer(|| terminal::Quiet).without_time().with_target(false).init();
     let arguments = Arguments::parse();
     match perform(arguments) {
         Ok(code) => code,
@@ -247,15 +269,16 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         out: "runs/latest".into(),
         no_log: false,
         no_plots: false,
-        dir: cli::RUN_DIR.into(),
+        dir: ipc::default_dir(),
     });
     match task {
         Task::Run { scene, lockstep, bus, no_robot, out, no_log, no_plots, dir } => {
             let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
             let log = (!no_log).then(|| out.join(format!("{scene}.mcap")));
             let robot = !no_robot;
-            run(Order { mode, scene, method: None, config, bus, robot, dir, log, progress: true }, no_plots)
+            run_command::run(Order { mode, scene, method: None, config, bus, robot, dir, log }, no_plots)
         }
+        Task::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
         Task::Sim { scene, json, log, can } => sim(&config, &scene, json, log, can),
         Task::Topic { what, dir } => {
             realtime::end_with_reader();
@@ -263,7 +286,10 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
                 TopicTask::List => cli::topic::list(),
                 TopicTask::Echo { topic, once } => cli::topic::echo(&dir, &topic, once.then_some(1))?,
                 TopicTask::Hz { topic, seconds } => cli::topic::hz(&dir, &topic, seconds)?,
-                TopicTask::Pub { command, fields } => cli::topic::publish(&dir, &command, &fields)?,
+                TopicTask::Pub { command, fields, seconds, take_over } => {
+                    let order = cli::operator::Order { command, fields, seconds, take_over };
+                    cli::operator::publish(&dir, &order)?;
+                }
             }
             Ok(ExitCode::SUCCESS)
         }
@@ -272,7 +298,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             match what {
                 ParamTask::List => cli::param::list(&dir),
                 ParamTask::Get { name } => cli::param::get(&dir, &name)?,
-                ParamTask::Set { name, value } => cli::param::set(&dir, &name, value)?,
+                ParamTask::Set { name, value, take_over } => cli::param::set(&dir, &name, value, take_over)?,
             }
             Ok(ExitCode::SUCCESS)
         }
@@ -308,7 +334,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
 fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
     Stop::with_parent()?;
     match task {
-        Task::Broker(p) => broker::daemon::main(&p.run, None)?,
+        Task::Broker(p) => broker::daemon::main(&p.run)?,
         Task::Watchdog(p) => {
             watchdog::daemon::main(&p.run, Box::new(|s: &Space| commands("watchdog", &[Domain::System], s)))?;
         }
@@ -337,33 +363,7 @@ fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
 
 /// Live commands of these domains, through the broker.
 fn commands(name: &str, domains: &[Domain], space: &Space) -> Result<Commands, String> {
-    let mut client = broker::Client::start(name, domains, space)?;
-    Ok(Box::new(move || client.received().next()))
-}
-
-fn run(mut order: Order, no_plots: bool) -> Result<ExitCode, Box<dyn Error>> {
-    if let Some(directory) = order.log.as_ref().and_then(|log| log.parent()) {
-        std::fs::create_dir_all(directory)
-            .map_err(|e| format!("{}: {e}; choose another place with --out", directory.display()))?;
-    }
-    let (setup, choice) = cli::choose::load(&order.config, &order.scene, true)?;
-    order.method = choice.map(|choice| choice.method);
-    let Outcome { died, interrupted } = cli::run::run(&order)?;
-    if let Some(log) = order.log.as_ref().filter(|_| order.robot) {
-        let figures = cli::run::figures_of(log, &setup)?;
-        println!("{}", cli::figures::table(&figures));
-        if !no_plots {
-            draw(log, log.parent().unwrap_or(log))?;
-        }
-    }
-    for (process, status) in &died {
-        eprintln!("{} died during the run: {}", process.name(), cli::run::how_it_died(status));
-    }
-    Ok(match (died.is_empty(), interrupted) {
-        (false, _) => ExitCode::FAILURE,
-        (true, true) => ExitCode::from(130),
-        (true, false) => ExitCode::SUCCESS,
-    })
+    Ok(Box::new(broker::Client::start(name, domains, space)?))
 }
 
 fn sim(

@@ -4,9 +4,8 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
-use config::System;
 use config::parameters::{PARAMETERS, Parameter};
-use ipc::{Run, Space};
+use ipc::Space;
 use messages::command::ParameterCommand;
 use messages::{Command, Parameters, Process, topics};
 use realtime::clock;
@@ -39,8 +38,8 @@ pub fn get(dir: &Path, name: &str) -> Result<(), Box<dyn Error>> {
 /// Sets a parameter and waits until the stabilizer has it.
 ///
 /// # Errors
-/// No such parameter, a value out of its range, no robot, no broker, or no answer.
-pub fn set(dir: &Path, name: &str, value: f64) -> Result<(), Box<dyn Error>> {
+/// No such parameter, a value out of its range, no robot, no broker, a refusal, or no answer.
+pub fn set(dir: &Path, name: &str, value: f64, take_over: bool) -> Result<(), Box<dyn Error>> {
     let (number, p) = find(name)?;
     let [low, high] = p.range;
     if !(value >= low && value <= high) {
@@ -50,9 +49,8 @@ pub fn set(dir: &Path, name: &str, value: f64) -> Result<(), Box<dyn Error>> {
         )
         .into());
     }
-    let run = Run::load(dir)?;
-    let port = System::load(&run.config.join("system.toml"))?.tcp_port;
-    broker::TcpClient::connect(port)?.publish(&Command::Parameter(ParameterCommand { number, value }))?;
+    let mut client = crate::operator::connect(dir, "gangwerk param")?;
+    crate::operator::give(&mut client, &Command::Parameter(ParameterCommand { number, value }), take_over)?;
     let begun = clock::now();
     while present(dir)?.values[number as usize] != value {
         if clock::now() - begun > PATIENCE {

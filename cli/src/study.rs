@@ -8,6 +8,7 @@ use clap::Subcommand;
 use cli::run::Order;
 use fieldbus::Address;
 use ipc::Mode;
+use terminal::Console;
 
 /// Which study.
 #[derive(Subcommand)]
@@ -115,6 +116,18 @@ pub(super) enum Task {
         #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=100))]
         instants: u64,
     },
+    /// Processes of a walking robot that are stopped for 2 to 1000 ms and go on.
+    Stalls {
+        /// The walk.
+        #[arg(long, default_value = "walk_1kmh")]
+        scene: String,
+        /// Random instants for each process and duration.
+        #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=1000))]
+        instants: u64,
+        /// Seed of the instants.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
     /// How well the processes keep real time, beside cyclictest before and after.
     Realtime {
         /// The scene that is run.
@@ -132,7 +145,7 @@ pub(super) enum Task {
 /// Carries out a study and prints what it found.
 pub(super) fn run(config: &Path, what: Task, json: bool) -> Result<ExitCode, Box<dyn Error>> {
     use studies::stability::{floquet, viability};
-    use studies::{arm_swing, bus_faults, cycles, figures_of_thesis, limits, push, speed};
+    use studies::{arm_swing, bus_faults, cycles, figures_of_thesis, limits, push, speed, stalls};
     let (object, table) = match what {
         Task::Accuracy { only, peers, out } => {
             let report = accuracy_study(config, only.as_deref(), peers.as_deref(), &out)?;
@@ -184,6 +197,10 @@ pub(super) fn run(config: &Path, what: Task, json: bool) -> Result<ExitCode, Box
         Task::BusFaults { instants } => {
             let report = bus_faults::run(config, instants as usize)?;
             (serde_json::to_string(&report)?, bus_faults::table(&report))
+        }
+        Task::Stalls { scene, instants, seed } => {
+            let trials = stalls::run(config, &scene, &stalls::MILLIS, instants as usize, seed)?;
+            (serde_json::to_string(&trials)?, stalls::table(&trials))
         }
         Task::Realtime { scene, cyclictest, out } => {
             let report = realtime_study(config, scene, cyclictest, &out)?;
@@ -287,19 +304,12 @@ fn realtime_study(
         .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
     let log = out.join(format!("{scene}.mcap"));
     let before = cyclictest();
-    let (mode, dir, config) = (Mode::RealTime, cli::RUN_DIR.into(), config.to_path_buf());
+    let (mode, dir, config) = (Mode::RealTime, ipc::default_dir(), config.to_path_buf());
     let method = choice.map(|choice| choice.method);
-    cli::run::run(&Order {
-        bus: Address::Shared,
-        robot: true,
-        mode,
-        scene,
-        method,
-        config,
-        dir,
-        log: Some(log.clone()),
-        progress: false,
-    })?;
+    let order =
+        Order { bus: Address::Shared, robot: true, mode, scene, method, config, dir, log: Some(log.clone()) };
+    let stop = realtime::Stop::on_signals()?;
+    cli::run::run(&order, stop, &Console::start(None, realtime::clock::now)?)?;
     let after = cyclictest();
     let fell = cli::run::figures_of(&log, &setup)?.fell;
     Ok(studies::cycles::Report {

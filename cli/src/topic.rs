@@ -1,14 +1,13 @@
-//! `gangwerk topic list|echo|hz|pub`: looking at the topics of a running robot, and sending it commands.
+//! `gangwerk topic list|echo|hz`: looking at the topics of a running robot.
 
 use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
-use config::System;
-use ipc::{Run, Space};
+use ipc::Space;
 use messages::command_text::COMMANDS;
 use messages::topics::{ForType, Topic, with_type};
-use messages::{Command, Process, Record, TOPICS, Visit};
+use messages::{Process, Record, TOPICS, Visit};
 use realtime::clock;
 
 /// Prints both tables: what can be read, and what can be sent.
@@ -29,20 +28,6 @@ pub fn list() {
             );
         }
     }
-}
-
-/// Sends a command through the broker of the run in `dir`; says how many processes got it.
-///
-/// # Errors
-/// The command is refused, or there is no broker.
-pub fn publish(dir: &Path, name: &str, fields: &[String]) -> Result<(), Box<dyn Error>> {
-    let command = Command::parse(name, &fields.join(" "))?;
-    let run = Run::load(dir)?;
-    let _alive = Space::open(dir, Process::Observer)?; // the port may serve another run
-    let port = System::load(&run.config.join("system.toml"))?.tcp_port;
-    let clients = broker::TcpClient::connect(port)?.publish(&command)?;
-    println!("{} taken by {clients} process{}", command.name(), if clients == 1 { "" } else { "es" });
-    Ok(())
 }
 
 fn find(name: &str) -> Result<&'static Topic, String> {

@@ -1,5 +1,6 @@
 //! The run-time system: one table of processes, and the limits that keep it safe.
 
+use std::net::SocketAddr;
 use std::path::Path;
 
 use messages::Process;
@@ -23,12 +24,25 @@ pub struct System {
     pub following_error: f64,
     /// \[s\] ... plus this much per rad/s of joint speed.
     pub following_time: f64,
-    /// TCP port of the broker on the loopback interface; 0: none.
-    pub tcp_port: u16,
+    /// Address and port on which the broker serves TCP; port 0: one that the system chooses; none: no TCP.
+    pub tcp_listen: Option<SocketAddr>,
+    /// File of keys for clients on the network, relative to the configuration directory; empty: none.
+    pub tcp_keys: String,
     /// \[s\] How long a process waits for a missing peer before it names it and ends.
     pub peer_timeout: f64,
     /// What lowlevel bears of the field bus.
     pub bus: BusLimits,
+    /// The watchdog's thread that listens for the emergency stop.
+    pub emergency_stop: ThreadRow,
+}
+
+/// Scheduling of a thread beside a process's own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ThreadRow {
+    /// Core it is bound to; none: wherever there is room.
+    pub core: Option<usize>,
+    /// SCHED_FIFO priority 1..98; 0: the ordinary scheduler.
+    pub priority: u8,
 }
 
 /// What lowlevel bears of the field bus: `[bus]`.
@@ -67,17 +81,34 @@ impl System {
 
     pub(crate) fn load_hashed(path: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
         let text = file::text(path, hash)?;
-        section::read(path, &text, |top| Self {
+        section::read(path, &text, Self::build)
+    }
+
+    fn build(top: &Section<'_, '_>) -> Self {
+        let system = Self {
             processes: top.table("process", processes).unwrap_or_default(),
             watchdog_missed: top.integer("watchdog_missed", 1..=1000) as u32,
             targets_missed: top.integer("targets_missed", 1..=1000) as u32,
             overrun_bucket: top.integer("overrun_bucket", 1..=100_000) as u32,
             following_error: top.number("following_error", "rad", POSITIVE),
             following_time: top.number("following_time", "s", NOT_NEGATIVE),
-            tcp_port: top.integer("tcp_port", 0..=65_535) as u16,
+            tcp_listen: tcp_listen(top),
+            tcp_keys: top.text("tcp_keys"),
             peer_timeout: top.number("peer_timeout", "s", POSITIVE),
             bus: top.table("bus", BusLimits::build).unwrap_or_default(),
-        })
+            emergency_stop: top.table("emergency_stop", ThreadRow::build).unwrap_or_default(),
+        };
+        // Whoever runs above the emergency stop can keep it from running.
+        let (own, rows) = (system.emergency_stop.priority, &system.processes);
+        let above = |row: &&ProcessRow| row.priority > 0 && row.priority >= own;
+        if let Some(row) = rows.iter().find(above).filter(|_| top.has("emergency_stop")) {
+            let (name, priority) = (row.process.name(), row.priority);
+            top.problem(
+                "emergency_stop",
+                format!("priority = {own} must be above {priority}, that of {name}"),
+            );
+        }
+        system
     }
 
     /// The row of a process; none for observers.
@@ -109,6 +140,26 @@ impl Default for BusLimits {
     fn default() -> Self {
         Self { carried_on: 0, missed: 1, jump: f64::NAN, jump_speed: f64::NAN, jump_force: f64::NAN }
     }
+}
+
+impl ThreadRow {
+    fn build(row: &Section<'_, '_>) -> Self {
+        Self {
+            core: row.has("core").then(|| row.integer("core", 0..=1023) as usize),
+            priority: row.integer("priority", 0..=98) as u8,
+        }
+    }
+}
+
+/// `tcp_listen = "127.0.0.1:7411"`, or empty.
+fn tcp_listen(top: &Section<'_, '_>) -> Option<SocketAddr> {
+    let text = top.text("tcp_listen");
+    let address = text.parse().ok();
+    if address.is_none() && !text.is_empty() {
+        let must = "must be ADDRESS:PORT, for example \"127.0.0.1:7411\" (port 0: the system chooses), or empty: no TCP";
+        top.problem("tcp_listen", format!("`{text}` {must}"));
+    }
+    address
 }
 
 /// One table `[process.NAME]` for each process.

@@ -11,6 +11,7 @@ pub struct Timeline {
     /// (first tick at or after the command's time, command), ascending.
     entries: Vec<(u64, Command)>,
     next: usize,
+    domains: Vec<Domain>,
 }
 
 /// When the operator of a scene that does not say so itself presses reset and enable \[s\].
@@ -26,12 +27,19 @@ impl Timeline {
         let own = arming.chain(&scene.commands).filter(|(_, command)| domains.contains(&command.address().0));
         let mut entries: Vec<_> = own.map(|(time, command)| (tick(*time), *command)).collect();
         entries.sort_by_key(|(tick, _)| *tick);
-        Self { entries, next: 0 }
+        Self { entries, next: 0, domains: domains.to_vec() }
     }
 
     /// For a process that was started again: what lies before `tick` has been done, or shall not be done late.
     pub fn skip_before(&mut self, tick: u64) {
         self.next = self.entries.partition_point(|(t, _)| *t < tick);
+    }
+
+    /// A live command comes in between, if it is of these domains: due at once.
+    pub fn insert(&mut self, command: &Command) {
+        if self.domains.contains(&command.address().0) {
+            self.entries.insert(self.next, (0, *command));
+        }
     }
 
     /// The next command that is due at `tick`; to be called until there is none.

@@ -439,6 +439,13 @@ fn system_row_of_no_process() {
 }
 
 #[test]
+fn emergency_stop_below_a_process() {
+    let copy = Copy::new("estop").spoil("system.toml", "priority = 85", "priority = 80");
+    let error = text(&System::load(&copy.path("system.toml")).unwrap_err());
+    assert!(error.contains("emergency_stop: priority = 80 must be above 80, that of watchdog"), "{error}");
+}
+
+#[test]
 fn hash_changes_with_every_file() {
     let hash = |copy: &Copy| Setup::load(&copy.0, "stand").unwrap().hash;
     let untouched = hash(&Copy::new("hash"));

@@ -7,7 +7,8 @@ use ipc::Mode;
 use messages::command::Domain;
 use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, PARAMETERS, PLAN, PLANNER_TICK, SENSORS};
 use messages::{
-    Command, ControllerState, Event, EventCode, Header, JointTargets, Parameters, Plan, Process, Sensors,
+    Command, ControllerState, Event, EventCode, Header, JointTargets, Live, Parameters, Plan, Process,
+    Reason, Sensors, Verdict,
 };
 use std::error::Error;
 use std::path::Path;
@@ -50,11 +51,13 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             break;
         }
         d.begin_woken(header);
-        while let Some(command) = timeline.due(header.tick).or_else(&mut commands) {
-            if let Some((code, detail)) = controller.command(&command) {
+        while let Some(live) = timeline.due(header.tick).map(Live::of_scene).or_else(|| commands.next()) {
+            let told = controller.command(&live.command);
+            if let Some((code, detail)) = told {
                 d.report(header, code, detail);
             }
-            if !matches!(command, Command::Parameter(_)) {
+            commands.answer(&live, verdict(told));
+            if !matches!(live.command, Command::Parameter(_)) {
                 continue;
             }
             parameters.header = header;
@@ -75,6 +78,16 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     }
     d.report(header, EventCode::Ended, 0);
     Ok(())
+}
+
+/// What the operator is answered: refused if the event that came of the command says so.
+fn verdict(told: Option<(EventCode, u64)>) -> Verdict {
+    match told {
+        Some((code @ (EventCode::HeadRefused | EventCode::CommandRefused), detail)) => {
+            Err(Reason::Event { code, detail })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Whether the planner has just fallen silent. The plan it left is walked to its end.

@@ -9,6 +9,8 @@ use messages::{EventCode, GaitState, LEFT, Plan};
 pub struct PlanFollower {
     active: Plan,
     next: Plan,
+    /// Tick up to which plans are void, whoever made them: the supply was off.
+    void: Option<u64>,
     /// \[m\] Rear and front edge of each sole in its frame.
     edges: [[f64; 2]; 2],
 }
@@ -35,7 +37,7 @@ pub struct Desired {
 impl PlanFollower {
     /// No plan yet; `edges` \[m\] are the rear and the front edge of each sole in its frame.
     pub fn new(edges: [[f64; 2]; 2]) -> Self {
-        Self { active: Plan::default(), next: Plan::default(), edges }
+        Self { active: Plan::default(), next: Plan::default(), void: None, edges }
     }
 
     /// Id of the plan being executed; 0 before the first one.
@@ -48,10 +50,20 @@ impl PlanFollower {
         &self.active
     }
 
+    /// Drops all plans, those made up to this tick that are still to come among them: without power nobody follows one.
+    pub fn drop_all(&mut self, tick: u64) {
+        // Ids go on rising: what was dropped is not looked at again.
+        self.next.id = self.next.id.max(self.active.id);
+        self.next.start_tick = u64::MAX;
+        self.active = Plan::default();
+        self.void = Some(tick);
+    }
+
     /// Takes note of the newest plan and switches to the next one in its start cycle, not before and not after.
     pub fn update(&mut self, tick: u64, newest: Option<&Plan>) -> Option<(EventCode, u64)> {
         let mut event = None;
-        if let Some(plan) = newest.filter(|p| p.id > self.active.id.max(self.next.id)) {
+        let valid = |p: &&Plan| self.void.is_none_or(|void| p.header.tick > void);
+        if let Some(plan) = newest.filter(valid).filter(|p| p.id > self.active.id.max(self.next.id)) {
             if plan.start_tick >= tick && is_finite(plan) {
                 self.next = *plan;
             } else {
@@ -175,6 +187,25 @@ mod tests {
         assert_eq!(f.update(21, Some(&plan(2, 19))), None);
         assert_eq!(f.id(), 1);
         assert_eq!(f.update(22, Some(&plan(3, 22))), Some((EventCode::PlanActive, 3)));
+    }
+
+    /// Neither the one that was followed, nor the one to come, nor one that was under way while the supply went off.
+    #[test]
+    fn no_plan_outlives_the_supply() {
+        let mut f = PlanFollower::new([[-0.1, 0.1]; 2]);
+        let made = |id: u64, tick: u64| {
+            let mut plan = plan(id, tick + 10);
+            plan.header.tick = tick;
+            plan
+        };
+        f.update(10, Some(&made(1, 0)));
+        f.update(15, Some(&made(2, 15)));
+        f.drop_all(20);
+        assert_eq!(f.id(), 0);
+        assert_eq!(f.update(21, Some(&made(2, 15))), None);
+        assert_eq!(f.update(22, Some(&made(3, 19))), None);
+        assert_eq!((f.update(29, None), f.id()), (None, 0));
+        assert_eq!(f.update(32, Some(&made(4, 22))), Some((EventCode::PlanActive, 4)));
     }
 
     #[test]

@@ -24,8 +24,8 @@ use crate::task_space::TaskSpace;
 use crate::torso;
 use crate::watch::Watch;
 
-/// Cycles that may be missed and made good for by a longer step; the joint loop carries on meanwhile.
-const MISSED_CYCLES: u64 = 10;
+/// Cycles that may be missed and are made good for, one after the other; the joint loop carries on meanwhile.
+const MISSED_CYCLES: u64 = 20;
 /// \[s\] A limit is told again after so long without it.
 const QUIET: f64 = 1.0;
 /// Feedback path 2.
@@ -56,11 +56,10 @@ pub struct Controller {
     angle: [f64; MAX_JOINTS],
     speed: JointVector,
     started: bool,
-    /// Tick of the last cycle, and the time since then \[s\]: more than a cycle if cycles were missed.
+    /// Tick of the last cycle.
     last_tick: u64,
     /// \[m\] @I_0 Heights at which the plan wanted the soles at the end of the last cycle.
     sole_height: [f64; 2],
-    elapsed: f64,
     watch: Watch,
     gaze: Option<Gaze>,
     arms: Option<Arms>,
@@ -118,7 +117,6 @@ impl Controller {
             started: false,
             last_tick: 0,
             sole_height: [0.0; 2],
-            elapsed: dt,
             watch: Watch::default(),
             gaze: Gaze::new(robot)?,
             arms: Arms::new(robot, gait.arm_swing)?,
@@ -165,9 +163,14 @@ impl Controller {
     /// One cycle: joint targets for its end, from the sensor data of its beginning and the newest plan.
     pub fn step(&mut self, sensors: &Sensors, newest: Option<&Plan>) -> (&JointTargets, &ControllerState) {
         let tick = sensors.header.tick;
-        self.elapsed = self.dt * tick.saturating_sub(self.last_tick).clamp(1, MISSED_CYCLES) as f64;
+        let missed =
+            if self.started { tick.saturating_sub(self.last_tick + 1).min(MISSED_CYCLES) } else { 0 };
         self.last_tick = tick;
-        self.events.add(self.plan.update(tick, newest));
+        if sensors.power == 0 {
+            self.plan.drop_all(tick);
+        }
+        // A plan that came in time is taken, if this process was stopped at its start.
+        self.events.add(self.plan.update(tick - missed, newest));
         let (sensors, event) = self.watch.admit(sensors, self.robot.joints.len());
         self.events.add(event.map(|code| (code, 0)));
         let sensors = &sensors;
@@ -182,21 +185,33 @@ impl Controller {
         for j in 0..self.robot.joints.len() {
             self.state.tracking_error[j] = self.angle[j] - sensors.joint_angle[j];
         }
+        // The targets go through the cycles that were missed: those of this one do not jump.
+        for past in tick - missed..tick {
+            self.follow(sensors, past);
+        }
+        let (now, estimate) = self.follow(sensors, tick);
+        self.report(sensors, self.plan.time(tick, self.dt), &now, &estimate);
+        (&self.targets, &self.state)
+    }
+
+    /// Joint targets for the end of the cycle `tick`; what was wanted and what was seen.
+    fn follow(&mut self, sensors: &Sensors, tick: u64) -> (Desired, Estimate) {
+        self.events.add(self.plan.update(tick, None));
         let t = self.plan.time(tick, self.dt);
         let (now, end) = (self.plan.sample(t), self.plan.sample(t + self.dt));
         self.take_over(&now, &end);
         let estimate = Estimate::new(&self.robot, sensors, &self.measured, &self.reference(&now));
-        if self.plan.id() > 0 && sensors.power == 1 {
+        let powered = self.plan.id() > 0 && sensors.power == 1;
+        if powered {
             let why = self.watch.check(sensors, &now, &estimate);
             self.events.add(why.map(|code| (code, 0)));
         }
-        if self.plan.id() > 0 && !self.watch.stopped() && sensors.power == 1 {
+        if powered && !self.watch.stopped() {
             self.stabilize(sensors, &now, &end, &estimate);
         } else {
             self.speed.fill(0.0);
         }
-        self.report(sensors, t, &now, &estimate);
-        (&self.targets, &self.state)
+        (now, estimate)
     }
 
     /// A plan that goes on from a sensed contact has its foot where the ground is, not where the plan before wanted it:
@@ -254,7 +269,7 @@ impl Controller {
         let task = self.ik.factorise(&self.jacobian);
         let motion = self.sole_motion(&task, &torso, end);
         let feet = std::array::from_fn(|i| (self.compliance[i], self.guides[i]));
-        self.modification = modify(&self.control, &motion, &feet, &forces, &self.modification, self.elapsed);
+        self.modification = modify(&self.control, &motion, &feet, &forces, &self.modification, self.dt);
         let velocity = self.task_velocity(&torso, end);
         let mut given = self.given_speeds(end);
         if let Some(gaze) = &mut self.gaze {
@@ -267,10 +282,10 @@ impl Controller {
                 velocity: estimate.torso_velocity,
                 omega: sensors.imu.angular_velocity.into(),
             };
-            gaze.drive(&torso, self.elapsed, &self.angle, &self.speed, &mut given);
+            gaze.drive(&torso, self.dt, &self.angle, &self.speed, &mut given);
         }
         if let Some(arms) = &mut self.arms {
-            arms.drive(&self.desired, self.elapsed, self.control.drift_gain, &mut given);
+            arms.drive(&self.desired, self.dt, self.control.drift_gain, &mut given);
         }
         let wanted = self.ik.speeds(&task, &velocity, &given, &self.angle);
         let held = self.integrate(&wanted);
@@ -296,7 +311,7 @@ impl Controller {
         let before = self.state.limited;
         for (j, joint) in self.robot.joints.iter().enumerate() {
             let speed = wanted[j].clamp(-joint.speed_limit, joint.speed_limit);
-            let angle = self.angle[j] + 0.5 * self.elapsed * (self.speed[j] + speed);
+            let angle = self.angle[j] + 0.5 * self.dt * (self.speed[j] + speed);
             let [low, high] = joint.range;
             let held = angle.clamp(low.min(self.angle[j]), high.max(self.angle[j]));
             if !(speed == wanted[j] && held == angle) {

@@ -37,26 +37,49 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
 /// Logs until the process is asked to end, then writes what is left and closes the log.
 ///
 /// # Errors
-/// The configuration cannot be read, or another logger serves this run. A log that cannot be written is no error: it
-/// is said once and counted, and tried again every half second.
+/// The configuration cannot be read, or another logger serves this run. A log that cannot be written is said once and
+/// counted, and tried again every half second; at the end it is an error, so that nobody takes it for the whole run.
 pub fn run(run: &Run, stop: &Stop) -> Result<(), String> {
     let space = run.enter(Process::Logger).map_err(|e| e.to_string())?;
-    let output = Output::new(open(run)?);
-    serve(&space, output, run.mode, stop).map_err(|e| e.to_string())
+    let output = Output::new(open(run, again(&space))?);
+    let ended = serve(&space, output, run.mode, stop).map_err(|e| e.to_string())?;
+    if ended.broken {
+        return Err(format!(
+            "the log is not complete: {} records are missing, and the disk failed",
+            ended.lost
+        ));
+    }
+    Ok(())
 }
 
-/// How the parts of the log are made.
-fn open(run: &Run) -> Result<Open, String> {
+/// Whether this run had a logger before.
+fn again(space: &Space) -> bool {
+    let events = space.reader::<Event>(&EVENTS_LOGGER);
+    events.is_ok_and(|mut events| events.latest().is_some())
+}
+
+/// How the parts of the log are made. A logger that was started again leaves the parts alone that are there.
+fn open(run: &Run, again: bool) -> Result<Open, String> {
     let setup = Setup::load(&run.config, &run.scene).map_err(|e| e.to_string())?;
     let parts = Parts::new(run.log.as_deref().ok_or("this run has no log")?);
-    Ok(Box::new(move |part| recorder(&parts.path(part), &setup)))
+    let before = if again { (1..).take_while(|&part| parts.path(part).exists()).count() as u32 } else { 0 };
+    Ok(Box::new(move |part| recorder(&parts.path(before + part), &setup)))
+}
+
+/// What became of a log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Logged {
+    /// Records that are missing.
+    pub lost: u64,
+    /// Whether the disk failed.
+    pub broken: bool,
 }
 
 /// Follows all logged topics of a space until asked to stop.
 ///
 /// # Errors
 /// A topic cannot be opened.
-pub fn serve(space: &Space, output: Output, mode: Mode, stop: &Stop) -> Result<(), IpcError> {
+pub fn serve(space: &Space, output: Output, mode: Mode, stop: &Stop) -> Result<Logged, IpcError> {
     let mut logging = Logging::new(output);
     for topic in TOPICS.iter().filter(|t| t.logged && t.name != EVENTS_LOGGER.name) {
         with_type(topic.name, FollowTopic { space, logging: &mut logging }).unwrap_or(Ok(()))?;
@@ -81,7 +104,7 @@ pub fn serve(space: &Space, output: Output, mode: Mode, stop: &Stop) -> Result<(
     drain(&mut logging, &mut signals);
     logging.output().finish();
     report(&mut logging, &Pass::default());
-    Ok(())
+    Ok(Logged { lost: logging.missing(), broken: logging.output().is_broken() })
 }
 
 /// Writes what is left in the rings.

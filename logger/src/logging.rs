@@ -52,6 +52,11 @@ impl Logging {
         self.lost
     }
 
+    /// Records that are missing from the log at this moment, told in it or not.
+    pub fn missing(&self) -> u64 {
+        self.followers.iter().map(|f| f.lost()).sum::<u64>() + self.output.dropped()
+    }
+
     /// Writes what has come since the last pass.
     pub fn pass(&mut self) -> Pass {
         let mut pass = Pass::default();
@@ -84,7 +89,7 @@ impl Logging {
 
     /// Writes how many records were lost since the last time, if any were.
     fn note_losses(&mut self) -> Option<Event> {
-        let lost = self.followers.iter().map(|f| f.lost()).sum::<u64>() + self.output.dropped();
+        let lost = self.missing();
         // While there is no file the loss goes on: it is noted when writing works again.
         if lost == self.lost || !self.output.is_writing() {
             return None;

@@ -32,6 +32,8 @@ pub struct Output {
     dropped: u64,
     /// Records written since the last flush: nobody knows whether they reached the disk until the next one.
     unflushed: u64,
+    /// Writing failed at some time: records are missing, or the index at the end of a part is.
+    broken: bool,
     /// Writing does not work at present, and that was said.
     failing: bool,
     complaint: Option<String>,
@@ -40,8 +42,16 @@ pub struct Output {
 impl Output {
     /// Opens the first part. If that fails the run has no log yet; see [`Output::complaint`] and [`Output::retry`].
     pub fn new(open: Open) -> Self {
-        let mut output =
-            Self { open, recorder: None, part: 0, dropped: 0, unflushed: 0, failing: false, complaint: None };
+        let mut output = Self {
+            open,
+            recorder: None,
+            part: 0,
+            dropped: 0,
+            unflushed: 0,
+            broken: false,
+            failing: false,
+            complaint: None,
+        };
         output.retry();
         output
     }
@@ -86,6 +96,7 @@ impl Output {
     /// Closes the log.
     pub fn finish(&mut self) {
         if let Some(Err(error)) = self.recorder.take().map(Recorder::finish) {
+            self.dropped += std::mem::take(&mut self.unflushed);
             self.complain(&error);
         }
     }
@@ -99,6 +110,11 @@ impl Output {
     /// Whether records reach a file at present.
     pub fn is_writing(&self) -> bool {
         self.recorder.is_some()
+    }
+
+    /// Whether writing failed at some time: the log is not complete.
+    pub fn is_broken(&self) -> bool {
+        self.broken
     }
 
     /// Why writing failed, once for each failure.
@@ -115,6 +131,7 @@ impl Output {
 
     /// The same complaint again and again is no news: only the first one until writing works again.
     fn complain(&mut self, error: &RecordingError) {
+        self.broken = true;
         if !self.failing {
             self.failing = true;
             self.complaint = Some(error.to_string());

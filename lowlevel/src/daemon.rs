@@ -48,7 +48,11 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     d.report(Header::default(), EventCode::Started, 0);
     let header = match d.mode {
         Mode::Lockstep => lockstep(&mut d, &mut ports, &mut joints, last)?,
-        Mode::RealTime => real_time(&mut d, &mut ports, &mut joints, last),
+        Mode::RealTime => {
+            let header = real_time(&mut d, &mut ports, &mut joints, last);
+            say_goodbye(&d, &mut ports, header);
+            header
+        }
     };
     d.report(header, EventCode::Ended, 0);
     Ok(())
@@ -71,7 +75,7 @@ struct Ports {
 
 /// Commands of this cycle: the scene's that are due, then live ones.
 fn take_commands(p: &mut Ports, joints: &mut JointLoop, tick: u64) {
-    while let Some(command) = p.timeline.due(tick).or_else(&mut p.commands) {
+    while let Some(command) = p.timeline.due(tick).or_else(|| p.commands.accept()) {
         joints.command(&command);
     }
 }
@@ -165,6 +169,13 @@ fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -
         d.end(header, verdict.skipped());
     }
     header
+}
+
+/// The last sign of life says that it is the last one: the log tells an orderly end from a joint loop that fell silent.
+fn say_goodbye(d: &Daemon, p: &mut Ports, last: Header) {
+    let header = Header { tick: last.tick + 1, ..last };
+    p.reset.write(&WatchdogReset { header, trip: EventCode::Ended as u64, supply: 0 });
+    d.ring(p.bell_reset);
 }
 
 /// Until the targets of this cycle are there, or it is too late for them.

@@ -10,6 +10,7 @@ use messages::{
 use crate::braking::brake;
 use crate::limits::{Motion, admit, following_limit};
 use crate::line_guard::LineGuard;
+use crate::rejoin::Rejoin;
 use crate::start_up::{StartUpSequence, is_enabled};
 use drives::cia402::{self, Wanted, controlword};
 
@@ -40,8 +41,10 @@ pub struct JointLoop {
     last: [Motion; messages::MAX_JOINTS],
     /// Tick of the newest targets that were used.
     used: u64,
-    /// Cycles since targets were new.
+    /// Cycles since targets were new, now and in the cycle before.
     stale: u32,
+    stale_before: u32,
+    rejoin: [Rejoin; messages::MAX_JOINTS],
     /// Drives with a fault that was told.
     named: [bool; messages::MAX_JOINTS],
     guard: LineGuard,
@@ -65,6 +68,8 @@ impl JointLoop {
             last: [Motion { angle: 0.0, speed: 0.0 }; messages::MAX_JOINTS],
             used: 0,
             stale: 0,
+            stale_before: 0,
+            rejoin: [Rejoin::default(); messages::MAX_JOINTS],
             named: [false; messages::MAX_JOINTS],
             guard: LineGuard::new(robot, system, dt),
             start_up: StartUpSequence::new(robot.joints.len(), robot.total_mass * GRAVITY),
@@ -104,13 +109,15 @@ impl JointLoop {
 
     /// First half of the cycle: what the bus brought, stamped.
     pub fn receive(&mut self, tick: u64, stamp_ns: u64, frames: Option<&BusFrames>) -> &Sensors {
+        let elapsed = stamp_ns.saturating_sub(self.sensors.header.stamp_ns) as f64 * 1e-9;
+        let skipped = if tick > 1 { ((elapsed / self.dt).round() - 1.0).max(0.0) as u32 } else { 0 };
         self.sensors.header = Header { tick, stamp_ns, epoch: 0 };
         self.start_up.restore(&mut self.sensors);
         self.guard.expect(&mut self.sensors);
         if let Some(frames) = frames {
             self.received = decode_sensors(&self.robot.layout, frames, &mut self.sensors);
         }
-        self.guard.judge(frames, &self.received, &mut self.sensors);
+        self.guard.judge(frames, &self.received, skipped, &mut self.sensors);
         self.sensors.frames_missed = self.guard.counters().lost;
         self.start_up.receive(&mut self.sensors);
         &self.sensors
@@ -137,6 +144,9 @@ impl JointLoop {
             State::Stop(_) => self.brake_all(),
             State::Track => self.track(targets),
         }
+        if self.state != State::Track {
+            self.rejoin.iter_mut().for_each(Rejoin::forget);
+        }
         self.follow_the_unable();
         self.check_following();
         self.check_lines();
@@ -149,6 +159,7 @@ impl JointLoop {
     fn choose_state(&mut self, targets: Option<&JointTargets>, cause: Option<EventCode>) {
         let powered = self.sensors.power == 1;
         let mode = targets.map_or(JointMode::Off, |t| JointMode::from(t.mode));
+        self.stale_before = self.stale;
         if targets.is_some_and(|t| t.header.tick > self.used) {
             self.used = targets.map_or(0, |t| t.header.tick);
             self.stale = 0;
@@ -241,7 +252,8 @@ impl JointLoop {
         }
     }
 
-    /// New targets if they are new and finite, otherwise the last ones carried on at their speed.
+    /// New targets if they are new and finite, otherwise the last ones carried on at their speed. After a pause the joints
+    /// come back to them gently.
     fn track(&mut self, targets: Option<&JointTargets>) {
         let fresh = targets.filter(|_| self.stale == 0);
         if let Some(bad) = fresh.and_then(|t| self.first_not_finite(t)) {
@@ -251,12 +263,29 @@ impl JointLoop {
         }
         for (j, joint) in self.robot.joints.iter().enumerate() {
             if !self.leads(j) {
+                self.rejoin[j].forget();
                 continue; // its brake holds it
             }
             let last = self.last[j];
+            // Neither what is carried on nor what is left of an offset leads out of the joint's range.
+            let inside = |m: Motion| Motion {
+                angle: m.angle.clamp(joint.range[0].min(last.angle), joint.range[1].max(last.angle)),
+                ..m
+            };
+            let carried = inside(Motion { angle: last.angle + last.speed * self.dt, speed: last.speed });
             let wanted = match fresh {
-                Some(t) => Motion { angle: t.angle[j], speed: t.speed[j] },
-                None => Motion { angle: last.angle + last.speed * self.dt, speed: last.speed },
+                Some(t) => {
+                    let target = Motion { angle: t.angle[j], speed: t.speed[j] };
+                    if self.stale_before > 0 {
+                        self.rejoin[j].begin(carried, target);
+                        carried
+                    } else if self.rejoin[j].is_over() {
+                        target
+                    } else {
+                        inside(self.rejoin[j].step(target, self.dt))
+                    }
+                }
+                None => carried,
             };
             if let Ok((motion, held)) = admit(joint, last, wanted, self.dt) {
                 self.last[j] = motion;
@@ -302,6 +331,7 @@ impl JointLoop {
     fn write_frames(&mut self) {
         let header = Header { epoch: 0, ..self.sensors.header };
         self.reset.header = header;
+        self.reset.supply = self.sensors.power;
         self.command.targets.header = header;
         self.command.targets.mode = match self.state {
             State::Off => JointMode::Off,

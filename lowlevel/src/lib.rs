@@ -5,6 +5,7 @@
 //! | frames of the bus → sensor data, time stamp | [`JointLoop::receive`] |
 //! | bus heard? readings that can be? | `line_guard.rs`, `reading.rs` |
 //! | finite? fresh? in range? slow enough? following? | [`JointLoop::send`], [`limits`] |
+//! | targets that come again after a pause | `rejoin.rs` |
 //! | controlled stop when targets stay away | [`braking`] |
 //! | targets → frames of the bus; watchdog reset | [`JointLoop::send`] |
 //! | power, references, drives, force sensors: until the robot stands | [`start_up`] |
@@ -20,6 +21,7 @@ pub mod joint_loop;
 pub mod limits;
 mod line_guard;
 mod reading;
+mod rejoin;
 mod sercos_bus;
 mod simulated_bus;
 pub mod start_up;

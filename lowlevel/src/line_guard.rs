@@ -102,8 +102,15 @@ impl LineGuard {
         self.believed = *sensors;
     }
 
-    /// After they were read: which nodes were heard, and what of it can be.
-    pub(crate) fn judge(&mut self, frames: Option<&BusFrames>, received: &Received, sensors: &mut Sensors) {
+    /// After they were read: which nodes were heard, and what of it can be, `skipped` cycles of the joint loop's own after
+    /// the last one.
+    pub(crate) fn judge(
+        &mut self,
+        frames: Option<&BusFrames>,
+        received: &Received,
+        skipped: u32,
+        sensors: &mut Sensors,
+    ) {
         let powered = self.believed.power == 1;
         match frames {
             Some(frames) => {
@@ -123,7 +130,8 @@ impl LineGuard {
             let turned = |&j: &usize| self.believed.drive_status[j] ^ sensors.drive_status[j];
             let found = node.reads.joints.iter().any(|j| turned(j) & u32::from(REFERENCED) != 0);
             let check = powered && node.heard && !found;
-            if check && !self.bounds.believes(&node.reads, &self.believed, sensors, node.missed + 1) {
+            let cycles = node.missed.saturating_add(skipped).saturating_add(1);
+            if check && !self.bounds.believes(&node.reads, &self.believed, sensors, cycles) {
                 node.reads.copy(&self.believed, sensors);
                 self.refuse(Refused::Jump, 1);
                 heard = false;

@@ -1,9 +1,10 @@
-//! Walking commands to step parameters, refused when out of `gait.limits` (thesis 4.6.1).
+//! Walking commands to step parameters, refused with the limit when out of `gait.limits` (thesis 4.6.1).
 //!
 //! Every comparison is written so that a number that is not finite fails it.
 
 use crate::steps::Parameters;
 use config::Gait;
+use messages::Reason;
 use messages::command::{StepCommand, VelocityCommand};
 
 /// What the operator wants.
@@ -17,49 +18,74 @@ pub enum Wish {
     Walk,
 }
 
-/// Parameters within the limits, or none.
-fn checked(p: Parameters, gait: &Gait) -> Option<Parameters> {
-    let within = |x: f64, [lo, hi]: [f64; 2]| x >= lo && x <= hi;
+/// `x` within its limits, or the refusal of the command's field.
+fn within(x: f64, field: u8, [low, high]: [f64; 2]) -> Result<f64, Reason> {
+    if x >= low && x <= high { Ok(x) } else { Err(Reason::Limit { field, low, high }) }
+}
+
+/// Step parameters as commanded.
+///
+/// # Errors
+/// The first one that the gait does not allow.
+pub fn from_step(c: &StepCommand, gait: &Gait) -> Result<Parameters, Reason> {
     let l = &gait.limits;
-    (within(p.length, l.length)
-        && within(p.side, l.side)
-        && within(p.turn, l.turn)
-        && within(p.duration, l.duration))
-    .then_some(p)
+    Ok(Parameters {
+        length: within(c.length, 0, l.length)?,
+        side: within(c.side, 1, l.side)?,
+        turn: within(c.turn, 2, l.turn)?,
+        duration: within(c.duration, 3, l.duration)?,
+    })
 }
 
-/// Step parameters as commanded; `None` if refused.
-pub fn from_step(c: &StepCommand, gait: &Gait) -> Option<Parameters> {
-    checked(Parameters { length: c.length, side: c.side, turn: c.turn, duration: c.duration }, gait)
-}
-
-/// Step parameters for a velocity: `Some(None)` for a stop, `None` if refused.
+/// Step parameters for a velocity; `None` for a stop.
 ///
 /// The duration comes from the table of forward speeds. Each step shifts the feet by L_y = v_y T and turns them by
 /// w T; if one of them would be too much for a step, steps become shorter in time.
-pub fn from_velocity(c: &VelocityCommand, gait: &Gait) -> Option<Option<Parameters>> {
-    if !(c.forward.is_finite() && c.left.is_finite() && c.turn.is_finite()) {
-        return None;
+///
+/// # Errors
+/// The component that the gait does not allow, with the velocities that it does.
+pub fn from_velocity(c: &VelocityCommand, gait: &Gait) -> Result<Option<Parameters>, Reason> {
+    let rates = [c.forward, c.left, c.turn];
+    if rates == [0.0; 3] {
+        return Ok(None);
     }
-    if c.forward == 0.0 && c.left == 0.0 && c.turn == 0.0 {
-        return Some(None);
+    let l = &gait.limits;
+    let steps = [l.length, l.side, l.turn];
+    // What a step allows, at the shortest duration: no component is ever faster.
+    let mut fastest = steps.map(|limit| limit.map(|x| x / l.duration[0]));
+    let table = &gait.step.by_speed;
+    let most = table.last().map_or(0.0, |row| row[0]);
+    fastest[0] = [fastest[0][0].max(-most), fastest[0][1].min(most)];
+    for (field, (rate, limit)) in rates.into_iter().zip(fastest).enumerate() {
+        within(rate, field as u8, limit)?;
     }
-    let [_, duration] = by_speed(c.forward.abs(), &gait.step.by_speed)?;
-    let most = |rate: f64, limit: [f64; 2]| {
+    let [_, mut duration] = by_speed(c.forward.abs(), table).ok_or(Reason::Limit {
+        field: 0,
+        low: fastest[0][0],
+        high: fastest[0][1],
+    })?;
+    for (rate, limit) in rates.into_iter().zip(steps) {
         let limit = if rate < 0.0 { limit[0] } else { limit[1] };
-        if rate == 0.0 { f64::INFINITY } else { limit / rate }
-    };
-    let duration = duration
-        .min(most(c.left, gait.limits.side))
-        .min(most(c.turn, gait.limits.turn))
-        .min(most(c.forward, gait.limits.length));
+        if rate != 0.0 {
+            duration = duration.min(limit / rate);
+        }
+    }
     let p = Parameters {
         length: c.forward * duration,
         side: c.left * duration,
         turn: c.turn * duration,
         duration,
     };
-    checked(p, gait).map(Some)
+    // Rounding, and durations of the table that no step may have.
+    for (field, (x, limit)) in [p.length, p.side, p.turn].into_iter().zip(steps).enumerate() {
+        within(x, field as u8, limit).map_err(|_| Reason::Limit {
+            field: field as u8,
+            low: limit[0] / duration,
+            high: limit[1] / duration,
+        })?;
+    }
+    within(duration, 0, l.duration).map_err(|_| Reason::NotNow)?;
+    Ok(Some(p))
 }
 
 /// Length and duration of steps at `speed`, linear between the rows of the table; `None` beyond its end.

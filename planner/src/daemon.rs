@@ -1,17 +1,50 @@
 //! The process around the planner: `gangwerk planner --run DIR`.
 
+use crate::gait::MAX_COMMANDS;
+use crate::lease::WalkLease;
 use crate::{Planner, vision};
 use config::Timeline;
 use daemon::{Connect, Daemon};
 use ipc::Mode;
 use messages::command::Domain;
 use messages::topics::{CONTROLLER_STATE, PLAN, PLANNER_TICK, SENSORS};
-use messages::{Command, ControllerState, Event, EventCode, Header, Plan, Process, Sensors};
+use messages::{Command, ControllerState, Event, EventCode, Header, Live, Plan, Process, Sensors};
+use realtime::clock;
 use std::error::Error;
 use std::path::Path;
 
-/// Commands looked at per cycle; the rest waits for the next.
-const MAX_COMMANDS: usize = 16;
+/// Commands of one cycle; the rest waits for the next.
+struct Inbox {
+    live: [Live; MAX_COMMANDS],
+    commands: [Command; MAX_COMMANDS],
+    count: usize,
+}
+
+impl Default for Inbox {
+    fn default() -> Self {
+        let none = Command::Stop;
+        Self { live: [Live::of_scene(none); MAX_COMMANDS], commands: [none; MAX_COMMANDS], count: 0 }
+    }
+}
+
+impl Inbox {
+    fn add(&mut self, live: Live) {
+        (self.live[self.count], self.commands[self.count]) = (live, live.command);
+        self.count += 1;
+    }
+
+    fn is_full(&self) -> bool {
+        self.count == MAX_COMMANDS
+    }
+
+    fn live(&self) -> &[Live] {
+        &self.live[..self.count]
+    }
+
+    fn commands(&self) -> &[Command] {
+        &self.commands[..self.count]
+    }
+}
 
 /// Plans until asked to end.
 ///
@@ -26,6 +59,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let bell = d.bell(&PLANNER_TICK)?;
     let waiter = d.space.waiter(Process::Planner)?;
     let mut commands = connect(&d.space)?;
+    let mut lease = WalkLease::default();
     let mut timeline = Timeline::new(&d.setup.scene, &[Domain::Walk]);
     let mut planner = Planner::of(&d.setup.gait, &d.setup.robot);
     planner.see(vision::known(&d.setup)?);
@@ -39,15 +73,21 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     while d.wait(&waiter, "lowlevel", || sensors.refresh())? {
         header = sensors.held().map_or(header, |s| s.header);
         d.begin_woken(header);
-        let mut waiting = [Command::Stop; MAX_COMMANDS];
-        let mut count = 0;
-        while count < MAX_COMMANDS
-            && let Some(command) = timeline.due(header.tick).or_else(&mut commands)
-        {
-            waiting[count] = command;
-            count += 1;
+        let mut inbox = Inbox::default();
+        if let Some(grant) = lease.lost(commands.lease(), clock::now()) {
+            d.report(header, EventCode::LeaseLost, grant.into());
+            inbox.add(Live::of_scene(Command::Stop));
         }
-        let output = planner.step(header.tick, d.setup.scene.cycle, state.latest(), &waiting[..count]);
+        while !inbox.is_full()
+            && let Some(live) = timeline.due(header.tick).map(Live::of_scene).or_else(|| commands.next())
+        {
+            inbox.add(live);
+        }
+        let output = planner.step(header.tick, d.setup.scene.cycle, state.latest(), inbox.commands());
+        for (live, &verdict) in inbox.live().iter().zip(output.answers) {
+            lease.follow(live, verdict);
+            commands.answer(live, verdict);
+        }
         if let Some(new) = output.plan {
             *made = *new;
             made.header = header;

@@ -12,7 +12,7 @@ use crate::verdict::Verdict;
 use crate::walk::{Builder, Origin, Walk};
 use config::{Gait, Robot};
 use curves::Sample;
-use messages::{Command, ControllerState, EventCode, GaitState, LEFT, Plan, RIGHT};
+use messages::{Command, ControllerState, EventCode, GaitState, LEFT, Plan, RIGHT, Reason};
 use std::f64::consts::FRAC_PI_2;
 
 /// Cycles between the publication of a plan and its start.
@@ -21,6 +21,8 @@ pub const LEAD: u64 = 10;
 const LEAD_MIN: u64 = 3;
 /// Most events of one cycle.
 const MAX_EVENTS: usize = 16;
+/// Most commands of one cycle.
+pub const MAX_COMMANDS: usize = 16;
 
 /// What one cycle of the planner puts out.
 pub struct Output<'a> {
@@ -28,6 +30,8 @@ pub struct Output<'a> {
     pub plan: Option<&'a Plan>,
     /// What happened: code and detail.
     pub events: &'a [(EventCode, u64)],
+    /// What became of the commands, in their order.
+    pub answers: &'a [Result<(), Reason>],
 }
 
 /// What to plan next.
@@ -56,6 +60,7 @@ pub struct Planner {
     /// Plan and step whose early contact was looked at.
     pub(crate) tried: (u64, usize),
     events: Vec<(EventCode, u64)>,
+    answers: Vec<Result<(), Reason>>,
 }
 
 impl Planner {
@@ -74,6 +79,7 @@ impl Planner {
             given_up: 0,
             tried: (0, 0),
             events: Vec::with_capacity(MAX_EVENTS),
+            answers: Vec::with_capacity(MAX_COMMANDS),
         }
     }
 
@@ -105,24 +111,39 @@ impl Planner {
         commands: &[Command],
     ) -> Output<'_> {
         self.events.clear();
+        self.answers.clear();
         self.builder.set_cycle(cycle_s);
         if let Some(state) = state {
+            if state.not_standing == 1 || state.plan_id == 0 && self.active.plan.id > 0 {
+                self.forget();
+            }
             self.confirm(state);
         }
         let gait = self.gait_state(tick, state);
         let held = gait == GaitState::Idle && state.is_some_and(|s| s.not_standing == 1);
-        for command in commands {
-            if held && walks(command) {
+        for command in commands.iter().take(MAX_COMMANDS) {
+            let answer = if held && walks(command) {
                 self.event(EventCode::NotStanding, u64::from(command.address().1));
+                Err(Reason::NotStanding)
             } else {
-                self.take(command, gait);
-            }
+                self.take(command, gait)
+            };
+            self.answers.push(answer);
         }
         let made = match (state, self.due(tick, gait)) {
             (Some(state), due) => self.make(tick, gait, state, due),
             (None, _) => false,
         };
-        Output { plan: made.then_some(&*self.next.plan), events: &self.events }
+        Output { plan: made.then_some(&*self.next.plan), events: &self.events, answers: &self.answers }
+    }
+
+    /// Without power, or a controller that knows of no plan: whatever was planned, wished and begun is over. What comes
+    /// next begins from the measured joints, and with a command.
+    fn forget(&mut self) {
+        self.wish = Wish::Rest;
+        self.parameters = Parameters::on_the_spot(self.parameters.duration);
+        self.tasks = Tasks::default();
+        (self.active.plan.id, self.next.plan.id) = (0, 0);
     }
 
     /// A plan counts as active when the controller says so; one it did not take at its start is forgotten.
@@ -177,23 +198,24 @@ impl Planner {
         }
     }
 
-    fn take(&mut self, command: &Command, gait: GaitState) {
+    /// Takes a command, or refuses it with an event that names it.
+    fn take(&mut self, command: &Command, gait: GaitState) -> Result<(), Reason> {
         let taken = match command {
             Command::Stand if matches!(gait, GaitState::Idle | GaitState::Standing) => {
-                Some((Wish::Stand, None))
+                Ok((Wish::Stand, None))
             }
-            Command::Start if gait != GaitState::Idle || self.wish == Wish::Stand => Some((Wish::Walk, None)),
+            Command::Start if gait != GaitState::Idle || self.wish == Wish::Stand => Ok((Wish::Walk, None)),
             Command::Stop | Command::End => {
                 self.tasks.stop();
-                Some((if self.wish == Wish::Stand { Wish::Stand } else { Wish::Rest }, None))
+                Ok((if self.wish == Wish::Stand { Wish::Stand } else { Wish::Rest }, None))
             }
             Command::Step(step) => commands::from_step(step, &self.gait).map(|p| (self.wish, Some(p))),
             Command::Velocity(v) => commands::from_velocity(v, &self.gait).and_then(|p| match p {
-                None => Some((Wish::Rest, None)),
-                Some(_) if gait == GaitState::Idle => None,
-                Some(p) => Some((Wish::Walk, Some(p))),
+                None => Ok((Wish::Rest, None)),
+                Some(_) if gait == GaitState::Idle => Err(Reason::NotNow),
+                Some(p) => Ok((Wish::Walk, Some(p))),
             }),
-            Command::Stand | Command::Start => None,
+            Command::Stand | Command::Start => Err(Reason::NotNow),
             Command::Distance(c) => self.give(Task::Distance(*c), gait),
             Command::Platform(c) => self.give(Task::Platform(*c), gait),
             Command::EmergencyStop
@@ -206,34 +228,40 @@ impl Planner {
             | Command::HeadRest
             | Command::Home
             | Command::ZeroForce
-            | Command::Lower(_) => return,
+            | Command::Lower(_) => return Ok(()),
+        };
+        let taken = match taken {
+            // Half on a platform nobody walks as he likes.
+            Ok((Wish::Walk, Some(_))) if !self.tasks.walk(gait == GaitState::Standing) => Err(Reason::NotNow),
+            taken => taken,
         };
         match taken {
-            Some((Wish::Walk, Some(_))) if !self.tasks.walk(gait == GaitState::Standing) => {
-                self.event(EventCode::CommandRefused, u64::from(command.address().1));
-            }
-            Some((wish, parameters)) => {
+            Ok((wish, parameters)) => {
                 self.wish = wish;
                 self.parameters = parameters.unwrap_or(self.parameters);
+                Ok(())
             }
-            None => self.event(EventCode::CommandRefused, u64::from(command.address().1)),
+            Err(reason) => {
+                self.event(EventCode::CommandRefused, u64::from(command.address().1));
+                Err(reason)
+            }
         }
     }
 
     /// A skill comes next: at once from standing, otherwise after a stop.
-    fn give(&mut self, task: Task, gait: GaitState) -> Option<(Wish, Option<Parameters>)> {
+    fn give(&mut self, task: Task, gait: GaitState) -> Result<(Wish, Option<Parameters>), Reason> {
         if gait == GaitState::Idle && self.wish != Wish::Stand {
-            return None;
+            return Err(Reason::NotNow);
         }
         if let Err((code, detail)) = task.check(&self.gait, &self.builder.soles[RIGHT]) {
             self.event(code, detail);
-            return None;
+            return Err(Reason::Event { code, detail });
         }
         self.tasks.next = Some(task);
         let still = matches!(gait, GaitState::Idle | GaitState::Standing);
         let busy = self.tasks.active != Skill::Walk && !self.tasks.aborted;
         let wish = if busy { self.wish } else { Wish::Rest };
-        Some((if still { Wish::Walk } else { wish }, None))
+        Ok((if still { Wish::Walk } else { wish }, None))
     }
 
     fn make(&mut self, tick: u64, gait: GaitState, state: &ControllerState, due: Move) -> bool {

@@ -3,7 +3,7 @@
 //! | stage of figure 4.1 | thesis | errata | module |
 //! |---|---|---|---|
 //! | gait coordination, finite state machine | 4.2, figure 4.5 | | [`gait`], `touchdown` |
-//! | walking commands | 4.6.1 | | [`commands`] |
+//! | walking commands | 4.6.1 | | [`commands`], [`lease`] |
 //! | step sequence planning | 4.3, (4.1)-(4.4) | 2.1, 2.2 | [`steps`], `sequence` |
 //! | reactive step sequence planning, algorithm 3 | 4.3.3 | | `reactive`, [`obstacles`], [`vision`] |
 //! | higher level behaviour | 4.3.4 | | [`skills`] |
@@ -26,6 +26,7 @@ pub mod commands;
 pub mod daemon;
 pub mod feet;
 pub mod gait;
+pub mod lease;
 pub mod load;
 mod marks;
 pub mod obstacles;

@@ -215,7 +215,7 @@ impl Tasks {
 /// Steps with which the distance is walked.
 fn cruise(d: &DistanceCommand, gait: &Gait) -> Option<Parameters> {
     let forward = d.speed.copysign(d.distance);
-    commands::from_velocity(&VelocityCommand { forward, left: 0.0, turn: 0.0 }, gait).flatten()
+    commands::from_velocity(&VelocityCommand { forward, left: 0.0, turn: 0.0 }, gait).ok().flatten()
 }
 
 impl Way {

@@ -10,7 +10,7 @@ use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Writer};
 use messages::command::Domain;
 use messages::topics::{POWER, SIM_STATE};
-use messages::{Command, EventCode, Header, Power, Process, SimState};
+use messages::{Command, EventCode, Header, Live, Power, Process, Reason, SimState};
 use realtime::clock;
 use std::error::Error;
 use std::path::Path;
@@ -91,20 +91,24 @@ struct Ports {
 /// One bus cycle; returns its header.
 fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
     let tick = p.bus.held().map_or(0, |frames| frames.header.tick);
-    while let Some(command) = p.timeline.due(tick).or_else(&mut p.commands) {
-        match command {
+    while let Some(live) = p.timeline.due(tick).map(Live::of_scene).or_else(|| p.commands.next()) {
+        let mut verdict = Ok(());
+        match live.command {
             Command::Push(push) => sim.push(&push),
             Command::Lower(way) if !sim.lower(&way) => {
-                d.report(
-                    Header { tick, ..Header::default() },
-                    EventCode::CommandRefused,
-                    command.address().1.into(),
-                );
+                let (code, detail) = (EventCode::CommandRefused, live.command.address().1.into());
+                d.report(Header { tick, ..Header::default() }, code, detail);
+                verdict = Err(Reason::Event { code, detail });
             }
             _ => {}
         }
+        p.commands.answer(&live, verdict);
     }
-    let (frames, state) = sim.step(p.bus.held(), p.power.latest());
+    let frames = p.bus.held();
+    let (frames, state) = match p.bus.is_late() {
+        true => sim.step_late(frames),
+        false => sim.step(frames, p.power.latest()),
+    };
     let header = state.header;
     p.state.write(state);
     p.bus.answer(d, frames);

@@ -12,6 +12,10 @@ use messages::topics::{BUS_RX, BUS_TX, Process};
 use crate::can_end::CanEnd;
 use crate::sercos_end::SercosEnd;
 
+/// Cycles of the bus behind which the simulated robot was stopped, and makes good for what it missed: a robot would not
+/// have been.
+const STALL: u64 = 3;
+
 /// One end of a bus. But for the two that wait, nothing blocks or allocates.
 pub(crate) trait FarEnd {
     /// Looks for a whole cycle that was not taken yet.
@@ -19,6 +23,11 @@ pub(crate) trait FarEnd {
 
     /// The frames of the last one; their header says of which tick they are.
     fn held(&self) -> Option<&BusFrames>;
+
+    /// Whether these are of a cycle that was missed, and more of them wait.
+    fn is_late(&self) -> bool {
+        false
+    }
 
     /// Sends the sensors' frames.
     fn answer(&mut self, d: &Daemon, frames: &BusFrames);
@@ -63,11 +72,15 @@ impl SharedEnd {
 
 impl FarEnd for SharedEnd {
     fn refresh(&mut self) -> bool {
-        self.tx.refresh()
+        self.tx.refresh_in_order(STALL)
     }
 
     fn held(&self) -> Option<&BusFrames> {
         self.tx.held()
+    }
+
+    fn is_late(&self) -> bool {
+        self.tx.is_behind()
     }
 
     fn answer(&mut self, d: &Daemon, frames: &BusFrames) {

@@ -24,6 +24,9 @@ use crate::terrain;
 /// Tilt of the torso \[rad\] from which a robot counts as fallen; it is also fallen below half its initial height.
 const FALLEN_TILT: f64 = std::f64::consts::FRAC_PI_4;
 
+/// Cycles without their frames that are made good for at most: by then every drive has come to rest by itself.
+const MOST_OVERWRITTEN: u64 = 100;
+
 /// A robot in simulation.
 #[derive(Clone)]
 pub struct SimBackend {
@@ -175,10 +178,33 @@ impl SimBackend {
     ///
     /// A fallen robot stays as it fell: only soles meet the ground in this model.
     pub fn step(&mut self, frames: Option<&BusFrames>, power: Option<&Power>) -> (&BusFrames, &SimState) {
-        if self.injector.is_some() {
-            return self.step_with_faults(frames, power);
+        let powered = self.power.step(power);
+        // Off and without a reason: the watchdog has seen a reset edge.
+        let reset = matches!(power, Some(Power { on: 0, reason: 0, .. }));
+        self.step_powered(frames, powered, reset)
+    }
+
+    /// A bus cycle of the past, which was missed: the relay, a device of its own, is as it is. Where frames were overwritten
+    /// before they came here, time passes without them.
+    pub fn step_late(&mut self, frames: Option<&BusFrames>) -> (&BusFrames, &SimState) {
+        let before = self.sensors.header.tick;
+        let gap = frames.map_or(0, |f| f.header.tick.saturating_sub(before + 1));
+        for _ in 0..gap.min(MOST_OVERWRITTEN) {
+            self.step_powered(None, self.power.is_closed(), false);
         }
-        self.advance(frames, power);
+        self.step_powered(frames, self.power.is_closed(), false)
+    }
+
+    fn step_powered(
+        &mut self,
+        frames: Option<&BusFrames>,
+        powered: bool,
+        reset: bool,
+    ) -> (&BusFrames, &SimState) {
+        if self.injector.is_some() {
+            return self.step_with_faults(frames, powered, reset);
+        }
+        self.advance(frames, powered);
         (&self.frames, &self.sim_state)
     }
 
@@ -186,25 +212,22 @@ impl SimBackend {
     fn step_with_faults(
         &mut self,
         frames: Option<&BusFrames>,
-        power: Option<&Power>,
+        powered: bool,
+        reset: bool,
     ) -> (&BusFrames, &SimState) {
         let Some(mut injector) = self.injector.take() else { return (&self.frames, &self.sim_state) };
         let new = frames.filter(|f| f.header.tick > self.sensors.header.tick);
-        // Off and without a reason: the watchdog has seen a reset edge.
-        if let (Some(frames), Some(Power { on: 0, reason: 0, .. })) = (new, power) {
+        if let Some(frames) = new.filter(|_| reset) {
             injector.reset(frames.header.tick);
         }
-        match new {
-            Some(frames) => self.advance(Some(injector.pass(Way::ToDrives, frames)), power),
-            None => self.advance(None, power),
-        }
+        let passed = new.map(|frames| injector.pass(Way::ToDrives, frames));
+        self.advance(passed, powered);
         self.frames = *injector.pass(Way::FromDrives, &self.frames);
         self.injector = Some(injector);
         (&self.frames, &self.sim_state)
     }
 
-    fn advance(&mut self, frames: Option<&BusFrames>, power: Option<&Power>) {
-        let powered = self.power.step(power);
+    fn advance(&mut self, frames: Option<&BusFrames>, powered: bool) {
         let dt = self.scene.cycle;
         let mut outside = Outside { push: self.current_push(), ..Outside::default() };
         if let Some(crane) = &mut self.crane {

@@ -85,7 +85,10 @@ fn cycles_of_the_simulated_robot() {
                         &DriveCommand { targets, control: [if tick == 1 { 0x06 } else { 0x0F }; MAX_JOINTS] },
                         &mut frames,
                     );
-                    sim.step(Some(&frames), Some(&Power { toggle: tick, on: 1, ..Power::default() }));
+                    sim.step(
+                        Some(&frames),
+                        Some(&Power { toggle: tick, on: 1, arming: 1, ..Power::default() }),
+                    );
                     sim.take_event();
                 }
             });

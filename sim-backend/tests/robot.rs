@@ -25,7 +25,7 @@ fn hold(sim: &mut SimBackend, setup: &Setup, cycles: u64, until: u64) -> (SimSta
     for tick in 1..=cycles {
         targets.header.tick = tick;
         encode_targets(&setup.robot.layout, &DriveCommand { targets, control: enabling(tick) }, &mut frames);
-        let power = Power { toggle: tick.min(until), on: 1, ..Power::default() };
+        let power = Power { toggle: tick.min(until), on: 1, arming: 1, ..Power::default() };
         let (answer, _) = sim.step(Some(&frames), Some(&power));
         assert_eq!(decode_sensors(&setup.robot.layout, answer, &mut sensors).missed(), 0);
     }
@@ -47,8 +47,8 @@ fn a_still_robot_reads_its_weight_and_gravity() {
 fn power_falls_with_the_toggle_and_the_joints_stay_where_they_are() {
     let setup = setup();
     let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
-    let (truth, sensors) = hold(&mut sim, &setup, 103, 100);
-    assert_eq!((truth.power, sensors.power), (0, 0), "off in the third cycle without a toggle");
+    let (truth, sensors) = hold(&mut sim, &setup, 110, 100);
+    assert_eq!((truth.power, sensors.power), (0, 0), "off after cycles without a toggle");
     assert!((0..24).all(|j| sensors.joint_speed[j] == 0.0));
 }
 

@@ -38,8 +38,8 @@ fn cycles(
             &DriveCommand { targets, control: [if tick == from { 0x06 } else { 0x0F }; MAX_JOINTS] },
             &mut frames,
         );
-        let (answer, truth) =
-            sim.step(Some(&frames), Some(&Power { toggle: tick, on: on.into(), ..Power::default() }));
+        let (answer, truth) = sim
+            .step(Some(&frames), Some(&Power { toggle: tick, on: on.into(), arming: 1, ..Power::default() }));
         assert!(finite(truth), "cycle {tick}: {truth:?}");
         assert!(answer.count > 0);
         event = event.or(sim.take_event().map(|e| e.0));
@@ -97,7 +97,7 @@ fn what_diverges_is_reported_and_held() {
             let mut event = None;
             for tick in 4..8 {
                 frames.header.tick = tick;
-                sim.step(Some(&frames), Some(&Power { toggle: tick, on: 1, ..Power::default() }));
+                sim.step(Some(&frames), Some(&Power { toggle: tick, on: 1, arming: 1, ..Power::default() }));
                 event = event.or(sim.take_event().map(|e| e.0));
             }
             assert_eq!(event, Some(EventCode::Diverged), "type {depth}, {force} N");

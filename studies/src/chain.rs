@@ -3,6 +3,7 @@
 //! The order of a cycle is the order in which data flow, and the same as between processes in lockstep:
 //! sensors → planner → controller → joint loop → watchdog → simulated robot → sensors.
 
+use std::collections::VecDeque;
 use std::error::Error;
 
 use config::{Setup, Timeline};
@@ -11,11 +12,14 @@ use lowlevel::JointLoop;
 use messages::command::Domain;
 use messages::{
     BusFrames, Command, ControllerState, EventCode, JointTargets, Parameters, Plan, Power, Process, Sensors,
-    SimState,
+    SimState, WatchdogReset,
 };
 use planner::Planner;
 use sim_backend::SimBackend;
 use watchdog::{Inputs, Watchdog};
+
+/// Cycles that a simulated robot which was stopped makes good for: as many as the rings of the bus hold.
+const BUS_DEPTH: usize = messages::topics::BUS_TX.depth;
 
 /// Everything one cycle wrote, by topic.
 #[derive(Clone, Debug, Default)]
@@ -52,7 +56,16 @@ pub struct Chain {
     watchdog: Watchdog,
     sim: SimBackend,
     tick: u64,
+    /// Cycles so far, of those that the joint loop did not run too.
+    elapsed: u64,
+    /// Cycles that the watchdog missed since its last one.
+    skipped: u64,
+    reset: WatchdogReset,
+    /// What the simulated robot has not done yet: the frames of a cycle, if there were any.
+    bus: VecDeque<Option<BusFrames>>,
     answer: BusFrames,
+    /// Whether it is one that the joint loop has not seen.
+    answered: bool,
     cycle: Cycle,
     plan: Box<Plan>,
 }
@@ -82,7 +95,12 @@ impl Chain {
             watchdog: Watchdog::new(system.watchdog_missed),
             sim,
             tick: 0,
+            elapsed: 0,
+            skipped: 0,
+            reset: WatchdogReset::default(),
+            bus: VecDeque::with_capacity(BUS_DEPTH + 1),
             answer,
+            answered: true,
             cycle: Cycle::default(),
             plan: Box::default(),
         })
@@ -98,6 +116,16 @@ impl Chain {
     /// Begins a push of the simulated robot now.
     pub fn push(&mut self, push: &messages::command::PushCommand) {
         self.sim.push(push);
+    }
+
+    /// A live command: whoever hears its domain takes it in the next cycle that it runs.
+    pub fn command(&mut self, command: &Command) {
+        if let Command::Push(push) = command {
+            return self.push(push);
+        }
+        let hearers =
+            [&mut self.walk, &mut self.system, &mut self.head, &mut self.joint, &mut self.simulated];
+        hearers.into_iter().for_each(|timeline| timeline.insert(command));
     }
 
     /// What the drives were told in the last cycle.
@@ -132,40 +160,97 @@ impl Chain {
 
     /// One bus cycle.
     pub fn step(&mut self) -> &Cycle {
-        self.tick += 1;
-        let (tick, stamp) = (self.tick, (self.tick as f64 * self.dt * 1e9).round() as u64);
-        let c = &mut self.cycle;
-        c.events.clear();
+        self.step_without(&[])
+    }
 
-        c.sensors = *self.joint_loop.receive(tick, stamp, Some(&self.answer));
-        c.plan = None;
-        let seen = (tick > 1).then_some(&c.controller_state);
-        take_due(&mut self.walk, tick, &mut self.due);
-        let output = self.planner.step(tick, self.dt, seen, &self.due);
+    /// One bus cycle of real time in which these processes do not run, as after a SIGSTOP; the others go on with what is
+    /// there. Who runs again finds the newest records, as between processes; the simulated robot makes good for what it
+    /// missed. Ticks are counted by the joint loop and stand still without it.
+    pub fn step_without(&mut self, stopped: &[Process]) -> &Cycle {
+        let runs = |process: Process| !stopped.contains(&process);
+        self.elapsed += 1;
+        self.cycle.events.clear();
+        self.cycle.plan = None;
+        if runs(Process::Lowlevel) {
+            self.tick += 1;
+            self.measure();
+            // Both are woken by new sensor data.
+            if runs(Process::Planner) {
+                self.plan();
+            }
+            if runs(Process::Controller) {
+                self.stabilize();
+            }
+            self.drive_joints();
+        }
+        if runs(Process::Watchdog) {
+            self.guard();
+        } else {
+            self.skipped += 1;
+        }
+        let told = runs(Process::Lowlevel).then(|| *self.joint_loop.told());
+        self.bus.push_back(told);
+        if runs(Process::SimBackend) {
+            self.simulate();
+        } else if self.bus.len() > BUS_DEPTH {
+            self.bus.pop_front(); // overwritten before it came to it
+        }
+        self.tell();
+        &self.cycle
+    }
+
+    /// First half of the joint loop's cycle.
+    fn measure(&mut self) {
+        let stamp = (self.elapsed as f64 * self.dt * 1e9).round() as u64;
+        let answer = std::mem::take(&mut self.answered).then_some(&self.answer);
+        self.cycle.sensors = *self.joint_loop.receive(self.tick, stamp, answer);
+    }
+
+    fn plan(&mut self) {
+        let c = &mut self.cycle;
+        take_due(&mut self.walk, self.tick, &mut self.due);
+        let seen = (self.tick > 1).then_some(&c.controller_state);
+        let output = self.planner.step(self.tick, self.dt, seen, &self.due);
         if let Some(plan) = output.plan {
             *self.plan = *plan;
             self.plan.header = c.sensors.header;
             c.plan = Some(self.plan.clone());
         }
         c.events.extend(output.events.iter().map(|&(code, detail)| (Process::Planner, code, detail)));
+    }
 
-        take_due(&mut self.head, tick, &mut self.due);
+    fn stabilize(&mut self) {
+        let c = &mut self.cycle;
+        take_due(&mut self.head, self.tick, &mut self.due);
         let said = self.due.iter().filter_map(|command| self.controller.command(command));
         c.events.extend(said.map(|(code, detail)| (Process::Controller, code, detail)));
         let (targets, state) = self.controller.step(&c.sensors, (self.plan.id > 0).then_some(&*self.plan));
         (c.joint_targets, c.controller_state) = (*targets, *state);
         let told = std::iter::from_fn(|| self.controller.take_event());
         c.events.extend(told.map(|(code, detail)| (Process::Controller, code, detail)));
+    }
 
-        take_due(&mut self.joint, tick, &mut self.due);
+    /// Second half of the joint loop's cycle.
+    fn drive_joints(&mut self) {
+        take_due(&mut self.joint, self.tick, &mut self.due);
         self.due.iter().for_each(|command| self.joint_loop.command(command));
-        let (frames, reset) = self.joint_loop.send(Some(&c.joint_targets), None);
-        take_due(&mut self.system, tick, &mut self.due);
+        self.reset = *self.joint_loop.send(Some(&self.cycle.joint_targets), None).1;
+    }
+
+    fn guard(&mut self) {
+        take_due(&mut self.system, self.tick, &mut self.due);
         let before = self.watchdog.supply();
-        c.power = *self.watchdog.step(&Inputs { reset: Some(reset), commands: &self.due });
+        let inputs = Inputs { reset: Some(&self.reset), commands: &self.due, skipped: self.skipped };
+        self.cycle.power = *self.watchdog.step(&inputs);
+        self.skipped = 0;
         let event = watchdog::supply_event(before, self.watchdog.supply());
-        c.events.extend(event.map(|(code, detail)| (Process::Watchdog, code, detail)));
-        take_due(&mut self.simulated, tick, &mut self.due);
+        self.cycle.events.extend(event.map(|(code, detail)| (Process::Watchdog, code, detail)));
+    }
+
+    /// The simulated robot, by one cycle; after a stall by all those that it missed.
+    fn simulate(&mut self) {
+        let c = &mut self.cycle;
+        take_due(&mut self.simulated, self.tick, &mut self.due);
         for command in &self.due {
             if let Command::Lower(way) = command
                 && !self.sim.lower(way)
@@ -174,12 +259,21 @@ impl Chain {
                 c.events.push((Process::SimBackend, refused.0, refused.1));
             }
         }
-        let (answer, sim_state) = self.sim.step(Some(frames), Some(&c.power));
+        self.answered = true;
+        while self.bus.len() > 1 {
+            self.sim.step_late(self.bus.pop_front().flatten().as_ref());
+        }
+        let frames = self.bus.pop_front().flatten();
+        let (answer, sim_state) = self.sim.step(frames.as_ref(), Some(&c.power));
         (self.answer, c.sim_state) = (*answer, *sim_state);
+    }
+
+    /// What joint loop and simulated robot have to report.
+    fn tell(&mut self) {
+        let c = &mut self.cycle;
         let told = std::iter::from_fn(|| self.joint_loop.take_event());
         c.events.extend(told.map(|(code, detail)| (Process::Lowlevel, code, detail)));
         c.events.extend(self.sim.take_event().map(|(code, detail)| (Process::SimBackend, code, detail)));
-        c
     }
 }
 

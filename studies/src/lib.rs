@@ -14,6 +14,7 @@
 //! | [`arm_swing`] | what do swinging arms take from the soles? |
 //! | [`figures_of_thesis`] | are the figures of the thesis found again? |
 //! | [`scorecard`] | does everything walk that is to walk, and how well beside what others reached? |
+//! | [`stalls`] | what does a walking robot do when a process is stopped and goes on? |
 //! | [`bus_faults`] | what does a walking robot do when the bus fails? |
 //! | [`cycles`] | how well did the processes of a run keep real time? |
 //!
@@ -37,4 +38,5 @@ pub mod second;
 pub mod simulation_speed;
 pub mod speed;
 pub mod stability;
+pub mod stalls;
 pub mod tables;

@@ -4,7 +4,7 @@
 # The shipped configuration, but patient, emulation is slow, and without TCP, which nobody uses here.
 if [ ! -d "$work/config" ]; then
     cp -r "$here/../../config" "$work/config"
-    sed -i -e 's/^peer_timeout = .*/peer_timeout = 60.0/' -e 's/^tcp_port = .*/tcp_port = 0/' "$work/config/system.toml"
+    sed -i -e 's/^peer_timeout = .*/peer_timeout = 60.0/' "$work/config/system.toml"
 fi
 
 # brief SCENE SECONDS: from now on it walks at once, and only so long.

@@ -1,24 +1,25 @@
 //! The process around the watchdog: `gangwerk watchdog --run DIR`.
 //!
 //! Real time: a grid of its own, one cycle per bus cycle, so that it notices what no longer happens. The grid lies
-//! shortly before the joint loop's cycles: that is where a late reset is told from a missing one soonest. Lockstep:
+//! between the sign of life of one cycle and the latest of the next: a late one is not taken for a missing one. Lockstep:
 //! woken by the joint loop's sign of life, it answers each tick.
 
-use crate::{Inputs, Watchdog, supply_event};
+use crate::estop::EmergencyStop;
+use crate::{Inputs, Supply, Watchdog, supply_event};
 use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
-use ipc::{Mode, Reader, Writer};
+use ipc::{Mode, Reader, StopLine, Writer};
 use messages::command::Domain;
 use messages::topics::{POWER, WATCHDOG_RESET};
 use messages::{Command, EventCode, Header, Power, Process, WatchdogReset};
-use realtime::{Period, clock};
+use realtime::{Period, Schedule, clock};
 use std::error::Error;
 use std::path::Path;
 
 /// Commands looked at per cycle; the rest waits for the next.
 const MAX_COMMANDS: usize = 16;
 /// Share of a period after the joint loop's wake-up at which the watchdog looks.
-const PHASE: (u64, u64) = (9, 10);
+const PHASE: (u64, u64) = (4, 10);
 
 /// Guards until asked to end.
 ///
@@ -27,6 +28,7 @@ const PHASE: (u64, u64) = (9, 10);
 pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut d = Daemon::new(Process::Watchdog, dir)?;
     let mut guard = Guard {
+        stop: listen(&d)?,
         reset: d.space.reader(&WATCHDOG_RESET)?,
         power: d.space.writer(&POWER)?,
         bell: d.bell(&POWER)?,
@@ -37,6 +39,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     if guard.power.epoch() > 1 {
         // Started again: power stays off until somebody asks for it now.
         guard.timeline.skip_before(u64::MAX);
+        guard.watchdog = guard.watchdog.restarted();
     }
     d.report(Header::default(), EventCode::Started, 0);
     match d.mode {
@@ -47,11 +50,25 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// The emergency stop's own line and thread.
+fn listen(d: &Daemon) -> Result<EmergencyStop, Box<dyn Error>> {
+    let row = d.setup.system.emergency_stop;
+    let schedule = match d.mode {
+        Mode::RealTime => Schedule { priority: row.priority, core: row.core },
+        Mode::Lockstep => Schedule::ORDINARY,
+    };
+    let (stop, granted) = EmergencyStop::listen(StopLine::bind(d.space.dir())?, schedule)?;
+    for missing in &granted.missing {
+        tracing::warn!("watchdog degraded: thread of the emergency stop: {missing}");
+    }
+    Ok(stop)
+}
+
 fn lockstep(d: &mut Daemon, guard: &mut Guard) -> Result<(), Box<dyn Error>> {
     let waiter = d.space.waiter(Process::Watchdog)?;
     while d.wait(&waiter, "lowlevel", || guard.reset.refresh())? {
         d.begin(clock::now());
-        guard.cycle(d);
+        guard.cycle(d, 0);
         d.end(guard.now(), 0);
     }
     Ok(())
@@ -60,24 +77,28 @@ fn lockstep(d: &mut Daemon, guard: &mut Guard) -> Result<(), Box<dyn Error>> {
 fn real_time(d: &mut Daemon, guard: &mut Guard) {
     let period_ns = d.period_ns();
     let mut period = Period::new(clock::now() + period_ns, period_ns, u32::MAX);
-    let mut aligned = false;
+    let (mut aligned, mut overrun) = (false, 0);
     while !d.stop.asked() {
         clock::sleep_until(period.planned());
         d.begin(period.planned());
+        // Whole periods slept through, and those that the cycle before took too long.
+        let late = clock::now().saturating_sub(period.planned()) / period_ns;
         guard.reset.refresh();
-        guard.cycle(d);
+        guard.cycle(d, late + overrun);
         let mut verdict = period.finish(clock::now());
+        overrun = verdict.skipped().saturating_sub(late);
         if let Some(reset) = guard.reset.held().filter(|_| !aligned) {
             let begun = reset.header.stamp_ns + period_ns * PHASE.0 / PHASE.1;
             period = Period::new(begun, period_ns, u32::MAX);
             verdict = period.finish(clock::now());
-            aligned = true;
+            (aligned, overrun) = (true, 0);
         }
         d.end(guard.now(), verdict.skipped());
     }
 }
 
 struct Guard {
+    stop: EmergencyStop,
     reset: Reader<WatchdogReset>,
     power: Writer<Power>,
     bell: usize,
@@ -87,21 +108,32 @@ struct Guard {
 }
 
 impl Guard {
-    /// One step with the newest sign of life and the commands of this cycle: the scene's that are due, then live ones.
-    fn cycle(&mut self, d: &mut Daemon) {
-        let mut waiting = [Command::End; MAX_COMMANDS];
+    /// One step, `skipped` cycles after the last one, with the newest sign of life and the commands of this cycle: the
+    /// scene's that are due, then live ones.
+    fn cycle(&mut self, d: &mut Daemon, skipped: u64) {
+        let mut waiting = [Command::End; MAX_COMMANDS + 1];
         let mut count = 0;
         let tick = self.now().tick;
         while count < MAX_COMMANDS
-            && let Some(command) = self.timeline.due(tick).or_else(&mut self.commands)
+            && let Some(command) = self.timeline.due(tick).or_else(|| self.commands.accept())
         {
             waiting[count] = command;
             count += 1;
         }
         let before = self.watchdog.supply();
-        let inputs = Inputs { reset: self.reset.held(), commands: &waiting[..count] };
+        if let Some(asker) = self.stop.asked() {
+            // Last, so that no reset and enable of the same cycle undo it; in front there may be no room.
+            waiting[count] = Command::EmergencyStop;
+            count += 1;
+            if before != Supply::Off(EventCode::EmergencyStop) {
+                let detail = u64::from(asker.uid) << 32 | u64::from(asker.pid);
+                d.report(self.now(), EventCode::EmergencyStop, detail);
+            }
+        }
+        let inputs = Inputs { reset: self.reset.held(), commands: &waiting[..count], skipped };
         let power = self.watchdog.step(&inputs);
         self.power.write(power);
+        self.stop.written(power);
         d.ring(self.bell);
         if let Some((code, detail)) = supply_event(before, self.watchdog.supply()) {
             d.report(self.now(), code, detail);

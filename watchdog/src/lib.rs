@@ -4,6 +4,7 @@
 //! process around it.
 
 pub mod daemon;
+pub mod estop;
 mod supply;
 
-pub use supply::{Inputs, PAUSE, Supply, Watchdog, supply_event};
+pub use supply::{Inputs, PAUSE, State, Supply, Watchdog, supply_event};

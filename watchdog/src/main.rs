@@ -12,7 +12,9 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     };
     let result = match flag.to_str() {
-        Some("--run") => watchdog::daemon::main(dir.as_ref(), Box::new(|_| Ok(Box::new(|| None)))),
+        Some("--run") => {
+            watchdog::daemon::main(dir.as_ref(), Box::new(|_| Ok(Box::new(messages::NoCommands))))
+        }
         _ => Err("usage: watchdog --run DIR".into()),
     };
     match result {

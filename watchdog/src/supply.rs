@@ -3,21 +3,28 @@
 //! ```text
 //!            Reset edge                Enable edge
 //!   Off ───────────────────► Ready ───────────────────► On
-//!    ▲    (joint loop alive)   │    (joint loop alive)   │
+//!    ▲    (joint loop alive)   │    (joint loop alive,   │
+//!    │                         │     supply measured off)│
 //!    └─────────────────────────┴─────────────────────────┘
-//!        joint loop silent, its trip request, emergency stop
+//!        joint loop silent, its trip request, emergency stop,
+//!        own cycles missed, supply measured off while it is to be on
 //! ```
 //!
 //! It starts off, and off is latched. An edge is a command after a pause without that command: who holds a button, or
-//! floods the line, gives no edge. The supply's hardware is on only while `toggle` moves, so a dead watchdog is off too.
+//! floods the line, gives no edge. The supply's relay is closed only while `toggle` moves, so a dead watchdog is off too;
+//! and it closes only once for each value of `arming`, so a stopped one that goes on leaves it open.
 
+use messages::power::QUIET_CYCLES;
 use messages::{Command, EventCode, Power, WatchdogReset};
 
 /// Watchdog cycles without a command after which the next one counts as an edge.
 pub const PAUSE: u32 = 250;
 
+/// Watchdog cycles that the relay may take to close, and the joint loop to measure it.
+const CLOSING: u32 = 500;
+
 /// The motor supply as the watchdog sees it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Supply {
     /// Off, with the first reason since the last reset edge.
     Off(EventCode),
@@ -43,6 +50,8 @@ pub struct Inputs<'a> {
     pub reset: Option<&'a WatchdogReset>,
     /// Commands that came since the last cycle, in order.
     pub commands: &'a [Command],
+    /// \[1\] Own cycles missed since the last one.
+    pub skipped: u64,
 }
 
 /// What can happen to the supply in one cycle.
@@ -53,15 +62,38 @@ enum Happening {
     Enable,
 }
 
+/// Everything that decides what a watchdog does next, numbers as far as they matter: equal states act alike. What it has
+/// published is not among it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct State {
+    /// The motor supply.
+    pub supply: Supply,
+    /// Epoch and tick of the newest sign of life.
+    pub seen: Option<(u64, u64)>,
+    /// Cycles since the last reset command, up to a pause.
+    pub reset_pause: u32,
+    /// Cycles since the last enable command, up to a pause.
+    pub enable_pause: u32,
+    /// Cycles since the supply was switched on in which it was not measured on.
+    pub closing: Option<u32>,
+    /// Cycles without a sign of life, up to the limit.
+    pub missed: u64,
+}
+
 /// The watchdog: pure, no clock; time is its own cycles.
 #[derive(Clone, Debug)]
 pub struct Watchdog {
     limit: u64,
+    pause: u32,
+    most_closing: u32,
+    most_skipped: u64,
     supply: Supply,
     /// (epoch, tick) of the newest sign of life.
     seen: Option<(u64, u64)>,
     reset_pause: u32,
     enable_pause: u32,
+    /// Cycles since the supply was switched on in which it was not measured on; none once it was.
+    closing: Option<u32>,
     power: Power,
 }
 
@@ -70,11 +102,27 @@ impl Watchdog {
     pub fn new(missed: u32) -> Self {
         Self {
             limit: u64::from(missed.max(1)),
+            pause: PAUSE,
+            most_closing: CLOSING,
+            most_skipped: QUIET_CYCLES,
             supply: Supply::Off(EventCode::None),
             seen: None,
             reset_pause: PAUSE,
             enable_pause: PAUSE,
+            closing: None,
             power: Power::default(),
+        }
+    }
+
+    /// The same with other lengths of a pause, of the closing of the relay, and of the silence after which it falls \[cycles\].
+    pub fn with_timing(self, pause: u32, closing: u32, quiet: u64) -> Self {
+        Self {
+            pause,
+            most_closing: closing,
+            most_skipped: quiet,
+            reset_pause: pause,
+            enable_pause: pause,
+            ..self
         }
     }
 
@@ -83,49 +131,78 @@ impl Watchdog {
         self.supply
     }
 
+    /// The same, started again in place of one that died: a command counts as an edge after a whole pause only, because
+    /// nobody knows what was held before.
+    pub fn restarted(self) -> Self {
+        Self { reset_pause: 0, enable_pause: 0, ..self }
+    }
+
+    /// The state that decides what it does next.
+    pub fn state(&self) -> State {
+        State {
+            supply: self.supply,
+            seen: self.seen,
+            reset_pause: self.reset_pause.min(self.pause),
+            enable_pause: self.enable_pause.min(self.pause),
+            closing: self.closing,
+            missed: self.power.missed.min(self.limit),
+        }
+    }
+
     /// One cycle: looks for a sign of life, then at the commands in their order.
     pub fn step(&mut self, inputs: &Inputs) -> &Power {
         self.reset_pause = self.reset_pause.saturating_add(1);
         self.enable_pause = self.enable_pause.saturating_add(1);
-        self.look_at(inputs.reset);
-        let fault = self.fault(inputs.reset);
+        self.look_at(inputs);
+        let fault = self.fault(inputs);
         if let Some(reason) = fault {
-            self.switch(Happening::Trip(reason));
+            self.switch(Happening::Trip(reason), inputs.reset);
         }
         for command in inputs.commands {
             if let Some(happening) = self.happening(command)
                 && (fault.is_none() || matches!(happening, Happening::Trip(_)))
             {
-                self.switch(happening);
+                self.switch(happening, inputs.reset);
             }
         }
         self.publish()
     }
 
     /// Counts own cycles since the last new tick; a joint loop that was started again counts ticks anew.
-    fn look_at(&mut self, reset: Option<&WatchdogReset>) {
-        match reset.map(|r| r.header) {
+    fn look_at(&mut self, inputs: &Inputs) {
+        match inputs.reset.map(|r| r.header) {
             Some(now) if self.seen != Some((now.epoch, now.tick)) => {
                 self.seen = Some((now.epoch, now.tick));
                 (self.power.header.tick, self.power.header.stamp_ns) = (now.tick, now.stamp_ns);
                 self.power.missed = 0;
             }
+            // What a stall of the whole machine took from both is not held against the joint loop, which wakes after this.
             _ => self.power.missed = self.power.missed.saturating_add(1),
         }
+        let measured = inputs.reset.is_some_and(|r| r.supply == 1);
+        self.closing = self.closing.filter(|_| !measured).map(|cycles| cycles.saturating_add(1));
     }
 
     /// Why the supply must be off in this cycle, whatever anybody commands.
-    fn fault(&self, reset: Option<&WatchdogReset>) -> Option<EventCode> {
-        match reset {
+    fn fault(&self, inputs: &Inputs) -> Option<EventCode> {
+        match inputs.reset {
+            _ if inputs.skipped >= self.most_skipped => Some(EventCode::WatchdogSilent),
             _ if self.seen.is_none() || self.power.missed >= self.limit => Some(EventCode::ResetMissed),
             // A number that is no code is a fault too.
             Some(r) if r.trip != 0 => Some(EventCode::from_number(r.trip).unwrap_or(EventCode::SafeStop)),
+            Some(r)
+                if r.supply != 1
+                    && self.supply == Supply::On
+                    && self.closing.is_none_or(|n| n > self.most_closing) =>
+            {
+                Some(EventCode::SupplyLost)
+            }
             _ => None,
         }
     }
 
     fn happening(&mut self, command: &Command) -> Option<Happening> {
-        let edge = |pause: &mut u32| std::mem::replace(pause, 0) >= PAUSE;
+        let edge = |pause: &mut u32| std::mem::replace(pause, 0) >= self.pause;
         match command {
             Command::EmergencyStop => Some(Happening::Trip(EventCode::EmergencyStop)),
             Command::Reset => edge(&mut self.reset_pause).then_some(Happening::Reset),
@@ -135,7 +212,8 @@ impl Watchdog {
     }
 
     /// The transition table.
-    fn switch(&mut self, happening: Happening) {
+    fn switch(&mut self, happening: Happening, reset: Option<&WatchdogReset>) {
+        let open = reset.is_some_and(|r| r.supply == 0);
         self.supply = match (self.supply, happening) {
             // Never on: nothing to report until something worse than silence before the first sign of life happens.
             (Supply::Off(EventCode::None), Happening::Trip(EventCode::ResetMissed)) => {
@@ -145,7 +223,12 @@ impl Watchdog {
             (Supply::Off(first), Happening::Trip(_)) => Supply::Off(first),
             (Supply::Ready | Supply::On, Happening::Trip(reason)) => Supply::Off(reason),
             (Supply::Off(_), Happening::Reset) => Supply::Ready,
-            (Supply::Ready, Happening::Enable) => Supply::On,
+            // Only an open relay can be closed: one that is still closed was armed by somebody else's edges.
+            (Supply::Ready, Happening::Enable) if open => {
+                self.power.arming += 1;
+                self.closing = Some(0);
+                Supply::On
+            }
             (same, Happening::Reset | Happening::Enable) => same,
         };
     }

@@ -139,6 +139,7 @@ fn lockstep_answers_every_tick() {
         lowlevel.live(tick);
         assert_eq!(waiter.wait_until(PATIENCE, || false, || power.refresh()), Woken::Ready, "tick {tick}");
         let answer = power.held().unwrap();
+        lowlevel.record.supply = answer.on;
         assert_eq!((answer.header.tick, answer.header.stamp_ns), (tick, tick * 1_000_000));
         // Switched on by the scene, at the very tick of its command.
         assert_eq!(answer.on == 1, tick >= 20, "tick {tick}");
@@ -183,6 +184,7 @@ fn live_until(
         *tick += 1;
         rig.lowlevel.as_mut().unwrap().live(*tick);
         clock::sleep_until(clock::now() + 1_000_000);
+        rig.lowlevel.as_mut().unwrap().record.supply = power.latest().map_or(0, |p| p.on);
         if let Some(newest) = power.latest().copied().filter(&done) {
             return newest;
         }

@@ -1,26 +1,38 @@
 //! Whatever comes in: off is safe, and on needs both edges.
 
+use messages::power::QUIET_CYCLES;
 use messages::{Command, EventCode, WatchdogReset};
 use proptest::prelude::*;
 use watchdog::{Inputs, Supply, Watchdog};
 
 const LIMIT: u32 = 3;
 
-/// Steps a watchdog as if the joint loop wrote one record per cycle.
+/// Steps a watchdog as if the joint loop wrote one record per cycle; the relay follows a cycle later.
 struct Rig {
     dog: Watchdog,
     reset: WatchdogReset,
     alive: bool,
+    /// Own cycles missed before the next one.
+    skipped: u64,
+    relay_works: bool,
 }
 
 impl Rig {
     fn new() -> Self {
-        Self { dog: Watchdog::new(LIMIT), reset: WatchdogReset::default(), alive: true }
+        Self {
+            dog: Watchdog::new(LIMIT),
+            reset: WatchdogReset::default(),
+            alive: true,
+            skipped: 0,
+            relay_works: true,
+        }
     }
 
     fn step(&mut self, commands: &[Command]) -> bool {
         self.reset.header.tick += u64::from(self.alive);
-        let power = *self.dog.step(&Inputs { reset: Some(&self.reset), commands });
+        let skipped = std::mem::take(&mut self.skipped);
+        let power = *self.dog.step(&Inputs { reset: Some(&self.reset), commands, skipped });
+        self.reset.supply = u64::from(power.on == 1 && self.relay_works);
         assert_eq!(power.on == 1, self.dog.supply() == Supply::On);
         assert!(power.on == 0 || power.reason == 0);
         power.on == 1
@@ -91,7 +103,8 @@ fn silence_cuts_after_the_limit_and_stays_cut() {
 fn no_power_while_the_joint_loop_is_silent() {
     let mut dog = Watchdog::new(LIMIT);
     for _ in 0..1000 {
-        let power = dog.step(&Inputs { reset: None, commands: &[Command::Reset, Command::Enable] });
+        let commands = &[Command::Reset, Command::Enable];
+        let power = dog.step(&Inputs { reset: None, commands, ..Inputs::default() });
         assert_eq!((power.on, power.toggle), (0, 0));
     }
 }
@@ -110,6 +123,11 @@ fn trip_request_and_emergency_stop_cut_at_once() {
     let mut rig = Rig::on();
     assert!(!rig.step(&[Command::EmergencyStop]));
     assert_eq!(rig.reason(), EventCode::EmergencyStop);
+
+    let mut rig = Rig::on();
+    rig.reset.trip = EventCode::Ended as u64;
+    assert!(!rig.step(&[]));
+    assert_eq!(rig.reason(), EventCode::Ended, "an orderly end is none that was missed");
 
     let mut rig = Rig::on();
     rig.reset.trip = 123_456;
@@ -140,6 +158,76 @@ fn a_held_button_does_not_re_arm() {
     assert!(rig.step(&held));
 }
 
+/// Regression: a watchdog that was stopped for 100 ms went on as if nothing had been, and so did the supply, which had
+/// fallen meanwhile.
+#[test]
+fn a_watchdog_that_missed_its_own_cycles_trips_itself() {
+    for skipped in 0..200 {
+        let mut rig = Rig::on();
+        rig.skipped = skipped;
+        let on = rig.step(&[]);
+        assert_eq!(on, skipped < QUIET_CYCLES, "{skipped} cycles missed");
+        if !on {
+            assert_eq!(rig.reason(), EventCode::WatchdogSilent);
+            assert!((0..1000).all(|_| !rig.step(&[])), "it comes back by edges only");
+            assert!(!rig.step(&[Command::Reset]) && rig.step(&[Command::Enable]));
+        }
+    }
+}
+
+/// A machine that stands still for two cycles stops watchdog and joint loop alike, and the watchdog wakes first.
+#[test]
+fn a_joint_loop_is_not_blamed_for_what_both_missed() {
+    let mut rig = Rig::on();
+    (rig.alive, rig.skipped) = (false, 2);
+    assert!(rig.step(&[]));
+    rig.alive = true;
+    assert!((0..100).all(|_| rig.step(&[])));
+}
+
+/// A relay that fell by itself, a fuse, a switch in the line: nothing comes back when it is closed again.
+#[test]
+fn a_supply_that_is_measured_off_is_off() {
+    let mut rig = Rig::on();
+    rig.step(&[]);
+    rig.reset.supply = 0;
+    assert!(!rig.step(&[]));
+    assert_eq!(rig.reason(), EventCode::SupplyLost);
+    assert!((0..1000).all(|_| !rig.step(&[])));
+
+    let mut rig = Rig::new();
+    rig.relay_works = false;
+    rig.step(&[Command::Reset, Command::Enable]);
+    let cycles = (0..10_000).take_while(|_| rig.step(&[])).count();
+    assert_eq!(cycles, 500, "a relay that does not close is given half a second");
+    assert_eq!(rig.reason(), EventCode::SupplyLost);
+}
+
+/// A supply that is on although it is off here was armed by somebody else: it is not taken over.
+#[test]
+fn a_closed_relay_is_not_armed() {
+    let mut rig = Rig::new();
+    rig.step(&[]);
+    rig.reset.supply = 1;
+    assert!(!rig.step(&[Command::Reset, Command::Enable]));
+    rig.pause();
+    assert!(!rig.step(&[]));
+    assert!(rig.step(&[Command::Enable]));
+}
+
+#[test]
+fn every_pair_of_edges_has_its_own_number() {
+    let mut rig = Rig::new();
+    let mut numbers = Vec::new();
+    for _ in 0..5 {
+        rig.pause();
+        rig.step(&[Command::EmergencyStop]);
+        rig.step(&[Command::Reset, Command::Enable]);
+        numbers.push(rig.dog.step(&Inputs { reset: Some(&rig.reset), ..Inputs::default() }).arming);
+    }
+    assert_eq!(numbers, [1, 2, 3, 4, 5]);
+}
+
 #[test]
 fn a_restarted_joint_loop_is_alive() {
     let mut rig = Rig::on();
@@ -152,15 +240,16 @@ fn a_restarted_joint_loop_is_alive() {
 #[test]
 fn toggle_moves_only_while_on() {
     let mut rig = Rig::on();
-    let mut last = rig.dog.step(&Inputs { reset: Some(&rig.reset), commands: &[] }).toggle;
+    let mut last = rig.dog.step(&Inputs { reset: Some(&rig.reset), ..Inputs::default() }).toggle;
     for _ in 0..100 {
         rig.reset.header.tick += 1;
-        let toggle = rig.dog.step(&Inputs { reset: Some(&rig.reset), commands: &[] }).toggle;
+        let toggle = rig.dog.step(&Inputs { reset: Some(&rig.reset), ..Inputs::default() }).toggle;
         assert_eq!(toggle, last + 1);
         last = toggle;
     }
     for _ in 0..100 {
-        let input = Inputs { reset: Some(&rig.reset), commands: &[Command::EmergencyStop] };
+        let commands = &[Command::EmergencyStop];
+        let input = Inputs { reset: Some(&rig.reset), commands, ..Inputs::default() };
         assert_eq!(rig.dog.step(&input).toggle, last);
     }
 }

@@ -2,23 +2,24 @@
 
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use std::path::PathBuf;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::time::Duration;
 
-use broker::{Client, TcpClient};
+use broker::daemon::Tcp;
+use broker::{Client, StreamClient};
 use ipc::{Mode, Run, Space};
 use messages::Process;
 use messages::command::Domain;
+use rustix::process::{Pid, Signal, kill_process};
 
 const ROLE: &str = "GANGWERK_TEST_ROLE";
-const PORT: &str = "GANGWERK_TEST_PORT";
 const DIR: &str = "GANGWERK_TEST_DIR";
 
 /// Ended and removed at the end of the test.
 pub(crate) struct System {
     run: Run,
-    pub(crate) port: u16,
     broker: Option<Killed>,
     pub(crate) space: Space,
     _dir: RemoveDir,
@@ -64,17 +65,20 @@ impl System {
             log: None,
         };
         run.save().expect("run");
-        let port = broker::tcp::bind(0)
-            .and_then(|l| l.local_addr().map_err(|e| e.to_string()))
-            .expect("port")
-            .port();
-        Self { run, port, broker: None, space, _dir: RemoveDir(dir) }
+        Self { run, broker: None, space, _dir: RemoveDir(dir) }
     }
 
     /// Starts the broker and waits until it answers.
     pub(crate) fn start_broker(&mut self) {
         self.broker = Some(self.spawn("broker"));
-        wait_for("the broker", || TcpClient::connect(self.port).is_ok_and(|mut c| c.statistics().is_ok()));
+        wait_for("the broker", || {
+            StreamClient::connect(self.dir(), "start").is_ok_and(|mut c| c.statistics().is_ok())
+        });
+    }
+
+    pub(crate) fn signal_broker(&mut self, signal: Signal) {
+        let Killed(broker) = self.broker.as_mut().expect("it was started");
+        kill_process(Pid::from_child(broker), signal).expect("signal");
     }
 
     /// SIGKILL. The supervisor's `clear_dead` belongs before the next start.
@@ -87,7 +91,6 @@ impl System {
         let child = std::process::Command::new(std::env::current_exe().expect("own path"))
             .args(["--exact", "process", "--nocapture"])
             .env(ROLE, role)
-            .env(PORT, self.port.to_string())
             .env(DIR, &self.run.dir)
             .stdout(Stdio::null())
             .spawn()
@@ -102,13 +105,24 @@ impl System {
         client
     }
 
-    pub(crate) fn tcp(&self) -> TcpClient {
-        TcpClient::connect(self.port).expect("connection")
+    pub(crate) fn dir(&self) -> &Path {
+        &self.run.dir
+    }
+
+    /// A client on the socket.
+    pub(crate) fn stream(&self) -> StreamClient {
+        StreamClient::connect(self.dir(), "test").expect("connection")
+    }
+
+    /// Where TCP is served.
+    pub(crate) fn tcp(&self) -> SocketAddr {
+        let text = std::fs::read_to_string(self.dir().join(broker::doors::TCP_FILE)).expect("address");
+        text.trim().parse().expect("address")
     }
 
     /// The broker's line about a client, if it knows it.
     pub(crate) fn line_about(&self, name: &str) -> Option<String> {
-        self.tcp().statistics().expect("statistics").into_iter().find(|line| line.starts_with(name))
+        self.stream().statistics().expect("statistics").into_iter().find(|line| line.starts_with(name))
     }
 }
 
@@ -133,7 +147,8 @@ pub(crate) fn play_role(other: impl Fn(&str, &Space)) {
     let var = |name| std::env::var(name).expect("set by the test");
     let run = Run::load(var(DIR).as_ref()).expect("run");
     if role.starts_with("broker") {
-        let port = var(PORT).parse().expect("port");
+        let keys = run.dir.join("keys");
+        let tcp = Tcp { address: Some((Ipv4Addr::LOCALHOST, 0).into()), keys: keys.exists().then_some(keys) };
         let stop = realtime::Stop::default();
         if role == "broker that ends" {
             let stop = stop.clone();
@@ -142,7 +157,7 @@ pub(crate) fn play_role(other: impl Fn(&str, &Space)) {
                 stop.ask();
             });
         }
-        if let Err(reason) = broker::daemon::serve(&run, port, &stop) {
+        if let Err(reason) = broker::daemon::serve(&run, &tcp, &stop) {
             eprintln!("{reason}");
             std::process::exit(2);
         }

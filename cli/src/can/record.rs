@@ -39,7 +39,7 @@ pub struct Order {
     #[arg(long, value_name = "NAME")]
     pub robot: Option<String>,
     /// Where the processes of the robot meet, for shm.
-    #[arg(long, value_name = "DIR", default_value = crate::RUN_DIR)]
+    #[arg(long, value_name = "DIR", default_value_os_t = ipc::default_dir())]
     pub dir: PathBuf,
 }
 

@@ -92,7 +92,7 @@ impl Controller {
 
     /// Which feet are felt, what resists them, and how they are to move apart from forces.
     pub(super) fn feel(&mut self, sensors: &Sensors, now: &Desired, end: &Desired, estimate: &Estimate) {
-        let a = (self.elapsed / self.control.force_filter).min(1.0);
+        let a = (self.dt / self.control.force_filter).min(1.0);
         self.filtered += (self.force_coordinates(sensors) - self.filtered) * a;
         for foot in 0..2 {
             let rise = now.feet[foot].velocity[2];

@@ -8,14 +8,14 @@ use config::Setup;
 use fieldbus::Address;
 use ipc::{Bell, IpcError, Mode, Run, Space, Waiter, Woken, Writer};
 use messages::topics::{Process, Topic};
-use messages::{BusCounters, Command, CycleStats, Event, EventCode, Header};
+use messages::{BusCounters, CommandSource, CycleStats, Event, EventCode, Header};
 use realtime::{CycleMeter, Granted, Schedule, Stop, clock, prepare_thread};
 use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
-/// Where live commands come from: each call gives the next one that waits. Those of the scene come by tick.
-pub type Commands = Box<dyn FnMut() -> Option<Command>>;
+/// Where live commands come from, and where their answers go. Those of the scene come by tick.
+pub type Commands = Box<dyn CommandSource>;
 
 /// Opens the source of live commands in a space.
 pub type Connect<'a> = Box<dyn FnOnce(&Space) -> Result<Commands, String> + 'a>;
@@ -176,6 +176,10 @@ impl Daemon {
     /// Writes an event. With `Started` everything is built: from here on the process has its real-time priority.
     pub fn report(&mut self, header: Header, code: EventCode, detail: u64) {
         if code == EventCode::Started {
+            // Which configuration it has, before anything moves: the supervisor compares.
+            let stats = self.meter.stats();
+            stats.header = header;
+            self.stats.write(stats);
             self.granted.engage();
         }
         self.events.write(&Event { header, code: code as u64, detail });

@@ -94,6 +94,11 @@ where
     }
 
     pub(crate) fn wait(&self, timeout: Duration, spins: u32) -> bool {
+        self.wait_also(timeout, spins, None)
+    }
+
+    /// The same; wakes as well when `other` can be read.
+    pub(crate) fn wait_also(&self, timeout: Duration, spins: u32, other: Option<BorrowedFd<'_>>) -> bool {
         for _ in 0..spins {
             if self.heard() {
                 return true;
@@ -104,7 +109,8 @@ where
         // SAFETY: the descriptor belongs to the listener, which outlives this borrow; nobody closes it meanwhile.
         let fd = unsafe { BorrowedFd::borrow_raw(self.0.file_descriptor().native_handle()) };
         let limit = Timespec { tv_sec: timeout.as_secs() as i64, tv_nsec: i64::from(timeout.subsec_nanos()) };
-        let _ = poll(&mut [PollFd::from_borrowed_fd(fd, PollFlags::IN)], Some(&limit));
+        let mut watched = [fd, other.unwrap_or(fd)].map(|fd| PollFd::from_borrowed_fd(fd, PollFlags::IN));
+        let _ = poll(&mut watched, Some(&limit));
         self.heard()
     }
 }

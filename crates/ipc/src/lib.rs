@@ -5,7 +5,9 @@
 //! - [`Writer`], [`Reader`]: the records of [`messages::TOPICS`]. A write allocates nothing, takes no lock and makes no
 //!   system call; a reader gets the newest record or follows every one of them.
 //! - [`Bell`], [`Waiter`]: wake a process that sleeps until its input is there.
-//! - [`QueueSender`], [`QueueReceiver`], [`QueueWaiter`]: small byte messages of the command plane, not for control cycles.
+//! - [`QueueSender`], [`QueueReceiver`], [`QueueWaiter`]: small byte messages of the command plane, not for control cycles;
+//!   [`Doorbell`]: how a control cycle wakes the thread that moves them.
+//! - [`StopLine`], [`StopButton`]: the emergency stop's own socket, which needs nothing of all this.
 //! - [`Run`]: what a process started with `gangwerk PROCESS --run DIR` needs to know.
 //!
 //! Why it is built this way: `docs/decisions/0002-data-plane.md`.
@@ -17,14 +19,18 @@ mod place;
 mod queue;
 mod reader;
 mod run;
+mod run_dir;
 mod slot;
 mod space;
+mod stop_line;
 mod writer;
 
 pub use bell::{Bell, Waiter, Woken};
 pub use error::IpcError;
-pub use queue::{MAX_MESSAGE, QueueReceiver, QueueSender, QueueWaiter};
+pub use queue::{Doorbell, MAX_MESSAGE, QueueReceiver, QueueSender, QueueWaiter};
 pub use reader::Reader;
 pub use run::{Mode, Run};
+pub use run_dir::{CONFIG, default_dir};
 pub use space::Space;
+pub use stop_line::{Asker, Datagram, StopAnswer, StopButton, StopLine, StopName};
 pub use writer::Writer;

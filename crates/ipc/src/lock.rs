@@ -1,10 +1,10 @@
 //! One owner per place: a lock file with the owner's process id. The kernel lets go when the owner dies.
 
 use crate::IpcError;
-use rustix::fs::{FlockOperation, flock};
-use std::fs::{File, OpenOptions};
+use crate::run_dir::RunDir;
+use rustix::fs::{FlockOperation, OFlags, flock};
+use std::fs::File;
 use std::io::{Read, Write};
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 use std::time::Duration;
 
@@ -21,22 +21,24 @@ pub(crate) struct Lock {
 impl Lock {
     /// Takes `dir/who.lock`, or tells who has it.
     pub(crate) fn take(dir: &Path, who: &str) -> Result<Self, IpcError> {
-        let path = dir.join(format!("{who}.lock"));
-        let mut file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .mode(0o600)
-            .open(&path)
-            .map_err(|e| IpcError::Other(format!("{}: {e}", path.display())))?;
+        let name = format!("{who}.lock");
+        let path = dir.join(&name);
+        let place = RunDir::open(dir)?;
+        let open = || place.file(&name, OFlags::RDWR | OFlags::CREATE);
+        let mut file = open()?;
         // A process that was just forked holds a copy of a lock that was let go, until it becomes another program.
         let taken = (0..TRIES).any(|_| {
             let taken = flock(&file, FlockOperation::NonBlockingLockExclusive).is_ok();
-            if !taken {
+            // An owner that ended removes the file: what is locked then is one that nobody else will find.
+            if taken && place.holds(&name, &file) {
+                return true;
+            }
+            if taken && let Ok(again) = open() {
+                file = again;
+            } else {
                 std::thread::park_timeout(PAUSE);
             }
-            taken
+            false
         });
         if !taken {
             let mut text = String::new();
@@ -57,7 +59,7 @@ impl Lock {
 
     /// The owner of `dir/who.lock`, if it has one.
     pub(crate) fn owner(dir: &Path, who: &str) -> Option<u32> {
-        let mut file = File::open(dir.join(format!("{who}.lock"))).ok()?;
+        let mut file = RunDir::open(dir).ok()?.file(&format!("{who}.lock"), OFlags::RDONLY).ok()?;
         if flock(&file, FlockOperation::NonBlockingLockShared).is_ok() {
             return None;
         }

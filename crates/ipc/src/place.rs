@@ -15,18 +15,25 @@ pub(crate) struct Place {
     pub(crate) prefix: String,
 }
 
+/// 48 bits of hash (FNV-1a) of a run directory's full path.
+pub(crate) fn key(dir: &StdPath) -> u64 {
+    let bytes = dir.as_os_str().as_encoded_bytes().iter();
+    bytes.fold(0xcbf2_9ce4_8422_2325u64, |hash, b| (hash ^ u64::from(*b)).wrapping_mul(0x100_0000_01b3)) >> 16
+}
+
+/// The full path of a directory, whether it is still there or not.
+pub(crate) fn resolved(dir: &StdPath) -> PathBuf {
+    dir.canonicalize().or_else(|_| std::path::absolute(dir)).unwrap_or_else(|_| dir.into())
+}
+
 impl Place {
     /// `dir` must exist. The prefix is a hash of its full path, so that a new supervisor finds what the last one left.
     pub(crate) fn of(dir: &StdPath) -> Result<Self, IpcError> {
         let dir = dir
             .canonicalize()
             .map_err(|e| IpcError::Other(format!("run directory {}: {e}", dir.display())))?;
-        let mut hash = 0xcbf2_9ce4_8422_2325u64;
-        for b in dir.as_os_str().as_encoded_bytes() {
-            hash = (hash ^ u64::from(*b)).wrapping_mul(0x100_0000_01b3);
-        }
         // 48 bits: root, prefix, a 39-digit number and a suffix must fit into the 107 bytes of a socket's path.
-        Ok(Self { dir, prefix: format!("gangwerk_{:012x}_", hash >> 16) })
+        Ok(Self { prefix: format!("gangwerk_{:012x}_", key(&dir)), dir })
     }
 
     /// Root of iceoryx2's own files: on the tmpfs, because it syncs each of them, and short, because some are sockets.

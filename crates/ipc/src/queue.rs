@@ -8,6 +8,9 @@ use crate::error::{IpcError, because};
 use iceoryx2::port::publisher::Publisher;
 use iceoryx2::port::subscriber::Subscriber;
 use iceoryx2::prelude::*;
+use rustix::event::{EventfdFlags, eventfd};
+use std::os::fd::{AsFd, OwnedFd};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Longest message \[B\].
@@ -162,17 +165,42 @@ impl QueueReceiver {
     }
 }
 
-/// Sleeps until one of the queues that ring `name` has something, in any thread.
+/// Sleeps until one of the queues that ring `name` has something, or its doorbell rings, in any thread.
 #[derive(Debug)]
-pub struct QueueWaiter(Listening<Plane>);
+pub struct QueueWaiter {
+    bell: Listening<Plane>,
+    door: Doorbell,
+}
 
 impl QueueWaiter {
     pub(crate) fn new(node: &Node<Plane>, name: &str) -> Result<Self, IpcError> {
-        Ok(Self(Listening::new(node, name)?))
+        let flags = EventfdFlags::NONBLOCK | EventfdFlags::CLOEXEC;
+        let door = eventfd(0, flags).map_err(|e| because(format!("doorbell of {name}"), e))?;
+        Ok(Self { bell: Listening::new(node, name)?, door: Doorbell(Arc::new(door)) })
     }
 
-    /// `true`: the bell rang; `false`: time is up.
+    /// `true`: the bell or the doorbell rang; `false`: time is up.
     pub fn wait(&self, timeout: Duration) -> bool {
-        self.0.wait(timeout, 0)
+        let rang = self.bell.wait_also(timeout, 0, Some(self.door.0.as_fd()));
+        // Reading sets the count back to zero, so that the next wait sleeps.
+        rustix::io::read(&self.door.0, &mut [0; 8]).is_ok() || rang
+    }
+
+    /// What wakes this waiter from another thread of the same process.
+    pub fn doorbell(&self) -> Doorbell {
+        self.door.clone()
+    }
+}
+
+/// Wakes the thread that sleeps in a [`QueueWaiter`] of this process. Fit for a control cycle: one system call that never
+/// blocks, no allocation.
+#[derive(Clone, Debug)]
+pub struct Doorbell(Arc<OwnedFd>);
+
+impl Doorbell {
+    /// Rings; the waiter's present or next wait returns at once.
+    pub fn ring(&self) {
+        // It fails only if the count is full, which nobody reaches: then the waiter is woken anyway.
+        let _ = rustix::io::write(&self.0, &1u64.to_ne_bytes());
     }
 }

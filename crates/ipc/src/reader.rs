@@ -43,6 +43,8 @@ pub struct Reader<T: Record> {
     /// Number of the last record handed out of that slot.
     number: u64,
     lost: u64,
+    /// Records that may still be taken in order before the newest one is taken again.
+    missed: u64,
     /// Nothing followed yet.
     fresh: bool,
     held: Box<Numbered<T>>,
@@ -52,7 +54,7 @@ impl<T: Record> Reader<T> {
     pub(crate) fn new(node: &Node<RealTime>, topic: &Topic) -> Result<Self, IpcError> {
         let slots = (0..SLOTS).map(|k| Slot::open(node, topic, k)).collect::<Result<_, _>>()?;
         let held = Box::new(Numbered { number: 0, record: T::empty() });
-        Ok(Self { slots, slot: 0, epoch: 0, number: 0, lost: 0, fresh: true, held })
+        Ok(Self { slots, slot: 0, epoch: 0, number: 0, lost: 0, missed: 0, fresh: true, held })
     }
 
     /// The newest record; none before the first one was written.
@@ -102,6 +104,32 @@ impl<T: Record> Reader<T> {
         self.lost += got.saturating_sub(self.number + 1);
         self.number = got;
         Some(&self.held.record)
+    }
+
+    /// The record to act on next, once per cycle of the writer: the newest, as [`Reader::refresh`], unless this reader was
+    /// stopped for more than `stall` records; then those that it missed in their order, as far as the ring still holds them.
+    ///
+    /// Who is merely too slow is not made slower: what is more than twice as far behind as it was at first is given up.
+    pub fn refresh_in_order(&mut self, stall: u64) -> bool {
+        let behind = self.count_of_newest().map_or(0, |count| count.saturating_sub(self.number));
+        if behind <= 1 {
+            self.missed = 0;
+            return self.refresh();
+        }
+        if self.missed == 0 && behind > stall && self.number > 0 {
+            self.missed = 2 * behind.min(self.slots[self.slot].ring.len() as u64);
+        }
+        if self.missed <= 1 {
+            self.missed = 0;
+            return self.refresh();
+        }
+        self.missed -= 1;
+        self.follow().is_some()
+    }
+
+    /// Reading in order: [`Reader::refresh_in_order`] makes good for what was missed, and more waits.
+    pub fn is_behind(&self) -> bool {
+        self.missed > 0
     }
 
     /// Records that were overwritten before [`Reader::follow`] came to them.

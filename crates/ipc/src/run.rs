@@ -13,8 +13,11 @@
 //! ```
 
 use crate::IpcError;
+use crate::run_dir::RunDir;
 use crate::space::Space;
 use messages::Process;
+use rustix::fs::OFlags;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 /// The two ways to run (design 5).
@@ -65,16 +68,18 @@ impl Run {
             log.display()
         );
         // Whole or not at all: a process never reads half a file.
-        let (path, draft) = (self.dir.join("run"), self.dir.join("run.new"));
-        std::fs::write(&draft, text)
-            .and_then(|()| std::fs::rename(&draft, &path))
-            .map_err(|e| IpcError::Other(format!("{}: {e}", path.display())))
+        let dir = RunDir::open(&self.dir)?;
+        let written = dir.new_file("run.new")?.write_all(text.as_bytes());
+        written.map_err(|e| IpcError::Other(format!("{}: {e}", self.dir.join("run").display())))?;
+        dir.rename("run.new", "run")
     }
 
     /// Reads `dir/run`.
     pub fn load(dir: &Path) -> Result<Self, IpcError> {
         let path = dir.join("run");
-        let text = std::fs::read_to_string(&path).map_err(|e| {
+        let mut text = String::new();
+        let mut file = RunDir::open(dir)?.file("run", OFlags::RDONLY)?;
+        file.read_to_string(&mut text).map_err(|e| {
             IpcError::Other(format!("{}: {e}; processes are started by `gangwerk run`", path.display()))
         })?;
         let value = |key: &str| {

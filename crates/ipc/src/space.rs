@@ -6,13 +6,13 @@ use crate::lock::Lock;
 use crate::place::Place;
 use crate::queue::{Plane, QueueReceiver, QueueSender, QueueWaiter};
 use crate::reader::Reader;
+use crate::run_dir::RunDir;
 use crate::slot::{self, RealTime, SLOTS, SlotService};
 use crate::writer::Writer;
 use iceoryx2::prelude::*;
 use messages::topics::{ForType, with_type};
 use messages::{Process, Record, TOPICS, Topic};
 use std::cell::OnceCell;
-use std::os::unix::fs::DirBuilderExt;
 use std::path::Path as StdPath;
 use std::time::Duration;
 
@@ -20,6 +20,8 @@ use std::time::Duration;
 const SUPERVISOR: &str = "supervisor";
 /// Room kept free in shared memory for queues, bells and rings of other programs \[B\].
 const SPARE: u64 = 8 << 20;
+/// How long clearing up after dead processes may wait for somebody else who does it.
+const CLEAR_PATIENCE: Duration = Duration::from_millis(200);
 
 /// One running robot's shared memory. Ports are made from it before a process arms; afterwards it only has to live.
 pub struct Space {
@@ -46,6 +48,10 @@ impl Drop for Hold {
         let alone = || Process::ALL.iter().all(|p| Lock::owner(&self.place.dir, p.name()).is_none());
         if self.process.is_none() && alone() {
             let _ = self.place.wipe();
+            let locks = Process::ALL.iter().map(|p| p.name()).chain([SUPERVISOR]);
+            if let Ok(dir) = RunDir::open(&self.place.dir) {
+                dir.clear(locks);
+            }
         }
     }
 }
@@ -53,20 +59,24 @@ impl Drop for Hold {
 impl Space {
     /// For the supervisor: takes `dir` for itself, clears away what a former run left there, makes all topics.
     ///
-    /// `dir` is made with mode 0700 if it does not exist. A second supervisor is refused, and
+    /// `dir` is made with mode 0700 if it does not exist, must be this user's own, and is removed when the space is dropped
+    /// and nothing else is in it. A second supervisor is refused, and
     /// so is a first one while processes of a former run are still alive.
     pub fn create(dir: &StdPath) -> Result<Self, IpcError> {
         Self::create_topics(dir, TOPICS)
     }
 
     fn create_topics(dir: &StdPath, topics: &[Topic]) -> Result<Self, IpcError> {
-        std::fs::DirBuilder::new()
-            .recursive(true)
-            .mode(0o700)
-            .create(dir)
-            .map_err(|e| IpcError::Other(format!("run directory {}: {e}", dir.display())))?;
+        RunDir::make(dir)?;
         let place = Place::of(dir)?;
-        let lock = Lock::take(&place.dir, SUPERVISOR)?;
+        // A run that is ending removes the directory under our feet: then it is made once more.
+        let lock = Lock::take(&place.dir, SUPERVISOR).or_else(|e| {
+            if place.dir.exists() {
+                Err(e)
+            } else {
+                RunDir::make(dir).and_then(|_| Lock::take(&place.dir, SUPERVISOR))
+            }
+        })?;
         for process in Process::ALL {
             if let Some(pid) = Lock::owner(&place.dir, process.name()) {
                 let dir = place.dir.display().to_string();
@@ -94,6 +104,7 @@ impl Space {
 
     /// For a process: enters the space in `dir`. Each process but the observer may enter once at a time.
     pub fn open(dir: &StdPath, process: Process) -> Result<Self, IpcError> {
+        let _private = RunDir::open(dir)?;
         let place = Place::of(dir)?;
         if Lock::owner(&place.dir, SUPERVISOR).is_none() {
             let dir = place.dir.display();
@@ -104,6 +115,10 @@ impl Space {
             _ => Some(Lock::take(&place.dir, process.name())?),
         };
         let node = node::<RealTime>(&place, process.name())?;
+        if process == Process::Observer {
+            // Observers end by Ctrl-C, without a farewell, and a topic bears only so many: each clears up after the last ones.
+            node.blocking_cleanup_dead_nodes(CLEAR_PATIENCE);
+        }
         let process = Some(process);
         let hold = Hold { place: place.clone(), process, _lock: lock };
         Ok(Self { place, node, commands: OnceCell::new(), process, _topics: Vec::new(), _hold: hold })
@@ -160,10 +175,10 @@ impl Space {
         QueueWaiter::new(self.commands()?, name)
     }
 
-    /// For the supervisor, before it starts a process again: clears away the ports of killed processes. Returns how
+    /// For the supervisor, now and then, and before it starts a process again: clears away the ports of killed processes. Returns how
     /// many were cleared.
     pub fn clear_dead(&self) -> u64 {
-        self.node.blocking_cleanup_dead_nodes(Duration::from_millis(200)).cleanups
+        self.node.blocking_cleanup_dead_nodes(CLEAR_PATIENCE).cleanups
     }
 
     fn commands(&self) -> Result<&Node<Plane>, IpcError> {
@@ -247,6 +262,6 @@ mod tests {
         drop((reader, observer));
         drop(system);
         assert_eq!(left(&place), 0);
-        std::fs::remove_dir_all(dir).unwrap();
+        assert!(!dir.exists());
     }
 }

@@ -207,3 +207,43 @@ fn wrong_writer_and_wrong_type_are_refused() {
     let error = planner.reader::<Plan>(&SENSORS).err().unwrap();
     assert!(matches!(error, IpcError::Other(_)));
 }
+
+/// Who was stopped makes good for what it missed; who is only slow takes the newest, and is not made slower.
+#[test]
+fn a_reader_that_was_stopped_takes_what_it_missed_in_order() {
+    let dir = RunDir::new("in_order");
+    let _system = Space::create(dir.path()).unwrap();
+    let planner = Space::open(dir.path(), Process::Planner).unwrap();
+    let logger = Space::open(dir.path(), Process::Logger).unwrap();
+    let mut writer = planner.writer::<Event>(&EVENTS_PLANNER).unwrap();
+    let mut reader = logger.reader::<Event>(&EVENTS_PLANNER).unwrap();
+    let mut written = 0;
+    let mut write = |count: u64| {
+        for _ in 0..count {
+            written += 1;
+            writer.write(&Event { detail: written, ..Event::default() });
+        }
+    };
+    assert!(!reader.refresh_in_order(3));
+    let mut next = |expected: u64, late: bool| {
+        assert!(reader.refresh_in_order(3));
+        assert_eq!((reader.held().unwrap().detail, reader.is_behind()), (expected, late));
+    };
+    write(10);
+    next(10, false); // the first one seen is the newest
+    write(3);
+    next(13, false); // slow
+    write(10);
+    for n in 14..23 {
+        next(n, true);
+    }
+    next(23, false);
+    write(20);
+    // A writer that is as fast as this reader is not caught up with: twice as many are tried, then the newest counts.
+    for n in 24..24 + 39 {
+        next(n, true);
+        write(1);
+    }
+    next(82, false);
+    assert!(!reader.refresh_in_order(3));
+}

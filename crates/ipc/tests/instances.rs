@@ -57,7 +57,7 @@ fn refused(result: Result<Space, IpcError>, name: &str, by: u32) {
 #[test]
 fn a_second_supervisor_is_refused_and_disturbs_nothing() {
     let dir = RunDir::new("second");
-    std::fs::create_dir_all(dir.path()).unwrap();
+    dir.make();
     let mut first = Holder::start(dir.path(), "supervisor");
     refused(Space::create(dir.path()), "supervisor", first.0.id());
     // The first one's topics are there and work.
@@ -81,7 +81,7 @@ fn a_second_supervisor_is_refused_and_disturbs_nothing() {
 #[test]
 fn only_one_of_many_supervisors_wins() {
     let dir = RunDir::new("race");
-    std::fs::create_dir_all(dir.path()).unwrap();
+    dir.make();
     let winners: Vec<_> = std::thread::scope(|scope| {
         let starts: Vec<_> = (0..16).map(|_| scope.spawn(|| Won(Space::create(dir.path())))).collect();
         starts.into_iter().map(|s| s.join().unwrap()).filter(|w| w.0.is_ok()).collect()
@@ -99,7 +99,7 @@ unsafe impl Send for Won {}
 #[test]
 fn what_killed_ones_left_is_cleared_away() {
     let dir = RunDir::new("stale");
-    std::fs::create_dir_all(dir.path()).unwrap();
+    dir.make();
     // Somebody else's run stays as it is.
     let other = RunDir::new("stale-other");
     let _other_system = Space::create(other.path()).unwrap();
@@ -137,8 +137,8 @@ fn two_robots_do_not_meet() {
 fn missing_or_wrong_directories_are_named() {
     let dir = RunDir::new("missing");
     let error = Space::open(dir.path(), Process::Planner).err().unwrap().to_string();
-    assert!(error.contains("gangwerk-ipc") && error.contains("No such file"), "{error}");
-    std::fs::create_dir_all(dir.path()).unwrap();
+    assert!(error.contains("gangwerk-ipc") && error.contains("does not exist: start a run"), "{error}");
+    dir.make();
     let error = Space::open(dir.path(), Process::Planner).err().unwrap().to_string();
     assert!(error.contains("no run in") && error.contains("gangwerk run"), "{error}");
 }

@@ -268,6 +268,44 @@ impl Command {
         }
     }
 
+    /// Whether nothing refuses it: neither age nor sequence, neither lease nor rights. It can only bring the robot to rest.
+    pub const fn always_passes(&self) -> bool {
+        matches!(self, Self::EmergencyStop | Self::Stop | Self::End)
+    }
+
+    /// Whether its sender must hold the command lease: whatever moves the robot or changes how it moves. A push disturbs
+    /// the simulated robot and is no command to it.
+    pub const fn needs_lease(&self) -> bool {
+        !self.always_passes() && !matches!(self, Self::Push(_))
+    }
+
+    /// Whether it goes on until somebody stops it, so that its sender must stay.
+    pub fn is_unbounded(&self) -> bool {
+        match self {
+            Self::Start => true,
+            Self::Velocity(v) => [v.forward, v.left, v.turn] != [0.0; 3],
+            _ => false,
+        }
+    }
+
+    /// Name of the process that has the last word and answers it.
+    pub const fn decided_by(&self) -> &'static str {
+        match self {
+            Self::EmergencyStop | Self::Reset | Self::Enable => "watchdog",
+            Self::End => "supervisor",
+            Self::Stand
+            | Self::Start
+            | Self::Stop
+            | Self::Step(_)
+            | Self::Velocity(_)
+            | Self::Distance(_)
+            | Self::Platform(_) => "planner",
+            Self::Parameter(_) | Self::Fixate(_) | Self::HeadJoints(_) | Self::HeadRest => "controller",
+            Self::Home | Self::ZeroForce => "lowlevel",
+            Self::Push(_) | Self::Lower(_) => "sim-backend",
+        }
+    }
+
     /// The name used in `gangwerk topic`, e.g. `walk/velocity`.
     pub const fn name(&self) -> &'static str {
         match self {

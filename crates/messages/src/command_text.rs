@@ -202,6 +202,11 @@ impl Command {
         }
     }
 
+    /// The number of that field of its [`CommandInfo::fields`]; zero if there is none.
+    pub fn value(&self, field: usize) -> f64 {
+        self.values().get(field).copied().unwrap_or(0.0)
+    }
+
     /// The row of [`COMMANDS`] for this command.
     pub fn info(&self) -> &'static CommandInfo {
         CommandInfo::find(self.name()).expect("every command is in the table")

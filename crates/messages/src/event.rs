@@ -3,7 +3,7 @@
 use crate::{Header, record};
 
 /// What happened. Numbers are part of the log format: append only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u64)]
 pub enum EventCode {
     /// Nothing.
@@ -42,9 +42,9 @@ pub enum EventCode {
     Fallen = 16,
     /// Both feet are off the ground while they should carry.
     Lifted = 17,
-    /// The operator asked for a stop of the motor supply.
+    /// Somebody asked for the emergency stop on its own line; detail: user id << 32 | process id, zeros if unknown.
     EmergencyStop = 18,
-    /// The watchdog's toggle stopped: the supply is off.
+    /// The watchdog missed cycles of its own, for so long that the supply's relay fell.
     WatchdogSilent = 19,
     /// Inverse kinematics or force control met a singularity or limit; detail: which.
     ControlLimited = 20,
@@ -144,6 +144,11 @@ pub enum EventCode {
     /// Drives fell out of the operation of the field bus, after a pause of lowlevel: all are started again. That they are
     /// back is told by [`Self::NodeBack`].
     BusRestart = 63,
+    /// The supply was measured off while it was to be on: its relay fell, or a fuse or a switch is open.
+    SupplyLost = 64,
+    /// Who commanded the walk lost the command lease, by death, silence or a closed link: the robot stops. Detail: the
+    /// number of the grant.
+    LeaseLost = 65,
 }
 
 /// Why a frame or a reading was refused, in the detail of [`EventCode::FrameRefused`].
@@ -163,7 +168,7 @@ pub enum Refused {
 
 impl EventCode {
     /// All codes, in order of their numbers.
-    pub const ALL: [Self; 64] = [
+    pub const ALL: [Self; 66] = [
         Self::None,
         Self::Started,
         Self::Ended,
@@ -228,6 +233,8 @@ impl EventCode {
         Self::NotStanding,
         Self::DriveHeld,
         Self::BusRestart,
+        Self::SupplyLost,
+        Self::LeaseLost,
     ];
 
     /// The code of a number from a record.

@@ -2,13 +2,16 @@
 //!
 //! - [`topics`]: the table of topics: name, type, writer, readers, rate, stale-after, logged.
 //! - One file per record: fixed-size, `#[repr(C)]`, one writer each; they travel through shared memory.
-//! - [`command`]: what an operator may ask for; these travel through the broker, encoded by [`wire`].
+//! - [`command`]: what an operator may ask for; these travel through the broker, encoded by [`wire`],
+//!   with a [`command_stamp`] of who gave them and when, and are answered ([`command_answer`]).
 //!
 //! Units are SI. Angles in rad. Arrays of joints follow the order of the robot's joint table and are padded with
 //! zeros up to [`MAX_JOINTS`].
 
 pub mod bus;
 pub mod command;
+pub mod command_answer;
+pub mod command_stamp;
 pub mod command_text;
 pub mod controller_state;
 pub mod cycle_stats;
@@ -28,6 +31,8 @@ pub mod wire;
 
 pub use bus::{BusFrames, ERROR_FLAG, Frame, MAX_FRAMES};
 pub use command::Command;
+pub use command_answer::{CommandSource, NoCommands, Reason, Verdict};
+pub use command_stamp::{Lease, Live, Stamp};
 pub use controller_state::ControllerState;
 pub use cycle_stats::{BusCounters, CycleStats};
 pub use event::{Event, EventCode};

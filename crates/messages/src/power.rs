@@ -2,10 +2,16 @@
 
 use crate::{Header, record};
 
+/// Cycles without a moving toggle after which the supply's relay falls. A watchdog that missed so many of its own cycles
+/// has lost the relay, and knows it. As many as a machine without PREEMPT_RT stands still for now and then: the joint loop
+/// guards itself meanwhile.
+pub const QUIET_CYCLES: u64 = 10;
+
 record! {
     /// State of the motor supply. Written by watchdog.
     ///
-    /// The supply is on only while `toggle` moves: a dead watchdog is a switched-off robot.
+    /// The supply is on only while `toggle` moves: a dead watchdog is a switched-off robot. The relay closes once for each
+    /// `arming` of a watchdog: whatever made it fall, it takes another reset edge and another enable edge.
     record Power {
         /// Tick of the last reset the watchdog has seen.
         header: Header,
@@ -13,6 +19,8 @@ record! {
         toggle: u64,
         /// \[1\] 1: supply on. Latched: once 0 it stays 0 until a reset edge and then an enable edge.
         on: u64,
+        /// \[1\] Counts the pairs of a reset edge and an enable edge, of this writer.
+        arming: u64,
         /// \[1\] Why it went off: an [`EventCode`](crate::EventCode), 0 while on.
         reason: u64,
         /// \[1\] Watchdog cycles since the last reset was seen.
@@ -27,5 +35,7 @@ record! {
         header: Header,
         /// \[1\] 0: all is well; otherwise the [`EventCode`](crate::EventCode) for which power shall go off.
         trip: u64,
+        /// \[1\] 1 while the motor supply is on, as measured at the robot.
+        supply: u64,
     }
 }

@@ -22,4 +22,4 @@ pub use meter::CycleMeter;
 pub use period::{Period, Verdict};
 pub use preflight::{Check, Grade, preflight};
 pub use stop::{Stop, end_with_reader, terminate};
-pub use thread::{Granted, Schedule, prepare_thread};
+pub use thread::{Granted, Schedule, prepare_side_thread, prepare_thread, run_on_any_core};

@@ -9,6 +9,8 @@ use std::io::Write;
 /// Stack and heap touched beforehand \[B\].
 const STACK: usize = 1 << 20;
 const HEAP: usize = 16 << 20;
+/// The same of a side thread \[B\].
+const SIDE_STACK: usize = 64 << 10;
 /// Memory that must be lockable before anything is locked: later mappings fail if the limit is met \[B\].
 const LOCKABLE: u64 = 1 << 30;
 
@@ -86,6 +88,31 @@ pub fn prepare_thread(schedule: &Schedule) -> Granted {
     granted
 }
 
+/// Prepares a second real-time thread of a process whose memory [`prepare_thread`] has locked already: its stack is touched,
+/// and it runs at `schedule`. Without a core it may run on any, also if the thread that started it is bound to one.
+pub fn prepare_side_thread(schedule: &Schedule) -> Granted {
+    let mut granted = Granted::default();
+    if schedule.priority == 0 {
+        return granted;
+    }
+    touch_some_stack();
+    match schedule.core {
+        Some(core) => granted.core = bind(core, &mut granted.missing),
+        None => run_on_any_core(),
+    }
+    granted.priority = fifo(schedule.priority, &mut granted.missing);
+    granted
+}
+
+/// Lets the calling thread run on any core that this machine, and who started the program, leave to it: one that works for a
+/// control process and must not starve behind the chain of processes on its core.
+pub fn run_on_any_core() {
+    let mut cores = CpuSet::new();
+    (0..CpuSet::MAX_CPU).for_each(|core| cores.set(core));
+    // What fails leaves it where it is.
+    let _ = sched_setaffinity(None, &cores);
+}
+
 fn lock_memory(missing: &mut Vec<String>) -> bool {
     if let Some(limit) = getrlimit(Resource::Memlock).current
         && limit < LOCKABLE
@@ -127,6 +154,12 @@ fn touch_stack() {
         page[0] = 1;
     }
     std::hint::black_box(&block);
+}
+
+/// The part of its stack that a thread of few calls needs.
+#[inline(never)]
+fn touch_some_stack() {
+    std::hint::black_box(&mut [1u8; SIDE_STACK]);
 }
 
 fn stay_awake(granted: &mut Granted) -> bool {

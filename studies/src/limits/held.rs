@@ -29,7 +29,7 @@ impl Held {
             layout: robot.layout.clone(),
             command: DriveCommand { targets, ..DriveCommand::default() },
             frames: BusFrames::default(),
-            power: Power { on: 1, ..Power::default() },
+            power: Power { on: 1, arming: 1, ..Power::default() },
         })
     }
 

@@ -4,7 +4,8 @@ mod place;
 mod running;
 
 pub use place::{Site, root};
-pub use running::{Running, Said, doze};
+pub use running::{Running, Said, doze, turn};
+pub use rustix::process::Signal;
 
 /// The executable that is tested: the file that `GANGWERK` names while the tests are built, or the one built beside them.
 #[macro_export]

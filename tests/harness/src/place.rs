@@ -2,6 +2,7 @@
 
 use crate::running::{Running, Said};
 use std::fs;
+use std::io::PipeWriter;
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -25,7 +26,15 @@ impl Site {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");
         let port = listener.local_addr().expect("a bound socket has an address").port();
         let site = Self { exe: exe.into(), dir, port };
-        site.edit("system.toml", "tcp_port = 7411", &format!("tcp_port = {port}"));
+        site.edit("system.toml", "tcp_listen = \"\"", &format!("tcp_listen = \"127.0.0.1:{port}\""));
+        site
+    }
+
+    /// The same with a watchdog that bears a machine which is shared with others and stands still for some milliseconds: for
+    /// tests of something else than the watchdog's limit.
+    pub fn patient(exe: &str) -> Self {
+        let site = Self::new(exe);
+        site.edit("system.toml", "watchdog_missed = 2 ", "watchdog_missed = 20 ");
         site
     }
 
@@ -92,6 +101,13 @@ impl Site {
     /// Starts `gangwerk run SCENE`, logging to `SCENE.mcap` in this place.
     pub fn run(&self, scene: &str, more: &[&str]) -> Running {
         self.start(&self.run_arguments(scene, more).iter().map(String::as_str).collect::<Vec<_>>())
+    }
+
+    /// The same with standard output and standard error into a pipe.
+    pub fn run_into(&self, scene: &str, more: &[&str], errors: PipeWriter) -> Running {
+        let arguments = self.run_arguments(scene, more);
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        Running::start_into(&mut self.command(&arguments), self, errors)
     }
 
     /// The arguments of [`Site::run`].

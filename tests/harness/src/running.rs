@@ -6,6 +6,7 @@ use messages::Process;
 use realtime::clock;
 use rustix::process::{Pid, Signal, kill_process};
 use std::fs::{self, File};
+use std::io::PipeWriter;
 use std::path::PathBuf;
 use std::process::{Child, Command};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -54,6 +55,16 @@ impl Running {
         let (out, err) = (site.path(&format!("{n}.out")), site.path(&format!("{n}.err")));
         command.stdout(File::create(&out).expect("the place is ours"));
         command.stderr(File::create(&err).expect("the place is ours"));
+        Self::spawn(command, site, out, err)
+    }
+
+    /// The same with another standard error, and standard output, than files.
+    pub(crate) fn start_into(command: &mut Command, site: &Site, errors: PipeWriter) -> Self {
+        command.stdout(errors.try_clone().expect("a descriptor is free")).stderr(errors);
+        Self::spawn(command, site, PathBuf::new(), PathBuf::new())
+    }
+
+    fn spawn(command: &mut Command, site: &Site, out: PathBuf, err: PathBuf) -> Self {
         let child = command.spawn().expect("the executable was built for this test");
         Self { child, run_dir: site.run_dir(), out, err }
     }
@@ -88,7 +99,17 @@ impl Running {
 
     /// SIGKILL to one process of the run.
     pub fn kill(&self, process: Process) {
-        signal(self.pid(process), Signal::KILL);
+        self.signal(process, Signal::KILL);
+    }
+
+    /// A signal to one process of the run.
+    pub fn signal(&self, process: Process, what: Signal) {
+        signal(self.pid(process), what);
+    }
+
+    /// A signal to the program itself, which in a run is the supervisor.
+    pub fn signal_supervisor(&self, what: Signal) {
+        signal(self.child.id(), what);
     }
 
     /// Stops one process of the run for so long \[s\], as a host does that has no time for it.
@@ -126,12 +147,24 @@ impl Running {
 impl Drop for Running {
     fn drop(&mut self) {
         if self.is_alive() {
-            signal(self.child.id(), Signal::TERM);
-            doze(0.2);
+            signal(self.child.id(), Signal::CONT);
+            // The second one ends at once, and clears up; a killed one would leave its shared memory behind.
+            let late = clock::now() + 8 * clock::SECOND;
+            while self.is_alive() && clock::now() < late {
+                signal(self.child.id(), Signal::TERM);
+                doze(0.2);
+            }
             let _ = self.child.kill();
             let _ = self.child.wait();
         }
     }
+}
+
+/// A robot in real time has the machine for itself: holds up all other tests that ask, until it is dropped.
+pub fn turn() -> File {
+    let file = File::create(std::env::temp_dir().join("gangwerk-test-turn")).expect("a file can be made");
+    file.lock().expect("a file can be locked");
+    file
 }
 
 fn signal(pid: u32, signal: Signal) {

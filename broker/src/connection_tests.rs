@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use tokio::io::duplex;
+use tokio::time::Instant;
 
 use super::*;
 
@@ -16,7 +17,7 @@ fn frames_of(bytes: &[u8], stays: bool) -> (usize, Result<(), Refusal>) {
         let (mut client, mut server) = duplex(1 << 20);
         client.write_all(bytes).await.expect("room");
         let _held = stays.then_some(client);
-        let mut buffer = [0; MAX_BYTES];
+        let mut buffer = [0; MAX_BYTES + TAG];
         let mut frames = 0;
         loop {
             match read_frame(&mut server, &mut buffer, FRAME_TIME).await {
@@ -38,7 +39,7 @@ fn every_length_is_taken_or_refused() {
         let mut bytes = length.to_le_bytes().to_vec();
         bytes.resize(4 + (length as usize).min(1000), 7);
         let (frames, end) = frames_of(&bytes, false);
-        if (HEAD..=MAX_BYTES).contains(&(length as usize)) {
+        if (HEAD..=MAX_BYTES + TAG).contains(&(length as usize)) {
             assert_eq!((frames, end), (1, Ok(())), "length {length}");
         } else {
             assert!(matches!(end, Err(Refusal::Malformed(_))), "length {length}: {end:?}");
@@ -48,7 +49,7 @@ fn every_length_is_taken_or_refused() {
 
 #[test]
 fn a_frame_cut_at_any_byte_is_refused() {
-    let whole = frame(&service_message(service::SUBSCRIBE, &[2, 0, 0, 0]));
+    let whole = frame(&service_message(service::SUBSCRIBE, 1, 0, &[2, 0, 0, 0]));
     for n in 1..whole.len() {
         let (frames, end) = frames_of(&whole[..n], false);
         assert!(frames == 0 && matches!(end, Err(Refusal::Malformed(_))), "cut at {n}: {end:?}");
@@ -72,7 +73,7 @@ fn a_slow_writer_is_cut_off() {
             }
         };
         let begin = Instant::now();
-        let mut buffer = [0; MAX_BYTES];
+        let mut buffer = [0; MAX_BYTES + TAG];
         tokio::select! {
             end = read_frame(&mut server, &mut buffer, FRAME_TIME) => {
                 assert_eq!(end, Err(Refusal::TimedOut("the rest of a frame")));
@@ -89,24 +90,40 @@ fn a_client_that_does_not_read_loses_its_connection() {
     block_on(async {
         let (_client, server) = duplex(64);
         let (frames, outgoing) = mpsc::channel(WAITING);
+        let (_answers, given) = mpsc::unbounded_channel();
         for _ in 0..WAITING {
             frames.try_send(vec![0; 40]).expect("room");
         }
         assert!(frames.try_send(vec![0; 40]).is_err(), "the broker must not wait for it");
         let begin = Instant::now();
-        speak(server, outgoing).await;
+        speak(server, given, outgoing, Arc::new(Semaphore::new(0)), Arc::default()).await;
         assert_eq!(begin.elapsed().as_secs(), FRAME_TIME.as_secs());
+    });
+}
+
+/// Every answer to a frame makes room for another one; news make none.
+#[test]
+fn answers_give_permits_back() {
+    block_on(async {
+        let (_client, server) = duplex(1 << 16);
+        let (frames, outgoing) = mpsc::channel(WAITING);
+        let (answers, given) = mpsc::unbounded_channel();
+        let permits = Arc::new(Semaphore::new(0));
+        answers.send(service_message(service::ACCEPTED, 7, 0, &[])).expect("open");
+        answers.send(Refusal::Busy("x".into()).to_message(8, 0)).expect("open");
+        answers.send(service_message(service::LINE, 9, 0, b"x")).expect("open");
+        frames.try_send(service_message(service::LEASE, 0, 0, &[0; 12])).expect("room");
+        drop((answers, frames));
+        speak(server, given, outgoing, permits.clone(), Arc::default()).await;
+        assert_eq!(permits.available_permits(), 2);
     });
 }
 
 #[test]
 fn messages_are_rationed() {
-    block_on(async {
-        let mut bucket = Bucket { level: RATE, at: Instant::now() };
-        assert_eq!((0..10_000).filter(|_| bucket.take()).count(), RATE as usize);
-        tokio::time::sleep(Duration::from_millis(100)).await;
-        assert_eq!((0..10_000).filter(|_| bucket.take()).count(), (0.1 * RATE) as usize);
-    });
+    let mut bucket = Bucket { level: 500.0, rate: 500.0, at_ns: 0 };
+    assert_eq!((0..10_000).filter(|_| bucket.take(0)).count(), 500);
+    assert_eq!((0..10_000).filter(|_| bucket.take(SECOND / 10)).count(), 50);
 }
 
 proptest! {
@@ -120,7 +137,7 @@ proptest! {
 
     /// Whatever is inside of good frames, the frames are told apart.
     #[test]
-    fn frames_are_told_apart(lengths in prop::collection::vec(HEAD..=MAX_BYTES, 0..20)) {
+    fn frames_are_told_apart(lengths in prop::collection::vec(HEAD..=MAX_BYTES + TAG, 0..20)) {
         let bytes: Vec<u8> = lengths.iter().flat_map(|n| frame(&vec![9; *n])).collect();
         prop_assert_eq!(frames_of(&bytes, false), (lengths.len(), Ok(())));
     }

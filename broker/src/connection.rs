@@ -1,0 +1,422 @@
+//! One connection over a stream, from its first byte to its end: `docs/protocol.md`.
+//!
+//! A frame is its length as u32, little endian, and then a message as in [`crate::message`]; on a connection that has
+//! proved a key, a tag of 16 bytes follows, which the length counts. Every frame of a client but a sign of life is
+//! answered, with the number of the frame; commands are answered when the process that decides has decided.
+//!
+//! Limits: a frame must be complete [`FRAME_TIME`] after its first byte, the first one as soon after connecting; a
+//! connection that says nothing for [`IDLE_TIME`] is closed. At most [`UNANSWERED`] frames are on their way, the next is
+//! not read until one of them is answered. A client that does not read loses what it subscribed to first and its
+//! connection after [`FRAME_TIME`]. At most [`Rights::rate`] messages per second are taken, emergency stops not counted.
+//! Bytes that are no frame close their connection.
+
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use messages::Command;
+use messages::command::Domain;
+use realtime::clock::{SECOND, now};
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
+use tokio::sync::{Semaphore, mpsc, oneshot};
+use tokio::time::timeout;
+
+use crate::exchange::FIRST_STREAM;
+use crate::inlet::{Gate, Request};
+use crate::keys::{self, Half, Key, NONCE, TAG};
+use crate::log_gate::LogGate;
+use crate::members::Outgoing;
+use crate::message::{
+    HEAD, MAX_BYTES, Message, SERVICE, VERSION, schema, service, service_message, split_u32, split_u64,
+};
+use crate::refusal::Refusal;
+
+/// A frame takes no longer than this, from its first byte to its last, to come and to be read by the other side.
+pub const FRAME_TIME: Duration = Duration::from_secs(2);
+/// Longest silence of a client.
+pub const IDLE_TIME: Duration = Duration::from_secs(60);
+/// Messages per second, and at once, of a connection that may command.
+pub const RATE: f64 = 2000.0;
+/// Frames of one connection that are not answered yet.
+pub const UNANSWERED: usize = 64;
+/// Frames that wait for one client, answers not counted.
+const WAITING: usize = 128;
+/// How long the rest of what a closed connection sent is read.
+const FAREWELL: Duration = Duration::from_millis(200);
+/// Longest name of a client \[B\].
+const NAME: usize = 64;
+
+/// What a connection may do before it shows a key.
+#[derive(Clone, Debug)]
+pub struct Rights {
+    /// Who it is, for the log and for others that want the lease.
+    pub peer: String,
+    /// Domains that it may command: bit n for domain n. Whatever they are, it may stop the robot.
+    pub may: u32,
+    /// Whether it may subscribe and ask.
+    pub reads: bool,
+    /// One place too many: it is heard for a stop and for nothing else.
+    pub only_stops: bool,
+    /// Messages per second, and as many at once.
+    pub rate: f64,
+    /// Keys that it may show.
+    pub keys: Arc<Vec<Key>>,
+}
+
+/// One connection. The broker hears of its end whatever ends it.
+struct Session {
+    gate: Gate,
+    token: u32,
+    rights: Rights,
+    out: Outgoing,
+    permits: Arc<Semaphore>,
+    joined: bool,
+    bucket: Bucket,
+    /// Name and key that the client has claimed, both nonces: until it proves the key.
+    claimed: Option<(String, Key, [Half; 2])>,
+    incoming: Option<Half>,
+    outgoing: Arc<OnceLock<Half>>,
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        if self.joined {
+            self.gate.ask(Request::Leave { token: self.token });
+        }
+    }
+}
+
+/// Serves a client until it closes the connection, or must be closed; then why, for the log.
+pub async fn serve(
+    mut read: impl AsyncRead + Unpin,
+    write: impl AsyncWrite + Unpin,
+    gate: Gate,
+    token: u32,
+    rights: Rights,
+) -> Result<(), Refusal> {
+    let (answers, given) = mpsc::unbounded_channel();
+    let (frames, subscribed) = mpsc::channel(WAITING);
+    let out = Outgoing { answers, frames };
+    let permits = Arc::new(Semaphore::new(UNANSWERED));
+    let (incoming, outgoing) = (None, Arc::new(OnceLock::new()));
+    let mut speaking = std::pin::pin!(speak(write, given, subscribed, permits.clone(), outgoing.clone()));
+    let bucket = Bucket { level: rights.rate, rate: rights.rate, at_ns: now() };
+    let mut session = Session {
+        bucket,
+        gate,
+        token,
+        rights,
+        out,
+        permits,
+        joined: false,
+        claimed: None,
+        incoming,
+        outgoing,
+    };
+    let end = tokio::select! {
+        end = session.listen(&mut read) => end,
+        () = &mut speaking => return Err(Refusal::TimedOut("the reading of an answer")),
+    };
+    // Whoever closes the link loses the lease at once; but who only stops writing reads the answers to the end.
+    if session.joined {
+        session.gate.ask(Request::Closing { token });
+    }
+    tokio::select! {
+        _ = timeout(FRAME_TIME, session.permits.acquire_many(UNANSWERED as u32)) => {}
+        () = &mut speaking => return end,
+    }
+    if let Err(refusal) = &end {
+        let _ = session.out.answers.send(refusal.to_message(0, now()));
+    }
+    drop(session);
+    // The reason goes last, and the rest of the input is read, or the system would throw both away.
+    let _ = timeout(FRAME_TIME, speaking).await;
+    if end.is_err() {
+        let _ = timeout(FAREWELL, tokio::io::copy(&mut read.take(1 << 16), &mut tokio::io::sink())).await;
+    }
+    end
+}
+
+/// Writes frames, answers first, until there will be no more, or the other side does not read.
+async fn speak(
+    mut write: impl AsyncWrite + Unpin,
+    mut answers: mpsc::UnboundedReceiver<Vec<u8>>,
+    mut frames: mpsc::Receiver<Vec<u8>>,
+    permits: Arc<Semaphore>,
+    seal: Arc<OnceLock<Half>>,
+) {
+    let mut half: Option<Half> = None;
+    loop {
+        let message = tokio::select! {
+            biased;
+            Some(answer) = answers.recv() => answer,
+            Some(frame) = frames.recv() => frame,
+            else => break,
+        };
+        if half.is_none() {
+            half = seal.get().cloned();
+        }
+        let tag = half.as_mut().map(|half| half.seal(&message));
+        let tag = tag.as_ref().map_or(&[][..], |tag| &tag[..]);
+        let mut frame = ((message.len() + tag.len()) as u32).to_le_bytes().to_vec();
+        frame.extend_from_slice(&message);
+        frame.extend_from_slice(tag);
+        if !matches!(timeout(FRAME_TIME, write.write_all(&frame)).await, Ok(Ok(()))) {
+            return;
+        }
+        let answer = Message::parse(&message)
+            .is_ok_and(|m| m.domain == SERVICE && matches!(m.id, service::ACCEPTED | service::REFUSED));
+        // A reason without a number ends the connection, and answers no frame.
+        if answer && Message::parse(&message).is_ok_and(|m| m.stamp.sequence != 0) {
+            permits.add_permits(1);
+        }
+    }
+    let _ = write.shutdown().await;
+}
+
+impl Session {
+    /// Takes frames until the client closes the connection, or must be closed.
+    async fn listen(&mut self, read: &mut (impl AsyncRead + Unpin)) -> Result<(), Refusal> {
+        let mut buffer = [0; MAX_BYTES + TAG];
+        let mut patience = FRAME_TIME;
+        while let Some(bytes) = read_frame(read, &mut buffer, patience).await? {
+            let bytes = self.authentic(bytes)?;
+            let message = Message::parse(bytes)?;
+            let urgent = message.command() == Ok(Command::EmergencyStop);
+            let stops = urgent || message.command() == Ok(Command::Stop);
+            if self.rights.only_stops && !stops {
+                return Err(Refusal::TooManyConnections("of this user or address"));
+            }
+            let taken = urgent || self.bucket.take(now());
+            self.take(&message, bytes, taken).await?;
+            if self.joined {
+                patience = IDLE_TIME;
+            }
+        }
+        Ok(())
+    }
+
+    /// The message of a frame, without its tag.
+    fn authentic<'a>(&mut self, frame: &'a [u8]) -> Result<&'a [u8], Refusal> {
+        let Some(half) = &mut self.incoming else {
+            if frame.len() > MAX_BYTES {
+                return Err(Refusal::Malformed(length(frame.len())));
+            }
+            return Ok(frame);
+        };
+        let (message, tag) = frame.split_last_chunk::<TAG>().ok_or(Refusal::NotAuthentic)?;
+        if half.open(message, tag) { Ok(message) } else { Err(Refusal::NotAuthentic) }
+    }
+
+    /// One message; `taken`: it is within the connection's ration.
+    async fn take(&mut self, message: &Message<'_>, bytes: &[u8], taken: bool) -> Result<(), Refusal> {
+        let sequence = message.stamp.sequence;
+        let is_service = |id| message.domain == SERVICE && message.id == id;
+        if is_service(service::PING) {
+            if taken {
+                self.gate.ask(Request::Alive { token: self.token, sent_ns: message.stamp.sent_ns });
+            }
+            return Ok(());
+        }
+        if sequence == 0 {
+            return Err(Refusal::Malformed("sequence 0, numbers begin with 1".into()));
+        }
+        if is_service(service::HELLO) {
+            return self.hello(message).await;
+        }
+        // Given back when the answer has gone out.
+        self.permits.acquire().await.map_err(|_| Refusal::TimedOut("an answer"))?.forget();
+        let done = if !taken {
+            Err(Refusal::Busy(format!("more than {} messages per second", self.rights.rate)))
+        } else if message.domain == SERVICE {
+            self.serve_request(message).await
+        } else {
+            self.publish(message, bytes).await
+        };
+        match done {
+            Err(refusal) if refusal.is_final() => {
+                self.permits.add_permits(1);
+                Err(refusal)
+            }
+            Err(refusal) => {
+                let _ = self.out.answers.send(refusal.to_message(sequence, now()));
+                Ok(())
+            }
+            Ok(()) => Ok(()),
+        }
+    }
+
+    async fn publish(&mut self, message: &Message<'_>, bytes: &[u8]) -> Result<(), Refusal> {
+        if !self.joined {
+            // Who is in a hurry stops the robot without a word of greeting.
+            let stops = message.command().is_ok_and(|c| matches!(c, Command::EmergencyStop | Command::Stop));
+            if !stops {
+                return Err(Refusal::NoAccess("the first frame of a connection is HELLO".into()));
+            }
+            self.join(String::new(), 0).await?;
+        }
+        self.gate.publish(self.token, message.priority, bytes);
+        Ok(())
+    }
+
+    /// Who the client is, and whether both sides mean the same by the same bytes.
+    async fn hello(&mut self, message: &Message<'_>) -> Result<(), Refusal> {
+        let malformed = || Refusal::Malformed("a HELLO without version, schema and nonce".into());
+        let (version, rest) = message.payload.split_first_chunk::<2>().ok_or_else(malformed)?;
+        let (theirs, rest) = split_u64(rest).ok_or_else(malformed)?;
+        let (nonce, names) = rest.split_first_chunk::<NONCE>().ok_or_else(malformed)?;
+        let (version, schema) = (u16::from_le_bytes(*version), schema());
+        // 0: the client learns the table of commands from the broker.
+        if version != VERSION || theirs != 0 && theirs != schema {
+            return Err(Refusal::Version { client: (version, theirs), schema });
+        }
+        if self.joined || self.claimed.is_some() {
+            return Err(Refusal::Malformed("a second HELLO".into()));
+        }
+        let text = String::from_utf8_lossy(names);
+        let (name, key) = text.split_once('\0').unwrap_or((&text, ""));
+        let name: String = name.chars().filter(|c| !c.is_control()).take(NAME).collect();
+        let own = keys::nonce().map_err(Refusal::Malformed)?;
+        let claims = !key.is_empty();
+        if claims {
+            let key = self.rights.keys.iter().find(|k| k.name == key).ok_or(Refusal::NotAuthentic)?;
+            self.claimed = Some((name, key.clone(), keys::session(key, nonce, &own)));
+        } else {
+            self.join(name, self.rights.may).await?;
+        }
+        let mut payload = VERSION.to_le_bytes().to_vec();
+        payload.extend(schema.to_le_bytes());
+        payload.extend(own);
+        payload.extend(self.token.to_le_bytes());
+        payload.extend(self.rights.may.to_le_bytes());
+        payload.push(u8::from(claims));
+        let welcome = service_message(service::WELCOME, message.stamp.sequence, now(), &payload);
+        let _ = self.out.answers.send(welcome);
+        Ok(())
+    }
+
+    async fn prove(&mut self, message: &Message<'_>) -> Result<(), Refusal> {
+        let (name, key, [to_broker, to_client]) = self.claimed.take().ok_or(Refusal::NotAuthentic)?;
+        if !to_broker.proves(message.payload) {
+            return Err(Refusal::NotAuthentic);
+        }
+        self.rights.reads = true;
+        self.bucket.rate = RATE;
+        self.join(format!("{name} with key {}", key.name), key.may).await?;
+        // From here on both directions carry tags, this answer first.
+        self.incoming = Some(to_broker);
+        let _ = self.outgoing.set(to_client);
+        let accepted = service_message(service::ACCEPTED, message.stamp.sequence, now(), &[]);
+        let _ = self.out.answers.send(accepted);
+        Ok(())
+    }
+
+    /// The broker knows the client from here on.
+    async fn join(&mut self, name: String, may: u32) -> Result<(), Refusal> {
+        let (done, joined) = oneshot::channel();
+        let (token, peer) = (self.token, &self.rights.peer);
+        let name = if name.is_empty() { peer.clone() } else { format!("{name} ({peer})") };
+        self.gate.ask(Request::Join { token, name, may, out: self.out.clone(), done });
+        match timeout(FRAME_TIME, joined).await {
+            Ok(Ok(())) => self.joined = true,
+            _ => return Err(Refusal::TimedOut("the broker's own answer")),
+        }
+        Ok(())
+    }
+
+    /// What one frame asks the broker itself for.
+    async fn serve_request(&mut self, message: &Message<'_>) -> Result<(), Refusal> {
+        let (token, sequence) = (self.token, message.stamp.sequence);
+        if message.id == service::PROVE {
+            return self.prove(message).await;
+        }
+        if !self.joined {
+            return Err(Refusal::NoAccess("the first frame of a connection is HELLO".into()));
+        }
+        if !self.rights.reads {
+            return Err(Refusal::NoAccess("this connection may only stop the robot; show a key".into()));
+        }
+        let sent_ns = message.stamp.sent_ns;
+        self.gate.ask(match message.id {
+            service::SUBSCRIBE => {
+                let Some((domains, [])) =
+                    split_u32(message.payload).filter(|(d, _)| d >> Domain::ALL.len() == 0)
+                else {
+                    return Err(Refusal::Malformed("a subscription to domains that there are not".into()));
+                };
+                Request::Subscribe { token, sequence, domains }
+            }
+            service::STATISTICS => Request::Lines { token, sequence, describe: false },
+            service::DESCRIBE => Request::Lines { token, sequence, describe: true },
+            service::TAKE_LEASE => {
+                let over = message.payload == [1];
+                Request::TakeLease { token, sequence, sent_ns, over }
+            }
+            service::GIVE_LEASE => Request::GiveLease { token, sequence },
+            id => return Err(Refusal::Malformed(format!("service {id}, which a client cannot ask for"))),
+        });
+        Ok(())
+    }
+}
+
+/// One frame, or none if the client closed the connection between two frames.
+async fn read_frame<'a>(
+    read: &mut (impl AsyncRead + Unpin),
+    buffer: &'a mut [u8; MAX_BYTES + TAG],
+    patience: Duration,
+) -> Result<Option<&'a [u8]>, Refusal> {
+    let mut head = [0; 4];
+    match timeout(patience, read.read(&mut head[..1])).await {
+        Err(_) => return Err(Refusal::TimedOut("a frame")),
+        Ok(Ok(0) | Err(_)) => return Ok(None),
+        Ok(Ok(_)) => {}
+    }
+    let rest = async {
+        let cut = |_| Refusal::Malformed("the connection ended inside a frame".into());
+        read.read_exact(&mut head[1..]).await.map_err(cut)?;
+        let bytes = u32::from_le_bytes(head) as usize;
+        if !(HEAD..=MAX_BYTES + TAG).contains(&bytes) {
+            return Err(Refusal::Malformed(length(bytes)));
+        }
+        let bytes = &mut buffer[..bytes];
+        read.read_exact(bytes).await.map_err(cut)?;
+        Ok(&*bytes)
+    };
+    timeout(FRAME_TIME, rest).await.map_err(|_| Refusal::TimedOut("the rest of a frame"))?.map(Some)
+}
+
+fn length(bytes: usize) -> String {
+    format!("length {bytes}, a frame has {HEAD} to {MAX_BYTES} bytes")
+}
+
+/// A token bucket: so many per second, as many at once.
+#[derive(Clone, Copy, Debug)]
+struct Bucket {
+    level: f64,
+    rate: f64,
+    at_ns: u64,
+}
+
+impl Bucket {
+    fn take(&mut self, now_ns: u64) -> bool {
+        let passed = now_ns.saturating_sub(self.at_ns) as f64 / SECOND as f64;
+        self.level = (self.level + self.rate * passed).min(self.rate);
+        self.at_ns = now_ns;
+        let free = self.level >= 1.0;
+        if free {
+            self.level -= 1.0;
+        }
+        free
+    }
+}
+
+/// Writes why a connection was closed, unless there are too many such lines.
+pub fn log_end(log: &mut LogGate, token: u32, peer: &str, refusal: &Refusal) {
+    if let Some(folded) = log.admit(now()) {
+        let connection = token - FIRST_STREAM;
+        tracing::warn!(code = refusal.code(), connection, folded, "connection closed: {peer}: {refusal}");
+    }
+}
+
+#[cfg(test)]
+#[path = "connection_tests.rs"]
+mod tests;

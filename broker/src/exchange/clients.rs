@@ -1,0 +1,188 @@
+//! Clients that come, ask, hold the lease and go.
+
+use messages::Reason;
+use messages::command::Domain;
+
+use super::{Exchange, FIRST_STREAM, LEASE_ROUND, MAX_PROCESSES, SILENCE};
+use crate::admission::Sender;
+use crate::inlet::Request;
+use crate::members::{Exit, Member};
+use crate::message::{Message, client_queue, describe, domain_mask, service, service_message, split_u32};
+use crate::refusal::Refusal;
+
+impl Exchange<'_> {
+    /// Serves one request of a stream; false if none waits.
+    pub(super) fn serve_stream(&mut self) -> bool {
+        let Ok(request) = self.inlet.requests.try_recv() else { return false };
+        match request {
+            Request::Join { token, name, may, out, done } => {
+                self.members.retain(|m| m.sender.token != token);
+                let sender = Sender { token, may, last: [0; 3] };
+                let exit = Exit::Stream(out);
+                self.members.push(Member { name, sender, domains: 0, exit, sent: 0, lost: 0 });
+                let _ = done.send(());
+            }
+            Request::Subscribe { token, sequence, domains } => {
+                let known = self.members.iter_mut().find(|m| m.sender.token == token);
+                if let Some(member) = known {
+                    member.domains = domains;
+                }
+                self.accept(token, sequence, "");
+            }
+            Request::Lines { token, sequence, describe: table } => {
+                for line in if table { describe() } else { self.statistics() } {
+                    let line = service_message(service::LINE, sequence, self.now, line.as_bytes());
+                    self.answer(token, line);
+                }
+                self.accept(token, sequence, "");
+            }
+            Request::Alive { token, sent_ns } => self.lease.renew(token, sent_ns, self.now),
+            Request::TakeLease { token, sequence, sent_ns, over } => {
+                self.take_lease(token, sequence, sent_ns, over);
+            }
+            Request::GiveLease { token, sequence } => {
+                self.give_back(token);
+                self.accept(token, sequence, "");
+            }
+            Request::Closing { token } => self.end_of_commands(token),
+            Request::Leave { token } => self.leave(token),
+        }
+        true
+    }
+
+    fn take_lease(&mut self, token: u32, sequence: u64, sent_ns: u64, over: bool) {
+        let may = self.members.iter().any(|m| m.sender.token == token && m.sender.may != 0);
+        if !may {
+            let refusal = Refusal::NoAccess("this connection may not hold the command lease".into());
+            return self.answer(token, refusal.to_message(sequence, self.now));
+        }
+        let former = self.lease.holder(self.now).filter(|&h| h != token);
+        if let Some(former) = former.filter(|_| !over) {
+            let refusal = Refusal::LeaseHeld(self.name(former));
+            return self.answer(token, refusal.to_message(sequence, self.now));
+        }
+        match self.lease.take_over(token, sent_ns, self.now) {
+            Some(former) => {
+                tracing::warn!(
+                    "{} takes the command lease over from {}",
+                    self.name(token),
+                    self.name(former)
+                );
+            }
+            None => tracing::info!("{} has the command lease", self.name(token)),
+        }
+        self.tell_lease();
+        self.accept(token, sequence, "");
+    }
+
+    fn give_back(&mut self, token: u32) {
+        if self.lease.release(token) {
+            tracing::info!("{} gives the command lease back", self.name(token));
+            self.tell_lease();
+        }
+    }
+
+    /// Nothing comes from this client any more: what it commanded comes to a stop, and what it had waiting is dropped.
+    fn end_of_commands(&mut self, token: u32) {
+        for (sequence, command) in self.pending.drop_of(token) {
+            let refusal = Refusal::because(Reason::LeaseLost, &command);
+            self.answer(token, refusal.to_message(sequence, self.now));
+        }
+        self.give_back(token);
+    }
+
+    pub(super) fn leave(&mut self, token: u32) {
+        self.end_of_commands(token);
+        self.members.retain(|m| m.sender.token != token);
+    }
+
+    pub(super) fn register(&mut self, message: &Message<'_>) -> Option<()> {
+        let (token, rest) = split_u32(message.payload)?;
+        let (domains, rest) = split_u32(rest)?;
+        let (lost, name) = split_u32(rest)?;
+        let name = std::str::from_utf8(name).ok()?;
+        if token >= FIRST_STREAM || token == 0 {
+            return None;
+        }
+        let known = self.members.iter().position(|m| m.sender.token == token);
+        let Some(index) = known.or_else(|| self.join(token, name)) else { return Some(()) };
+        let (now, sent) = (self.now, message.stamp.sent_ns);
+        let member = &mut self.members[index];
+        (member.domains, member.lost) = (domains, lost.into());
+        if let Exit::Queue { renewed, .. } = &mut member.exit {
+            *renewed = now;
+        }
+        member.answer(service_message(service::ACCEPTED, 0, now, &[]));
+        self.lease.renew(token, sent, now);
+        if known.is_none() {
+            self.tell_processes_lease();
+        }
+        Some(())
+    }
+
+    /// A new client by queue; none if there is no more room or its queue cannot be opened.
+    fn join(&mut self, token: u32, name: &str) -> Option<usize> {
+        if self.members.iter().filter(|m| m.is_process()).count() >= MAX_PROCESSES {
+            if self.log.admit(self.now).is_some() {
+                tracing::warn!("{name} is refused: {MAX_PROCESSES} clients are connected");
+            }
+            return None;
+        }
+        let queue = client_queue(name);
+        let opened = self.space.queue_sender(&queue, &queue);
+        let sender = opened.inspect_err(|e| tracing::warn!("{name} is refused: {e}")).ok()?;
+        tracing::info!("{name} joined");
+        self.members.push(Member {
+            name: name.into(),
+            // A process of the run: shared memory is its user's.
+            sender: Sender { token, may: domain_mask(&Domain::ALL), last: [0; 3] },
+            domains: 0,
+            exit: Exit::Queue { sender: Box::new(sender), renewed: self.now },
+            sent: 0,
+            lost: 0,
+        });
+        Some(self.members.len() - 1)
+    }
+
+    /// Lets go of clients that were killed or hang; one that comes back registers again.
+    pub(super) fn release_silent(&mut self) {
+        let now = self.now;
+        let silent = |m: &Member| match &m.exit {
+            Exit::Queue { renewed, .. } => now.saturating_sub(*renewed) > SILENCE,
+            Exit::Stream(_) => false,
+        };
+        let gone: Vec<u32> = self.members.iter().filter(|m| silent(m)).map(|m| m.sender.token).collect();
+        for token in gone {
+            tracing::warn!("{} is silent: its queue is released", self.name(token));
+            self.leave(token);
+        }
+    }
+
+    /// Tells everybody who holds the lease: it has just changed.
+    pub(super) fn tell_lease(&mut self) {
+        self.tell_processes_lease();
+        let news = self.lease_message();
+        for member in self.members.iter_mut().filter(|m| !m.is_process()) {
+            member.deliver(&news);
+        }
+    }
+
+    pub(super) fn tell_processes_lease(&mut self) {
+        self.next_lease = self.now + LEASE_ROUND;
+        let news = self.lease_message();
+        for member in self.members.iter_mut().filter(|m| m.is_process()) {
+            if let Exit::Queue { sender, .. } = &mut member.exit {
+                sender.send(&news);
+            }
+        }
+    }
+
+    fn lease_message(&self) -> Vec<u8> {
+        let lease = self.lease.state(self.now);
+        let holder = self.lease.holder(self.now).map_or(String::new(), |token| self.name(token));
+        let mut payload = lease.grant.to_le_bytes().to_vec();
+        payload.extend(lease.until_ns.to_le_bytes());
+        payload.extend(holder.bytes());
+        service_message(service::LEASE, 0, self.now, &payload)
+    }
+}

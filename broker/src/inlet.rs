@@ -1,0 +1,81 @@
+//! The way from the streams into the broker: queues inside the process, and a doorbell that wakes it.
+
+use std::sync::mpsc as queue;
+
+use ipc::Doorbell;
+use messages::command::Priority;
+use tokio::sync::oneshot;
+
+use crate::members::Outgoing;
+
+/// A command's way into the broker: number of the connection and message. It is answered on the connection.
+pub type Publication = (u32, Vec<u8>);
+
+/// What else a connection asks of the broker, each with the sequence of its frame.
+#[allow(missing_docs, reason = "fields are the token of a connection and the contents of its frame")]
+pub enum Request {
+    /// The client said who it is.
+    Join { token: u32, name: String, may: u32, out: Outgoing, done: oneshot::Sender<()> },
+    /// Sets the domains of a client.
+    Subscribe { token: u32, sequence: u64, domains: u32 },
+    /// Asks for the table of commands, or for statistics.
+    Lines { token: u32, sequence: u64, describe: bool },
+    /// The client is there.
+    Alive { token: u32, sent_ns: u64 },
+    /// Wants the lease; over whoever holds it.
+    TakeLease { token: u32, sequence: u64, sent_ns: u64, over: bool },
+    /// Gives the lease back.
+    GiveLease { token: u32, sequence: u64 },
+    /// The client closed its end: it commands nothing any more, and still gets its answers.
+    Closing { token: u32 },
+    /// The connection is closed.
+    Leave { token: u32 },
+}
+
+/// Where the broker finds what connections hand in. How much that is, is limited by what each of them may have
+/// unanswered.
+pub struct Inlet {
+    /// Commands by class.
+    pub publish: [queue::Receiver<Publication>; 3],
+    /// Everything else.
+    pub requests: queue::Receiver<Request>,
+}
+
+/// The other end, for the connections.
+#[derive(Clone)]
+pub struct Gate {
+    publish: [queue::Sender<Publication>; 3],
+    requests: queue::Sender<Request>,
+    doorbell: Option<Doorbell>,
+}
+
+/// A gate to the broker and its inlet.
+pub fn gate() -> (Gate, Inlet) {
+    let [(high, h), (normal, n), (low, l)] = [(); 3].map(|()| queue::channel());
+    let (requests, asked) = queue::channel();
+    let gate = Gate { publish: [high, normal, low], requests, doorbell: None };
+    (gate, Inlet { publish: [h, n, l], requests: asked })
+}
+
+impl Gate {
+    /// The gate that rings the broker whenever something is handed in.
+    pub fn ringing(self, doorbell: Doorbell) -> Self {
+        Self { doorbell: Some(doorbell), ..self }
+    }
+
+    pub(crate) fn publish(&self, token: u32, priority: Priority, bytes: &[u8]) {
+        let _ = self.publish[priority as usize].send((token, bytes.to_vec()));
+        self.ring();
+    }
+
+    pub(crate) fn ask(&self, request: Request) {
+        let _ = self.requests.send(request);
+        self.ring();
+    }
+
+    fn ring(&self) {
+        if let Some(doorbell) = &self.doorbell {
+            doorbell.ring();
+        }
+    }
+}

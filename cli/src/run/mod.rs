@@ -1,0 +1,151 @@
+//! `gangwerk run SCENE`: every process of the chain, started, watched and ended.
+//!
+//! - [`supervisor`]: starts the processes, looks after them, ends them.
+//! - [`course`]: when the run ends and what is done before: the answer to Ctrl-C, to deaths, to standing; pure.
+//! - [`pulse`]: who hangs; pure; told by [`hearing`]. [`backoff`]: when who died is started again; pure.
+//! - [`view`]: what the operator sees.
+
+mod backoff;
+mod course;
+mod hearing;
+mod pulse;
+mod supervisor;
+mod view;
+
+use std::error::Error;
+use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
+use std::process::ExitStatus;
+
+use config::Setup;
+use config::tolerance::Method;
+use fieldbus::Address;
+use ipc::{Mode, Run, Space};
+use messages::topics::{CONTROLLER_STATE, SIM_STATE};
+use messages::{ControllerState, Process, SimState};
+use realtime::{Stop, clock};
+use terminal::Console;
+
+use crate::figures::{Figures, Gatherer};
+
+/// What to run and how.
+#[derive(Clone, Debug)]
+pub struct Order {
+    /// Lockstep or real time.
+    pub mode: Mode,
+    /// Name of the scene.
+    pub scene: String,
+    /// How it is simulated, if it leaves that open: [`crate::choose`].
+    pub method: Option<Method>,
+    /// The configuration directory.
+    pub config: PathBuf,
+    /// The field bus.
+    pub bus: Address,
+    /// Whether a simulated robot is put at its far end.
+    pub robot: bool,
+    /// The run directory.
+    pub dir: PathBuf,
+    /// Where the log goes; none: no log.
+    pub log: Option<PathBuf>,
+}
+
+/// What ended a process before its time.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// It ended.
+    Died(ExitStatus),
+    /// It lived and wrote nothing for so long \[ns\].
+    Hung(u64),
+}
+
+impl std::fmt::Display for Cause {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Died(status) => match status.signal() {
+                Some(n) => write!(f, "died during the run: signal {n}"),
+                None => write!(f, "died during the run: {status}"),
+            },
+            Self::Hung(ns) => {
+                write!(
+                    f,
+                    "hung during the run: no record of it for {:.1} s",
+                    *ns as f64 / clock::SECOND as f64
+                )
+            }
+        }
+    }
+}
+
+/// How a run ended.
+#[derive(Debug, Default)]
+pub struct Outcome {
+    /// Processes that died or hung before their time, also those that were started again.
+    pub lost: Vec<(Process, Cause)>,
+    /// Whether somebody asked for the end.
+    pub interrupted: bool,
+    /// Records missing from the log.
+    pub missing: u64,
+    /// Whether the logger says that the log is not complete, because its disk failed.
+    pub log_broken: bool,
+}
+
+/// Runs a scene with all its processes, until `stop` at the latest; what there is to tell goes to `console`.
+///
+/// `stop` is made before `console`, which is a thread.
+///
+/// # Errors
+/// The configuration is wrong, another run uses the directory, or a process does not start.
+pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<dyn Error>> {
+    // From here errors name the files of the operator; the processes read the copy.
+    let theirs = Setup::load(&order.config, &order.scene)?;
+    let space = Space::create(&order.dir)?;
+    let config = space.dir().join(ipc::CONFIG);
+    let _ = std::fs::remove_dir_all(&config); // of a run that was killed
+    config::snapshot(&order.config, &config)?;
+    let setup = Setup::load(&config, &order.scene)?.with_method(order.method)?;
+    if setup.hash != theirs.hash {
+        return Err(format!(
+            "{}: changed while the run was starting; start it again",
+            order.config.display()
+        )
+        .into());
+    }
+    multibody_check(&setup)?;
+    let run = Run {
+        dir: space.dir().into(),
+        mode: order.mode,
+        scene: order.scene.clone(),
+        method: order.method.map(|method| method.to_string()),
+        config,
+        bus: order.bus.to_string(),
+        robot: order.robot,
+        log: order.log.clone(),
+    };
+    run.save()?;
+    supervisor::supervise(run, space, &setup, stop, console)
+}
+
+/// Builds what every process will build, so that a wrong robot is one error and not seven.
+fn multibody_check(setup: &Setup) -> Result<(), Box<dyn Error>> {
+    sim_backend::SimBackend::new(&setup.robot, &setup.scene)?;
+    Ok(())
+}
+
+/// The figures of a log.
+///
+/// # Errors
+/// The log cannot be read.
+pub fn figures_of(log: &Path, setup: &Setup) -> Result<Figures, Box<dyn Error>> {
+    let file = recording::Log::open(log)?;
+    let states = file.records::<ControllerState>(&CONTROLLER_STATE)?;
+    let sims = file.records::<SimState>(&SIM_STATE)?;
+    let mut gatherer = Gatherer::default();
+    let mut sims = sims.iter().peekable();
+    for state in &states {
+        while sims.next_if(|s| s.header.tick < state.header.tick).is_some() {}
+        if let Some(sim) = sims.next_if(|s| s.header.tick == state.header.tick) {
+            gatherer.add(sim, state);
+        }
+    }
+    Ok(gatherer.figures(setup, 0.0, Some(log.display().to_string())))
+}

@@ -1,0 +1,338 @@
+//! Starts the processes, looks after them, ends them.
+
+use std::error::Error;
+use std::os::unix::process::CommandExt;
+use std::process::{Child, Command as Spawn, ExitStatus, Stdio};
+use std::time::Duration;
+
+use config::Setup;
+use ipc::{Mode, Run, Space};
+use messages::command::Domain;
+use messages::topics::Topic;
+use messages::{Command, CycleStats, Event, EventCode, Process};
+use realtime::{Stop, clock};
+use terminal::{Console, Feed};
+
+use super::backoff::Backoff;
+use super::course::{Act, Course, Seen};
+use super::hearing::Hearing;
+use super::pulse::Pulse;
+use super::view::View;
+use super::{Cause, Outcome};
+
+/// Between two looks at the processes.
+const LOOK: Duration = Duration::from_millis(10);
+/// A process that has not reported within this time after its start does not start any more.
+const START_PATIENCE: u64 = 20 * clock::SECOND;
+/// A process that was asked to end gets this long.
+const END_PATIENCE: u64 = 5 * clock::SECOND;
+/// How often the ports of dead observers are cleared away.
+const CLEAR_EVERY: u64 = 2 * clock::SECOND;
+/// What a process said before it died is on its way through its pipe.
+const LAST_WORDS: Duration = Duration::from_millis(50);
+
+/// Runs the processes of `run` to their end.
+///
+/// # Errors
+/// A process does not start, or has another configuration.
+pub(super) fn supervise(
+    run: Run,
+    space: Space,
+    setup: &Setup,
+    stop: Stop,
+    console: &Console,
+) -> Result<Outcome, Box<dyn Error>> {
+    let course = Course::new(run.mode);
+    let mut view = View::new(&space, setup, console.clone())?;
+    let mut supervisor = Supervisor {
+        children: Vec::new(),
+        restarts: [(Process::Broker, Backoff::default()), (Process::Logger, Backoff::default())],
+        pulse: Pulse::default(),
+        outcome: Outcome::default(),
+        console: console.clone(),
+        patience: (setup.system.peer_timeout * 1e9) as u64,
+        course,
+        run,
+        space,
+        stop,
+    };
+    let result = supervisor.start(setup).and_then(|()| supervisor.watch(&mut view));
+    // Whatever became of it: nobody is left alive, and what was said last is heard.
+    supervisor.end();
+    view.update();
+    supervisor.outcome.missing = view.missing();
+    result.map(|()| std::mem::take(&mut supervisor.outcome))
+}
+
+struct Supervisor {
+    children: Vec<(Process, Child)>,
+    /// Processes without which the robot walks on.
+    restarts: [(Process, Backoff); 2],
+    pulse: Pulse,
+    course: Course,
+    outcome: Outcome,
+    console: Console,
+    /// How long processes wait for each other in lockstep \[ns\].
+    patience: u64,
+    run: Run,
+    space: Space,
+    stop: Stop,
+}
+
+impl Supervisor {
+    /// Starts the processes one after the other; each has built everything before the next begins. Who waits longer for
+    /// peers, `peer_timeout`, waits longer for their start, too.
+    fn start(&mut self, setup: &Setup) -> Result<(), Box<dyn Error>> {
+        let patience = START_PATIENCE.max(self.patience);
+        for process in Process::ALL {
+            let wanted = match process {
+                Process::Logger => self.run.log.is_some(),
+                Process::SimBackend => self.run.robot,
+                _ => true,
+            };
+            if wanted {
+                self.spawn(process)?;
+                self.wait_until_started(process, patience)?;
+                self.compare(process, setup.hash)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn spawn(&mut self, process: Process) -> Result<(), Box<dyn Error>> {
+        let (feed, errors) = Feed::new()?;
+        let child = Spawn::new(std::env::current_exe()?)
+            .arg(process.name())
+            .arg("--run")
+            .arg(&self.run.dir)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(errors)
+            .process_group(0) // the terminal's Ctrl-C is the supervisor's to hear
+            .spawn()?;
+        feed.into_lines(self.console.clone())?;
+        self.children.push((process, child));
+        Ok(())
+    }
+
+    fn wait_until_started(&mut self, process: Process, patience: u64) -> Result<(), Box<dyn Error>> {
+        let mut events = self.space.reader::<Event>(topic("events", process)?)?;
+        let begun = clock::now();
+        while events.follow().is_none_or(|e| e.code != EventCode::Started as u64) {
+            let child = self.children.last_mut().map(|(_, child)| child);
+            if let Some(status) = child.and_then(|c| c.try_wait().ok().flatten()) {
+                std::thread::park_timeout(LAST_WORDS);
+                let name = process.name();
+                return Err(format!("{name} did not start ({status}); its own message stands above").into());
+            }
+            if clock::now() - begun > patience {
+                let seconds = patience / clock::SECOND;
+                return Err(format!("{} did not start within {seconds} s", process.name()).into());
+            }
+            std::thread::park_timeout(LOOK / 2);
+        }
+        Ok(())
+    }
+
+    /// A process that walks with another configuration than the others is not let near a robot.
+    fn compare(&self, process: Process, hash: u64) -> Result<(), Box<dyn Error>> {
+        let Ok(topic) = topic("cycle_stats", process) else { return Ok(()) }; // reads none
+        let mut stats = self.space.reader::<CycleStats>(topic)?;
+        match stats.latest().map(|stats| stats.config_hash) {
+            Some(theirs) if theirs == hash => Ok(()),
+            theirs => Err(format!(
+                "{} has another configuration (hash {:016x}) than the supervisor ({hash:016x}): nothing was armed; start \
+                 all processes from one build",
+                process.name(),
+                theirs.unwrap_or(0)
+            )
+            .into()),
+        }
+    }
+
+    /// Until the joint loop has done the scene, somebody asks to end, or the aftermath of a death is over.
+    fn watch(&mut self, view: &mut View) -> Result<(), Box<dyn Error>> {
+        let mut operator = broker::Client::start("supervisor", &[Domain::System], &self.space)?;
+        // Whether the broker answers: a client that it has to answer anew. It takes what was published before it answers, and
+        // this client subscribes to nothing, so that nobody counts it among those that a command reaches.
+        let mut witness: Option<broker::Client> = None;
+        let mut hearing = Hearing::new(&self.space, self.run.mode)?;
+        let mut cleared = clock::now();
+        loop {
+            std::thread::park_timeout(LOOK);
+            view.update();
+            let now = clock::now();
+            let mut seen = Seen { finished: self.bury(now), ..Seen::default() };
+            // Who hangs is treated as who died.
+            hearing.listen(operator.statistics().connected);
+            if let Some((process, ns)) = self.pulse.look(now, |p| hearing.heard(p)) {
+                self.kill(process);
+                self.lose(process, Cause::Hung(ns), now);
+            }
+            self.restart(now)?;
+            if now > cleared + CLEAR_EVERY {
+                self.space.clear_dead();
+                cleared = now;
+            }
+            seen.asked = self.stop.taken() || operator.received().any(|c| c == Command::End);
+            seen.passed = witness.as_ref().is_some_and(|witness| witness.statistics().connected);
+            seen.stands = view.standing();
+            match self.course.step(now, seen) {
+                Act::GoOn => {}
+                Act::Stand => {
+                    self.outcome.interrupted = true;
+                    self.console.say(
+                        "asked to end: the robot stops and stands first; once more: emergency stop, and the end at once",
+                    );
+                    operator.publish(&Command::Stop);
+                    witness = broker::Client::start("supervisor-witness", &[], &self.space).ok();
+                }
+                Act::EndPlanner => {
+                    self.console.say("the broker does not pass the stop on: the planner is ended, its plan walked to its end");
+                    self.terminate(|p| p == Process::Planner);
+                }
+                Act::EmergencyStop => {
+                    for line in crate::estop::report(&crate::estop::stop_own(&self.run.dir)) {
+                        self.console.say(line);
+                    }
+                    return Ok(());
+                }
+                Act::Finish => return Ok(()),
+            }
+        }
+    }
+
+    /// Takes note of children that have ended since the last look; whether the run is finished with that.
+    fn bury(&mut self, now: u64) -> bool {
+        let mut finished = false;
+        for (process, status) in self.ended() {
+            if status.success() && (process == Process::Lowlevel || self.course.is_ending(process)) {
+                finished |= process != Process::Planner;
+            } else {
+                self.find_stopped(now);
+                self.lose(process, Cause::Died(status), now);
+            }
+        }
+        finished
+    }
+
+    /// In lockstep who waits in vain gives up, and may not know for whom everybody waits: it is a process that was stopped.
+    fn find_stopped(&mut self, now: u64) {
+        if self.run.mode == Mode::RealTime {
+            return;
+        }
+        let stopped =
+            self.children.iter().find(|(_, child)| is_stopped(child.id())).map(|(process, _)| *process);
+        if let Some(process) = stopped {
+            self.kill(process);
+            self.lose(process, Cause::Hung(self.patience), now);
+        }
+    }
+
+    /// Children that have ended since the last look.
+    fn ended(&mut self) -> Vec<(Process, ExitStatus)> {
+        let mut ended = Vec::new();
+        self.children.retain_mut(|(process, child)| match child.try_wait() {
+            Ok(Some(status)) => {
+                ended.push((*process, status));
+                false
+            }
+            _ => true,
+        });
+        ended
+    }
+
+    fn lose(&mut self, process: Process, cause: Cause, now: u64) {
+        self.console.say(format!("{} {cause}", process.name()));
+        self.outcome.lost.push((process, cause));
+        self.pulse.forget(process);
+        self.course.lost(process, now);
+        if let Some((_, backoff)) = self.restarts.iter_mut().find(|(p, _)| *p == process) {
+            let text = match backoff.died(now) {
+                Some(pause) => format!("is started again in {:.1} s", pause as f64 / clock::SECOND as f64),
+                None => "is not started again: it died too often".into(),
+            };
+            self.console.say(format!("{} {text}; the robot goes on", process.name()));
+        }
+    }
+
+    /// Starts again whose pause is over.
+    fn restart(&mut self, now: u64) -> Result<(), Box<dyn Error>> {
+        for i in 0..self.restarts.len() {
+            if self.restarts[i].1.is_due(now) {
+                // Its ports would be in the way of its successor's.
+                self.space.clear_dead();
+                self.spawn(self.restarts[i].0)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn kill(&mut self, process: Process) {
+        self.children.retain_mut(|(p, child)| {
+            if *p == process {
+                let _ = child.kill();
+                let _ = child.wait();
+            }
+            *p != process
+        });
+    }
+
+    /// Asks those to end.
+    fn terminate(&self, which: impl Fn(Process) -> bool) {
+        self.children
+            .iter()
+            .filter(|(p, _)| which(*p))
+            .for_each(|(_, child)| realtime::terminate(child.id()));
+    }
+
+    /// Ends all processes: the joint loop first, so that the watchdog cuts the supply; the logger last.
+    fn end(&mut self) {
+        let turn_of = |p: Process| match p {
+            Process::Lowlevel => 0,
+            Process::Logger => 2,
+            _ => 1,
+        };
+        for turn in 0..3 {
+            self.terminate(|p| turn_of(p) == turn);
+            let begun = clock::now();
+            for (process, child) in self.children.iter_mut().filter(|(p, _)| turn_of(*p) == turn) {
+                let status = loop {
+                    match child.try_wait() {
+                        Ok(None) if clock::now() - begun > END_PATIENCE => _ = child.kill(),
+                        Ok(None) => {}
+                        Ok(Some(status)) => break Some(status),
+                        Err(_) => break None,
+                    }
+                    std::thread::park_timeout(LOOK / 5);
+                };
+                let failed = *process == Process::Logger && status.is_none_or(|s| !s.success());
+                self.outcome.log_broken |= failed;
+            }
+            if turn == 0 {
+                // The watchdog sees the silence and the robot its power line: a few cycles for the log.
+                std::thread::park_timeout(LAST_WORDS);
+            }
+        }
+        self.children.clear();
+    }
+}
+
+/// Whether the process was stopped by a signal, as /proc says.
+fn is_stopped(pid: u32) -> bool {
+    let status = std::fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
+    // The name before the state may hold anything, parentheses too.
+    status.rsplit_once(") ").is_some_and(|(_, rest)| rest.starts_with(['T', 't']))
+}
+
+impl Drop for Supervisor {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+/// The topic `prefix/PROCESS`.
+fn topic(prefix: &str, process: Process) -> Result<&'static Topic, String> {
+    let name = format!("{prefix}/{}", process.name());
+    Topic::find(&name).ok_or_else(|| format!("there is no topic {name}"))
+}

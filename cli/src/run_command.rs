@@ -1,0 +1,89 @@
+//! `gangwerk run`: a run, its results and its exit code, with nothing printed but through the console.
+
+use std::error::Error;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use cli::run::Order;
+use config::Setup;
+use realtime::{Stop, clock};
+use terminal::Console;
+
+/// How long the terminal may take for what is left to say when a run has ended.
+const LAST_WORDS: Duration = Duration::from_secs(2);
+
+/// A run, with nothing printed but through the console: a paused terminal holds up neither robot nor end.
+pub(crate) fn run(mut order: Order, no_plots: bool) -> Result<ExitCode, Box<dyn Error>> {
+    if let Some(directory) = order.log.as_ref().and_then(|log| log.parent()) {
+        std::fs::create_dir_all(directory)
+            .map_err(|e| format!("{}: {e}; choose another place with --out", directory.display()))?;
+    }
+    let (setup, choice) = cli::choose::load(&order.config, &order.scene, true)?;
+    order.method = choice.map(|choice| choice.method);
+    // First of all that starts a thread: one with signals of its own would be where Ctrl-C ends everything.
+    let stop = Stop::on_signals()?;
+    let console = Console::start(Some((setup.scene.duration * 10.0) as u64), clock::now)?;
+    terminal::divert(&console);
+    let code = run_on(&order, &setup, no_plots, stop, &console).unwrap_or_else(|error| {
+        console.say(format!("error: {error}"));
+        ExitCode::FAILURE
+    });
+    console.flush(LAST_WORDS);
+    Ok(code)
+}
+
+fn run_on(
+    order: &Order,
+    setup: &Setup,
+    no_plots: bool,
+    stop: Stop,
+    console: &Console,
+) -> Result<ExitCode, Box<dyn Error>> {
+    let outcome = cli::run::run(order, stop, console)?;
+    let incomplete = outcome.missing > 0 || outcome.log_broken;
+    // Results: what the log says, and whether that is all of the run.
+    let mut told = true;
+    if let Some(log) = order.log.as_ref().filter(|_| order.robot) {
+        let text = results(log, setup, incomplete, no_plots, console);
+        told = text.map_err(|error| console.say(format!("error: {error}"))).is_ok_and(|text| {
+            // A paused terminal is no reason to call the run a failure; a full disk under the results is.
+            console.result(text, LAST_WORDS) || outcome.interrupted
+        });
+    }
+    // Reasons, last, so that they stand at the end: who was lost and why.
+    for (process, cause) in &outcome.lost {
+        console.say(format!("{} {cause}", process.name()));
+    }
+    if outcome.log_broken {
+        console.say("the log is not complete: its logger failed");
+    } else if outcome.missing > 0 {
+        console.say(format!("the log is not complete: {} records are missing", outcome.missing));
+    }
+    let failed = !outcome.lost.is_empty() || outcome.log_broken || !told;
+    Ok(match (failed, outcome.interrupted) {
+        (true, _) => ExitCode::FAILURE,
+        (false, true) => ExitCode::from(130),
+        (false, false) => ExitCode::SUCCESS,
+    })
+}
+
+/// Figures of a log, and the names of its pictures.
+fn results(
+    log: &Path,
+    setup: &Setup,
+    incomplete: bool,
+    no_plots: bool,
+    console: &Console,
+) -> Result<String, Box<dyn Error>> {
+    let mut text = cli::figures::table(&cli::run::figures_of(log, setup)?);
+    if incomplete {
+        text += "\nINCOMPLETE: records are missing from the log, and these figures are of the others";
+    }
+    if !no_plots {
+        let pictures = cli::plot::run(log, log.parent().unwrap_or(log))?;
+        text += &pictures.written.iter().map(|path| format!("\n{}", path.display())).collect::<String>();
+        pictures.skipped.iter().for_each(|reason| console.say(format!("not drawn: {reason}")));
+    }
+    Ok(text)
+}

@@ -1,0 +1,172 @@
+//! Answers to commands: accepted, or refused with the reason and the limit, by the process that has the last word.
+//!
+//! A [`Verdict`] is made in a control cycle, so it is plain numbers; its text is made later, by a thread that may
+//! allocate. The numbers of the reasons travel in the protocol (`docs/protocol.md`) and are never given twice.
+
+use crate::{Command, EventCode, Live};
+
+/// What became of a command.
+pub type Verdict = Result<(), Reason>;
+
+/// Why a process does not do what it is told. Reasons of the broker itself are its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reason {
+    /// It was given too long ago.
+    TooOld {
+        /// \[ns\] how long.
+        age_ns: u64,
+    },
+    /// Its sender's clock is ahead of this machine's.
+    FromTheFuture {
+        /// \[ns\] how far.
+        lead_ns: u64,
+    },
+    /// Its number is not above the last one of its connection: replayed, or out of order.
+    Replayed {
+        /// Its number.
+        sequence: u64,
+        /// The highest number before it.
+        last: u64,
+    },
+    /// Its sender lost the command lease before it took effect.
+    LeaseLost,
+    /// A number lies outside of what the gait or robot allows.
+    Limit {
+        /// Index in the command's table of fields.
+        field: u8,
+        /// Least value.
+        low: f64,
+        /// Greatest value.
+        high: f64,
+    },
+    /// The robot does not stand on its feet yet.
+    NotStanding,
+    /// Nothing that can be done in the present state, for example to walk before `walk/stand`.
+    NotNow,
+    /// What an event tells more about.
+    Event {
+        /// Its code.
+        code: EventCode,
+        /// See the code.
+        detail: u64,
+    },
+}
+
+impl Reason {
+    /// Number in the protocol.
+    pub const fn code(&self) -> u8 {
+        match self {
+            Self::TooOld { .. } => 20,
+            Self::FromTheFuture { .. } => 21,
+            Self::Replayed { .. } => 22,
+            Self::LeaseLost => 23,
+            Self::Limit { .. } => 30,
+            Self::NotStanding => 31,
+            Self::NotNow => 32,
+            Self::Event { .. } => 33,
+        }
+    }
+
+    /// Sentence for the operator.
+    pub fn text(&self, command: &Command) -> String {
+        let ms = |ns: u64| ns as f64 * 1e-6;
+        match *self {
+            Self::TooOld { age_ns } => {
+                let most = ms(crate::command_stamp::MAX_AGE);
+                format!("it is {:.0} ms old, at most {most:.0} ms: dropped; send it again", ms(age_ns))
+            }
+            Self::FromTheFuture { lead_ns } => {
+                format!("its time is {:.0} ms ahead of this machine's CLOCK_MONOTONIC", ms(lead_ns))
+            }
+            Self::Replayed { sequence, last } => {
+                format!("its sequence {sequence} is not above {last}: replayed, or out of order")
+            }
+            Self::LeaseLost => "its sender no longer holds the command lease".into(),
+            Self::Limit { field, low, high } => limit(command, usize::from(field), low, high),
+            Self::NotStanding => "the robot does not stand on its feet yet; walk/stand comes first".into(),
+            Self::NotNow => "not in the present state; walk/stand comes first, and a skill ends first".into(),
+            Self::Event { code, detail } => event(code, detail),
+        }
+    }
+}
+
+/// `forward = 3 m/s: at most 1.39`.
+fn limit(command: &Command, field: usize, low: f64, high: f64) -> String {
+    let Some(info) = command.info().fields.get(field) else { return "outside of its limits".into() };
+    let (name, unit, value) = (info.name, info.unit, command.value(field));
+    // The table of a gait holds no more digits than three; neither should the sentence.
+    let round = |x: f64| (x * 1e3).round() / 1e3;
+    if value > high {
+        format!("{name} = {value} {unit}: at most {}", round(high))
+    } else if value < low {
+        format!("{name} = {value} {unit}: at least {}", round(low))
+    } else {
+        format!("{name} = {value} {unit}: must lie in [{}, {}]", round(low), round(high))
+    }
+}
+
+fn event(code: EventCode, detail: u64) -> String {
+    let mm = detail as f64 * 1e-3;
+    match code {
+        EventCode::ObstacleTooHigh => format!("{mm} m is higher than the robot steps"),
+        EventCode::ObstacleTooLong => format!("a step of {mm} m over it is longer than the robot's"),
+        EventCode::NoFoothold => format!("there is no foothold for {mm} m"),
+        EventCode::ZeroRefused => format!("the robot does not hang still: {detail} N on its feet"),
+        code => format!("{code:?} ({detail})"),
+    }
+}
+
+/// Where a process gets live commands from, in its cycle: nothing here waits, locks or allocates.
+pub trait CommandSource {
+    /// The next command that may take effect now. What is too old or has lost its lease is answered and left out.
+    fn next(&mut self) -> Option<Live>;
+
+    /// Tells the sender what became of it. Of several processes that hear a command only
+    /// [the one that decides](Command::decided_by) is heard.
+    fn answer(&mut self, live: &Live, verdict: Verdict);
+
+    /// The newest word about the command lease.
+    fn lease(&self) -> crate::command_stamp::Lease;
+
+    /// The next command, accepted as it is: for processes that do whatever they are told, or tell it by their state.
+    fn accept(&mut self) -> Option<Command> {
+        let live = self.next()?;
+        self.answer(&live, Ok(()));
+        Some(live.command)
+    }
+}
+
+/// No source of live commands: a process that hears the scene only.
+#[derive(Clone, Copy, Debug)]
+pub struct NoCommands;
+
+impl CommandSource for NoCommands {
+    fn next(&mut self) -> Option<Live> {
+        None
+    }
+
+    fn answer(&mut self, _: &Live, _: Verdict) {}
+
+    fn lease(&self) -> crate::command_stamp::Lease {
+        crate::command_stamp::Lease::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::VelocityCommand;
+
+    #[test]
+    fn a_refusal_names_field_value_and_limit() {
+        let fast = Command::Velocity(VelocityCommand { forward: 1.9, left: -0.9, turn: 0.0 });
+        let limit = |field, low, high| Reason::Limit { field, low, high }.text(&fast);
+        assert_eq!(limit(0, -0.3, 1.388_888), "forward = 1.9 m/s: at most 1.389");
+        assert_eq!(limit(1, -0.2, 0.2), "left = -0.9 m/s: at least -0.2");
+        assert_eq!(limit(9, 0.0, 1.0), "outside of its limits");
+        assert_eq!(
+            Reason::TooOld { age_ns: 134_000_000 }.text(&fast),
+            "it is 134 ms old, at most 100 ms: dropped; send it again"
+        );
+    }
+}

@@ -1,0 +1,318 @@
+"""Client of Gangwerk's broker: commands, answers, the command lease, commands of others. Standard library only.
+
+    with Client.local("/dev/shm/gangwerk") as robot:
+        robot.command("walk/stand")
+        robot.command("walk/velocity", forward=0.3)   # raises Refused with reason and limit
+        time.sleep(5)
+        robot.command("walk/stop")
+
+While the client is open, a thread gives signs of life; so the command lease, taken with the first command that needs it,
+stays with it. When the program ends, is killed or hangs, the lease runs out within half a second and the robot stops.
+The protocol, and what each number means: docs/protocol.md.
+"""
+
+import collections
+import hashlib
+import hmac
+import math
+import os
+import socket
+import struct
+import threading
+import time
+
+VERSION = 2
+SERVICE = 0xFFFF
+SUBSCRIBE, STATISTICS, PING, HELLO, PROVE, TAKE_LEASE, GIVE_LEASE, DESCRIBE = 3, 4, 5, 7, 8, 9, 10, 11
+ACCEPTED, REFUSED, LINE, WELCOME, LEASE = 16, 17, 18, 19, 20
+HEAD = struct.Struct("<HHB3xIIQQ")
+TAG = 16
+MAX_MESSAGE = 512
+HIGH, NORMAL, LOW = 0, 1, 2
+DOMAINS = ("system", "walk", "stabilize", "joint", "head", "log", "sim", "vision")
+
+Field = collections.namedtuple("Field", "name kind unit low high default")
+Command = collections.namedtuple("Command", "name domain id number needs_lease fields")
+Message = collections.namedtuple("Message", "domain id sequence time payload")
+
+
+class Refused(Exception):
+    """The command was not carried out. `code` is the number of the reason, `text` says it with the limit."""
+
+    def __init__(self, code, text):
+        super().__init__(text)
+        self.code, self.text = code, text
+
+
+class Lost(ConnectionError):
+    """The connection has ended."""
+
+
+class Client:
+    """One connection to the broker. Its methods may be called from any thread."""
+
+    def __init__(self, stream, name, key=None, timeout=3.0, shared_clock=True):
+        self._stream, self._timeout = stream, timeout
+        self._sending = threading.Lock()
+        self._changed = threading.Condition()
+        self._sequence = 0
+        self._answers = {}
+        self._lines = collections.defaultdict(list)
+        self._heard = collections.deque(maxlen=10_000)
+        self._end = None
+        self._seal = self._open = None
+        self._out = self._in = 0
+        # On a network: newest time of the broker and own time when it came, which is never ahead of the broker.
+        self._clock = None if shared_clock else (0, time.monotonic_ns())
+        self.lease_holder = ""
+        self.commands = {}
+        stream.settimeout(None)
+        self._threads = [threading.Thread(target=run, daemon=True) for run in (self._read, self._live)]
+        self._threads[0].start()
+        try:
+            self._greet(name, key)
+            self.commands = {c.name: c for c in map(_command, self._ask_lines(DESCRIBE))}
+        except BaseException:
+            self.close()
+            raise
+        self._threads[1].start()
+
+    @classmethod
+    def local(cls, run_directory, name="python", timeout=3.0):
+        """Connects to the robot of this run directory on this machine."""
+        stream = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        stream.connect(os.path.join(run_directory, "broker.sock"))
+        return cls(stream, name, timeout=timeout)
+
+    @classmethod
+    def network(cls, host, port, key=None, name="python", timeout=3.0):
+        """Connects over TCP. `key`: a pair (name of the key, 64 hexadecimal digits); without one, only stops are taken."""
+        stream = socket.create_connection((host, port), timeout)
+        stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        return cls(stream, name, key, timeout, shared_clock=False)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        """Ends the connection; with it goes the command lease, and a walk that was commanded under it."""
+        self._stop("closed")
+
+    # What an operator does.
+
+    def command(self, name, **values):
+        """Sends a command and waits for its answer; the name of the process that took it. Raises Refused."""
+        return self.wait(self.send(name, **values))
+
+    def send(self, name, **values):
+        """Sends a command without waiting; its number, for `wait`. Fields with a dot: `**{"force.y": 40}`."""
+        entry = self.commands.get(name)
+        if entry is None:
+            raise ValueError(f"there is no command {name}; there are {', '.join(sorted(self.commands))}")
+        unknown = set(values) - {field.name for field in entry.fields}
+        if unknown:
+            raise ValueError(f"{name}: no field {', '.join(sorted(unknown))}")
+        payload = struct.pack("<I", entry.number)
+        for field in entry.fields:
+            value = values.get(field.name, field.default)
+            if value is None:
+                raise ValueError(f"{name}: {field.name} is missing: a number in [{field.low}, {field.high}] {field.unit}")
+            payload += struct.pack("<" + field.kind, value)
+        priority = HIGH if name == "system/emergency_stop" else NORMAL
+        return self._send(entry.domain, entry.id, payload, priority)
+
+    def wait(self, number):
+        """The answer to the frame `number`: who accepted it. Raises Refused, or Lost."""
+        code, text = self._wait(lambda: self._answers.pop(number, None))
+        if code:
+            raise Refused(code, text)
+        return text
+
+    def take_lease(self, over=False):
+        """Takes the command lease now; `over`: from whoever holds it."""
+        self.wait(self._send(SERVICE, TAKE_LEASE, bytes([over])))
+
+    def give_lease(self):
+        """Gives the command lease back: what was commanded under it comes to a stop."""
+        self.wait(self._send(SERVICE, GIVE_LEASE, b""))
+
+    def subscribe(self, *domains):
+        """From now on `heard` gives the commands of these domains, whoever sends them."""
+        mask = sum(1 << DOMAINS.index(domain) for domain in domains)
+        self.wait(self._send(SERVICE, SUBSCRIBE, struct.pack("<I", mask)))
+
+    def heard(self, timeout=0.0):
+        """The next command of the domains subscribed to, as (name, values); None if none comes in this time."""
+        try:
+            message = self._wait(lambda: self._heard.popleft() if self._heard else None, timeout)
+        except TimeoutError:
+            return None
+        for entry in self.commands.values():
+            if (entry.domain, entry.id) == (message.domain, message.id):
+                values = struct.unpack("<I" + "".join(f.kind for f in entry.fields), message.payload)[1:]
+                return entry.name, dict(zip((f.name for f in entry.fields), values))
+        return None
+
+    def statistics(self):
+        """One line about the broker and one about each of its clients."""
+        return self._ask_lines(STATISTICS)
+
+    # How it travels.
+
+    def _greet(self, name, key):
+        nonce = os.urandom(16)
+        names = name.encode() + (b"\0" + key[0].encode() if key else b"")
+        # Schema 0: the table of commands is learnt from the broker.
+        hello = self._send(SERVICE, HELLO, struct.pack("<HQ", VERSION, 0) + nonce + names)
+        code, welcome = self._wait(lambda: self._answers.pop(hello, None))
+        if code:
+            raise Refused(code, welcome)
+        if not key:
+            return
+        secret, theirs = bytes.fromhex(key[1]), welcome[10:26]
+        derive = lambda direction: hmac.digest(secret, direction + nonce + theirs, hashlib.sha256)
+        to_broker, to_client = derive(b"gangwerk to broker"), derive(b"gangwerk to client")
+        with self._sending:
+            prove = self._write(SERVICE, PROVE, hmac.digest(to_broker, b"proof", hashlib.sha256), LOW)
+            # The answer is the first frame with a tag, if the proof was a good one.
+            self._open, self._seal = to_client, to_broker
+        self.wait(prove)
+
+    def _send(self, domain, ident, payload, priority=LOW):
+        with self._sending:
+            return self._write(domain, ident, payload, priority)
+
+    def _write(self, domain, ident, payload, priority):
+        if self._end:
+            raise Lost(self._end)
+        self._sequence += 1
+        message = HEAD.pack(domain, ident, priority, 0, 0, self._sequence, self._now()) + payload
+        if self._seal:
+            message += self._tag(self._seal, self._out, message)
+            self._out += 1
+        try:
+            self._stream.sendall(struct.pack("<I", len(message)) + message)
+        except OSError as error:
+            raise Lost(self._end or str(error)) from error
+        return self._sequence
+
+    def _now(self):
+        if self._clock is None:
+            return time.monotonic_ns()
+        broker, own = self._clock
+        return broker + time.monotonic_ns() - own
+
+    @staticmethod
+    def _tag(key, number, message):
+        return hmac.digest(key, struct.pack("<Q", number) + message, hashlib.sha256)[:TAG]
+
+    def _wait(self, ready, timeout=None):
+        limit = time.monotonic() + (self._timeout if timeout is None else timeout)
+        with self._changed:
+            while True:
+                found = ready()
+                if found is not None:
+                    return found
+                if self._end:
+                    raise Lost(self._end)
+                left = limit - time.monotonic()
+                if left <= 0:
+                    raise TimeoutError("the broker has not answered")
+                self._changed.wait(left)
+
+    def _ask_lines(self, service):
+        number = self._send(SERVICE, service, b"")
+        self.wait(number)
+        with self._changed:
+            return self._lines.pop(number, [])
+
+    def _live(self):
+        while not self._end:
+            try:
+                self._send(SERVICE, PING, b"")
+            except Lost:
+                return
+            time.sleep(0.1)
+
+    def _read(self):
+        try:
+            while True:
+                (length,) = struct.unpack("<I", self._exactly(4))
+                if not HEAD.size <= length <= MAX_MESSAGE + TAG:
+                    raise Lost(f"a frame of {length} bytes came: that is no broker of version {VERSION}")
+                message = self._authentic(self._exactly(length))
+                domain, ident, _, _, _, sequence, sent = HEAD.unpack_from(message)
+                self._take(Message(domain, ident, sequence, sent, message[HEAD.size :]))
+        except (OSError, Lost, struct.error) as error:
+            self._stop(str(error))
+
+    def _authentic(self, message):
+        if not self._open:
+            return message
+        message, tag = message[:-TAG], message[-TAG:]
+        if not hmac.compare_digest(tag, self._tag(self._open, self._in, message)):
+            raise Lost("the key is wrong, or this is not the broker that has it")
+        self._in += 1
+        return message
+
+    def _exactly(self, count):
+        data = b""
+        while len(data) < count:
+            part = self._stream.recv(count - len(data))
+            if not part:
+                raise Lost("the broker closed the connection")
+            data += part
+        return data
+
+    def _take(self, message):
+        with self._changed:
+            if self._clock and message.domain == SERVICE:
+                self._clock = max(self._clock, (message.time, time.monotonic_ns()), key=self._reading)
+            text = message.payload.decode(errors="replace")
+            if message.domain != SERVICE:
+                self._heard.append(message)
+            elif message.id == LINE:
+                self._lines[message.sequence].append(text)
+            elif message.id == ACCEPTED:
+                self._answers[message.sequence] = (0, text)
+            elif message.id == WELCOME:
+                self._answers[message.sequence] = (0, message.payload)
+            elif message.id == REFUSED and message.sequence:
+                self._answers[message.sequence] = (message.payload[0], message.payload[1:].decode(errors="replace"))
+            elif message.id == REFUSED:
+                # A reason without a number: the broker closes the connection.
+                raise Lost(message.payload[1:].decode(errors="replace"))
+            elif message.id == LEASE:
+                self.lease_holder = message.payload[12:].decode(errors="replace")
+            self._changed.notify_all()
+
+    @staticmethod
+    def _reading(clock):
+        return clock[0] - clock[1]
+
+    def _stop(self, reason):
+        with self._changed:
+            self._end = self._end or reason
+            self._changed.notify_all()
+        try:
+            self._stream.shutdown(socket.SHUT_RDWR)
+        except OSError:
+            pass
+        if threading.current_thread() is not self._threads[0]:
+            self._stream.close()
+
+
+def _command(line):
+    name, domain, ident, number, lease, *fields = line.split(" ")
+    return Command(name, int(domain), int(ident), int(number), lease == "1", [_field(f) for f in fields])
+
+
+def _field(text):
+    name, kind, unit, low, high, default = text.split(":")
+    default = None if default == "" else float(default)
+    if kind == "I" and default is not None:
+        default = math.floor(default)
+    return Field(name, kind, unit, float(low), float(high), default)
