@@ -240,7 +240,12 @@ impl Chain {
     fn guard(&mut self) {
         take_due(&mut self.system, self.tick, &mut self.due);
         let before = self.watchdog.supply();
-        let inputs = Inputs { reset: Some(&self.reset), commands: &self.due, skipped: self.skipped };
+        let inputs = Inputs {
+            reset: Some(&self.reset),
+            commands: &self.due,
+            skipped: self.skipped,
+            late: self.skipped > 0,
+        };
         self.cycle.power = *self.watchdog.step(&inputs);
         self.skipped = 0;
         let event = watchdog::supply_event(before, self.watchdog.supply());

@@ -37,6 +37,7 @@ const SAID: [&[Command]; 9] = [
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Dog {
     Runs,
+    RunsLate,
     Stops,
     Dies,
 }
@@ -163,10 +164,12 @@ impl World {
                 let Observer { edges, stopped, .. } = self.observer;
                 self.observer = Observer { edges, stopped, ..Observer::default() };
             }
-            Dog::Runs => {
+            Dog::Runs | Dog::RunsLate => {
                 let skipped = if self.ignores_own_stall { 0 } else { std::mem::take(&mut self.skipped) };
                 self.observer.hear(said);
-                self.power = *self.dog.step(&Inputs { reset: Some(&self.reset), commands: said, skipped });
+                let late = dog == Dog::RunsLate;
+                self.power =
+                    *self.dog.step(&Inputs { reset: Some(&self.reset), commands: said, skipped, late });
                 self.power.header.epoch = self.epoch;
                 self.skipped = 0;
                 // A trip counts for its whole cycle, an emergency stop from its place among the commands on.
@@ -236,13 +239,14 @@ fn explore(start: World) -> (usize, Option<(&'static str, usize)>) {
         let mut next = Vec::new();
         for world in &front {
             for joints in [Loop::Runs, Loop::Trips, Loop::Stops] {
-                for dog in [Dog::Runs, Dog::Stops, Dog::Dies] {
+                for dog in [Dog::Runs, Dog::RunsLate, Dog::Stops, Dog::Dies] {
                     if dog == Dog::Dies && world.epoch > RESTARTS {
                         continue;
                     }
                     for relay_sees in [true, false] {
                         // Who does not run hears nothing: too old commands are dropped before they come here.
-                        let all = if dog == Dog::Runs { &SAID[..] } else { &SAID[..1] };
+                        let all =
+                            if matches!(dog, Dog::Runs | Dog::RunsLate) { &SAID[..] } else { &SAID[..1] };
                         for said in all {
                             let mut world = world.clone();
                             if let Some(fault) = world.step(joints, dog, relay_sees, said) {

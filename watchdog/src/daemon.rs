@@ -20,6 +20,8 @@ use std::path::Path;
 const MAX_COMMANDS: usize = 16;
 /// Share of a period after the joint loop's wake-up at which the watchdog looks.
 const PHASE: (u64, u64) = (4, 10);
+/// Share of a period after which a look is a late one.
+const LATE: (u64, u64) = (1, 4);
 
 /// Guards until asked to end.
 ///
@@ -68,7 +70,7 @@ fn lockstep(d: &mut Daemon, guard: &mut Guard) -> Result<(), Box<dyn Error>> {
     let waiter = d.space.waiter(Process::Watchdog)?;
     while d.wait(&waiter, "lowlevel", || guard.reset.refresh())? {
         d.begin(clock::now());
-        guard.cycle(d, 0);
+        guard.cycle(d, 0, false);
         d.end(guard.now(), 0);
     }
     Ok(())
@@ -81,12 +83,14 @@ fn real_time(d: &mut Daemon, guard: &mut Guard) {
     while !d.stop.asked() {
         clock::sleep_until(period.planned());
         d.begin(period.planned());
-        // Whole periods slept through, and those that the cycle before took too long.
-        let late = clock::now().saturating_sub(period.planned()) / period_ns;
         guard.reset.refresh();
-        guard.cycle(d, late + overrun);
+        // After the look: whatever held it up is in this time. Whole periods slept through, and those of the cycle before.
+        let late_ns = clock::now().saturating_sub(period.planned());
+        let slept = late_ns / period_ns;
+        let skipped = slept + overrun;
+        guard.cycle(d, skipped, skipped > 0 || late_ns > period_ns * LATE.0 / LATE.1);
         let mut verdict = period.finish(clock::now());
-        overrun = verdict.skipped().saturating_sub(late);
+        overrun = verdict.skipped().saturating_sub(slept);
         if let Some(reset) = guard.reset.held().filter(|_| !aligned) {
             let begun = reset.header.stamp_ns + period_ns * PHASE.0 / PHASE.1;
             period = Period::new(begun, period_ns, u32::MAX);
@@ -108,9 +112,9 @@ struct Guard {
 }
 
 impl Guard {
-    /// One step, `skipped` cycles after the last one, with the newest sign of life and the commands of this cycle: the
+    /// One step, `skipped` cycles after the last one, perhaps `late` in its cycle, with the newest sign of life and the commands of this cycle: the
     /// scene's that are due, then live ones.
-    fn cycle(&mut self, d: &mut Daemon, skipped: u64) {
+    fn cycle(&mut self, d: &mut Daemon, skipped: u64, late: bool) {
         let mut waiting = [Command::End; MAX_COMMANDS + 1];
         let mut count = 0;
         let tick = self.now().tick;
@@ -130,7 +134,7 @@ impl Guard {
                 d.report(self.now(), EventCode::EmergencyStop, detail);
             }
         }
-        let inputs = Inputs { reset: self.reset.held(), commands: &waiting[..count], skipped };
+        let inputs = Inputs { reset: self.reset.held(), commands: &waiting[..count], skipped, late };
         let power = self.watchdog.step(&inputs);
         self.power.write(power);
         self.stop.written(power);

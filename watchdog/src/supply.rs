@@ -52,6 +52,8 @@ pub struct Inputs<'a> {
     pub commands: &'a [Command],
     /// \[1\] Own cycles missed since the last one.
     pub skipped: u64,
+    /// This look comes so late that whatever held the watchdog up may have held up the joint loop too.
+    pub late: bool,
 }
 
 /// What can happen to the supply in one cycle.
@@ -78,6 +80,8 @@ pub struct State {
     pub closing: Option<u32>,
     /// Cycles without a sign of life, up to the limit.
     pub missed: u64,
+    /// A late look without a sign of life was not counted.
+    pub forgiven: bool,
 }
 
 /// The watchdog: pure, no clock; time is its own cycles.
@@ -94,11 +98,14 @@ pub struct Watchdog {
     enable_pause: u32,
     /// Cycles since the supply was switched on in which it was not measured on; none once it was.
     closing: Option<u32>,
+    /// A late look without a sign of life was not counted since the last sign of life.
+    forgiven: bool,
     power: Power,
 }
 
 impl Watchdog {
-    /// Off. `missed` own cycles without a new sign of life of the joint loop are too many; at least 1.
+    /// Off. `missed` own cycles without a new sign of life of the joint loop are too many; at least 1. One late cycle since
+    /// the last sign of life is not counted.
     pub fn new(missed: u32) -> Self {
         Self {
             limit: u64::from(missed.max(1)),
@@ -110,6 +117,7 @@ impl Watchdog {
             reset_pause: PAUSE,
             enable_pause: PAUSE,
             closing: None,
+            forgiven: false,
             power: Power::default(),
         }
     }
@@ -146,6 +154,7 @@ impl Watchdog {
             enable_pause: self.enable_pause.min(self.pause),
             closing: self.closing,
             missed: self.power.missed.min(self.limit),
+            forgiven: self.forgiven,
         }
     }
 
@@ -174,9 +183,11 @@ impl Watchdog {
             Some(now) if self.seen != Some((now.epoch, now.tick)) => {
                 self.seen = Some((now.epoch, now.tick));
                 (self.power.header.tick, self.power.header.stamp_ns) = (now.tick, now.stamp_ns);
-                self.power.missed = 0;
+                (self.power.missed, self.forgiven) = (0, false);
             }
-            // What a stall of the whole machine took from both is not held against the joint loop, which wakes after this.
+            // A stall of the whole machine takes time from both, and the watchdog wakes first: once, a late look is no
+            // evidence against the joint loop.
+            _ if inputs.late && !self.forgiven => self.forgiven = true,
             _ => self.power.missed = self.power.missed.saturating_add(1),
         }
         let measured = inputs.reset.is_some_and(|r| r.supply == 1);
