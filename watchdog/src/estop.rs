@@ -5,7 +5,7 @@
 //! ```
 //!
 //! A request stays until a cycle has written a power record that says off: it is never lost, and never answered before. A
-//! flood stops the robot with its first datagram; what it costs afterwards is bounded ([`BATCH`] per [`PAUSE`]).
+//! flood stops the robot with its first datagram; what it costs afterwards is bounded (`BATCH` per `PAUSE`).
 
 use ipc::{Asker, Datagram, StopAnswer, StopLine};
 use messages::Power;

@@ -1,9 +1,9 @@
 //! `gangwerk run SCENE`: every process of the chain, started, watched and ended.
 //!
-//! - [`supervisor`]: starts the processes, looks after them, ends them.
-//! - [`course`]: when the run ends and what is done before: the answer to Ctrl-C, to deaths, to standing; pure.
-//! - [`pulse`]: who hangs; pure; told by [`hearing`]. [`backoff`]: when who died is started again; pure.
-//! - [`view`]: what the operator sees.
+//! - `supervisor`: starts the processes, looks after them, ends them.
+//! - `course`: when the run ends and what is done before: the answer to Ctrl-C, to deaths, to standing; pure.
+//! - `pulse`: who hangs; pure; told by `hearing`. `backoff`: when who died is started again; pure.
+//! - `view`: what the operator sees.
 
 mod backoff;
 mod course;
