@@ -6,7 +6,6 @@
 use config::Setup;
 use harness::{Site, doze};
 use ipc::{Reader, Space};
-use messages::power::QUIET_CYCLES;
 use messages::topics::{
     CONTROLLER_STATE, JOINT_TARGETS, POWER, SIM_STATE, STATS_SIM_BACKEND, STATS_WATCHDOG,
 };
@@ -241,10 +240,11 @@ fn judge(e: &Evidence, setup: &Setup) -> Result<(), String> {
         }
         Process::Watchdog => {
             let last = e.seen.power.all.last().ok_or("no power record")?.header.tick;
+            let quiet = setup.system.toggle_missed as usize;
             // The toggle of tick n reaches the robot in its cycle n to n + 2; the cycles without follow.
             let line = cycles_after(e, last, |s| s.power == 0).ok_or("the power line did not fall")?;
             check(
-                (QUIET_CYCLES..=QUIET_CYCLES + 2).contains(&(line as u64)),
+                (quiet..=quiet + 2).contains(&line),
                 &format!("the power line fell in cycle {line} after the last toggle"),
             )?;
             let rest = e.at_rest().ok_or("the joints did not come to rest")?;

@@ -16,6 +16,9 @@ pub struct System {
     pub processes: Vec<ProcessRow>,
     /// Cycles without a reset after which the watchdog cuts the motor supply.
     pub watchdog_missed: u32,
+    /// Cycles without a move of the watchdog's toggle after which the relay of the motor supply falls. A watchdog that missed
+    /// so many of its own cycles has lost the relay, and knows it.
+    pub toggle_missed: u32,
     /// Cycles without new joint targets after which lowlevel begins a controlled stop.
     pub targets_missed: u32,
     /// Leaky bucket of overruns: +1 per overrun, -1 per good cycle; full means controlled stop.
@@ -88,6 +91,7 @@ impl System {
         let system = Self {
             processes: top.table("process", processes).unwrap_or_default(),
             watchdog_missed: top.integer("watchdog_missed", 1..=1000) as u32,
+            toggle_missed: top.integer("toggle_missed", 1..=1000) as u32,
             targets_missed: top.integer("targets_missed", 1..=1000) as u32,
             overrun_bucket: top.integer("overrun_bucket", 1..=100_000) as u32,
             following_error: top.number("following_error", "rad", POSITIVE),

@@ -35,7 +35,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     if ports.state.epoch() > 1 {
         ports.timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
     }
-    let mut sim = SimBackend::new(&d.setup.robot, &d.setup.scene)?;
+    let mut sim = SimBackend::new(&d.setup.robot, &d.setup.scene)?.with_relay(d.setup.system.toggle_missed);
     d.report(Header::default(), EventCode::Started, 0);
     let (frames, _) = sim.step(None, None);
     ports.bus.answer(&d, frames);

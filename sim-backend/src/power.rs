@@ -1,7 +1,6 @@
 //! The relay of the motor supply at the robot's end: closed only while the watchdog's toggle moves, and once per arming.
 
 use messages::Power;
-use messages::power::QUIET_CYCLES;
 
 /// State of the relay.
 #[derive(Clone, Copy, Debug)]
@@ -15,16 +14,10 @@ pub struct PowerLine {
     spent: (u64, u64),
 }
 
-impl Default for PowerLine {
-    fn default() -> Self {
-        Self::falling_after(QUIET_CYCLES)
-    }
-}
-
 impl PowerLine {
     /// Open; falls after so many cycles without a moving toggle.
-    pub fn falling_after(limit: u64) -> Self {
-        Self { limit, toggle: 0, quiet: 0, closed: false, spent: (0, 0) }
+    pub fn falling_after(limit: u32) -> Self {
+        Self { limit: u64::from(limit), toggle: 0, quiet: 0, closed: false, spent: (0, 0) }
     }
 
     /// Closed: the motors have power.
@@ -83,7 +76,7 @@ mod tests {
 
     #[test]
     fn an_off_record_acts_at_once_and_for_good() {
-        let mut line = PowerLine::default();
+        let mut line = PowerLine::falling_after(3);
         line.step(Some(&on(1, 1)));
         assert!(!line.step(Some(&Power { toggle: 2, arming: 1, ..Power::default() })));
         assert!(!line.step(Some(&on(3, 1))));
@@ -91,7 +84,7 @@ mod tests {
 
     #[test]
     fn an_arming_seen_while_closed_opens_it_and_is_used_up() {
-        let mut line = PowerLine::default();
+        let mut line = PowerLine::falling_after(3);
         assert!(line.step(Some(&on(1, 1))));
         assert!(!line.step(Some(&on(2, 2))), "the record that said off was lost");
         assert!(!line.step(Some(&on(3, 2))));
@@ -104,7 +97,7 @@ mod tests {
             power.header.epoch = epoch;
             power
         };
-        let mut line = PowerLine::default();
+        let mut line = PowerLine::falling_after(3);
         assert!(line.step(Some(&of(1, on(1, 7)))));
         assert!(!line.step(Some(&of(2, Power::default()))));
         assert!(!line.step(Some(&of(1, on(2, 7)))), "the one before is not believed any more");

@@ -68,7 +68,7 @@ pub struct SimBackend {
 }
 
 impl SimBackend {
-    /// The robot of a scene in its start pose.
+    /// The robot of a scene in its start pose. The relay of its motor supply falls in the first cycle without a moved toggle.
     ///
     /// # Errors
     /// The robot's data do not fit together or do not allow the depth of the scene, or an object cannot be read.
@@ -103,7 +103,7 @@ impl SimBackend {
             scene: scene.clone(),
             plant,
             state,
-            power: PowerLine::default(),
+            power: PowerLine::falling_after(1),
             stages: Stages::new(robot, scene, pose),
             crane,
             offset: offsets(robot, scene),
@@ -172,6 +172,11 @@ impl SimBackend {
     /// Simulated time \[s\].
     pub fn time(&self) -> f64 {
         self.cycles as f64 * self.scene.cycle
+    }
+
+    /// The same with a relay that falls after so many cycles without a moved toggle.
+    pub fn with_relay(self, quiet: u32) -> Self {
+        Self { power: PowerLine::falling_after(quiet), ..self }
     }
 
     /// One bus cycle: follows the newest targets, lets time pass, answers with what the sensors see.

@@ -77,7 +77,7 @@ impl Chain {
     /// The configuration does not fit together, or leaves the depth open.
     pub fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
         let Setup { scene, robot, gait, system, .. } = &setup.clone().with_method(None)?;
-        let mut sim = SimBackend::new(robot, scene)?;
+        let mut sim = SimBackend::new(robot, scene)?.with_relay(system.toggle_missed);
         let mut planner = Planner::of(gait, robot);
         planner.see(planner::vision::known(setup)?);
         let answer = *sim.step(None, None).0;
@@ -92,7 +92,7 @@ impl Chain {
             planner,
             controller: Controller::new(robot, gait, scene.cycle)?,
             joint_loop: JointLoop::new(robot, system, scene.cycle),
-            watchdog: Watchdog::new(system.watchdog_missed),
+            watchdog: Watchdog::new(system.watchdog_missed, system.toggle_missed),
             sim,
             tick: 0,
             elapsed: 0,

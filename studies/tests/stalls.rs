@@ -14,7 +14,7 @@ const MOST: f64 = 1.2;
 /// without power.
 fn bridged(process: &str) -> u64 {
     match process {
-        "watchdog" => 9,
+        "watchdog" => 49,
         "sim-backend" | "controller" => 20,
         "planner" => 1000,
         _ => 0,

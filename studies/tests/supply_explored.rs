@@ -17,7 +17,7 @@ const CLOSING: u32 = 1;
 /// Cycles of a history, so that the search is over in seconds; `GANGWERK_DEPTH` says another number.
 const DEPTH: usize = 6;
 /// Cycles of silence after which the relay falls.
-const QUIET: u64 = 3;
+const QUIET: u32 = 3;
 /// Times that the watchdog may die and be started again.
 const RESTARTS: u64 = 1;
 
@@ -225,7 +225,7 @@ impl World {
 }
 
 fn new_dog() -> Watchdog {
-    Watchdog::new(LIMIT).with_timing(PAUSE, CLOSING, QUIET)
+    Watchdog::new(LIMIT, QUIET).with_timing(PAUSE, CLOSING)
 }
 
 /// Explores until nothing is new, a history is as long as it may be, or a fault is found: states, and the fault with how many cycles lead to it.

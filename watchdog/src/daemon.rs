@@ -36,7 +36,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         bell: d.bell(&POWER)?,
         timeline: Timeline::new(&d.setup.scene, &[Domain::System]),
         commands: connect(&d.space)?,
-        watchdog: Watchdog::new(d.setup.system.watchdog_missed),
+        watchdog: Watchdog::new(d.setup.system.watchdog_missed, d.setup.system.toggle_missed),
     };
     if guard.power.epoch() > 1 {
         // Started again: power stays off until somebody asks for it now.

@@ -14,7 +14,6 @@
 //! floods the line, gives no edge. The supply's relay is closed only while `toggle` moves, so a dead watchdog is off too;
 //! and it closes only once for each value of `arming`, so a stopped one that goes on leaves it open.
 
-use messages::power::QUIET_CYCLES;
 use messages::{Command, EventCode, Power, WatchdogReset};
 
 /// Watchdog cycles without a command after which the next one counts as an edge.
@@ -104,14 +103,14 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// Off. `missed` own cycles without a new sign of life of the joint loop are too many; at least 1. One late cycle since
-    /// the last sign of life is not counted.
-    pub fn new(missed: u32) -> Self {
+    /// Off. `missed` own cycles without a new sign of life of the joint loop are too many; one late cycle since the last sign
+    /// of life is not counted. The supply's relay falls after `quiet` cycles without a toggle. Both at least 1.
+    pub fn new(missed: u32, quiet: u32) -> Self {
         Self {
             limit: u64::from(missed.max(1)),
             pause: PAUSE,
             most_closing: CLOSING,
-            most_skipped: QUIET_CYCLES,
+            most_skipped: u64::from(quiet.max(1)),
             supply: Supply::Off(EventCode::None),
             seen: None,
             reset_pause: PAUSE,
@@ -122,16 +121,9 @@ impl Watchdog {
         }
     }
 
-    /// The same with other lengths of a pause, of the closing of the relay, and of the silence after which it falls \[cycles\].
-    pub fn with_timing(self, pause: u32, closing: u32, quiet: u64) -> Self {
-        Self {
-            pause,
-            most_closing: closing,
-            most_skipped: quiet,
-            reset_pause: pause,
-            enable_pause: pause,
-            ..self
-        }
+    /// The same with other lengths of a pause and of the closing of the relay \[cycles\].
+    pub fn with_timing(self, pause: u32, closing: u32) -> Self {
+        Self { pause, most_closing: closing, reset_pause: pause, enable_pause: pause, ..self }
     }
 
     /// The state of the supply.

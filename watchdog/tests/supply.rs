@@ -1,11 +1,11 @@
 //! Whatever comes in: off is safe, and on needs both edges.
 
-use messages::power::QUIET_CYCLES;
 use messages::{Command, EventCode, WatchdogReset};
 use proptest::prelude::*;
 use watchdog::{Inputs, Supply, Watchdog};
 
 const LIMIT: u32 = 3;
+const QUIET: u32 = 10;
 
 /// Steps a watchdog as if the joint loop wrote one record per cycle; the relay follows a cycle later.
 struct Rig {
@@ -22,7 +22,7 @@ struct Rig {
 impl Rig {
     fn new() -> Self {
         Self {
-            dog: Watchdog::new(LIMIT),
+            dog: Watchdog::new(LIMIT, QUIET),
             reset: WatchdogReset::default(),
             alive: true,
             skipped: 0,
@@ -129,7 +129,7 @@ fn one_late_look_is_no_evidence_against_the_joint_loop() {
 
 #[test]
 fn no_power_while_the_joint_loop_is_silent() {
-    let mut dog = Watchdog::new(LIMIT);
+    let mut dog = Watchdog::new(LIMIT, QUIET);
     for _ in 0..1000 {
         let commands = &[Command::Reset, Command::Enable];
         let power = dog.step(&Inputs { reset: None, commands, ..Inputs::default() });
@@ -194,7 +194,7 @@ fn a_watchdog_that_missed_its_own_cycles_trips_itself() {
         let mut rig = Rig::on();
         rig.skipped = skipped;
         let on = rig.step(&[]);
-        assert_eq!(on, skipped < QUIET_CYCLES, "{skipped} cycles missed");
+        assert_eq!(on, skipped < u64::from(QUIET), "{skipped} cycles missed");
         if !on {
             assert_eq!(rig.reason(), EventCode::WatchdogSilent);
             assert!((0..1000).all(|_| !rig.step(&[])), "it comes back by edges only");

@@ -2,11 +2,6 @@
 
 use crate::{Header, record};
 
-/// Cycles without a moving toggle after which the supply's relay falls. A watchdog that missed so many of its own cycles
-/// has lost the relay, and knows it. As many as a machine without PREEMPT_RT stands still for now and then: the joint loop
-/// guards itself meanwhile.
-pub const QUIET_CYCLES: u64 = 10;
-
 record! {
     /// State of the motor supply. Written by watchdog.
     ///

@@ -34,7 +34,8 @@ impl Site {
     /// tests of something else than the watchdog's limit.
     pub fn patient(exe: &str) -> Self {
         let site = Self::new(exe);
-        site.edit("system.toml", "watchdog_missed = 2 ", "watchdog_missed = 20 ");
+        site.edit("system.toml", "watchdog_missed = 2 ", "watchdog_missed = 100 ");
+        site.edit("system.toml", "toggle_missed = 50 ", "toggle_missed = 200 ");
         site
     }
 
