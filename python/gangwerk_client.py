@@ -176,9 +176,10 @@ class Client:
         derive = lambda direction: hmac.digest(secret, direction + nonce + theirs, hashlib.sha256)
         to_broker, to_client = derive(b"gangwerk to broker"), derive(b"gangwerk to client")
         with self._sending:
+            # The answer is the first frame with a tag, if the proof was a good one; it may be here before the next line.
+            self._open = to_client
             prove = self._write(SERVICE, PROVE, hmac.digest(to_broker, b"proof", hashlib.sha256), LOW)
-            # The answer is the first frame with a tag, if the proof was a good one.
-            self._open, self._seal = to_client, to_broker
+            self._seal = to_broker
         self.wait(prove)
 
     def _send(self, domain, ident, payload, priority=LOW):
