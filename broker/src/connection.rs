@@ -301,10 +301,10 @@ impl Session {
         }
         self.rights.reads = true;
         self.bucket.rate = RATE;
-        self.join(format!("{name} with key {}", key.name), key.may).await?;
-        // From here on both directions carry tags, this answer first.
+        // From here on both directions carry tags: also what the broker sends to whoever joins.
         self.incoming = Some(to_broker);
         let _ = self.outgoing.set(to_client);
+        self.join(format!("{name} with key {}", key.name), key.may).await?;
         let accepted = service_message(service::ACCEPTED, message.stamp.sequence, now(), &[]);
         let _ = self.out.answers.send(accepted);
         Ok(())

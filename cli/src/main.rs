@@ -158,6 +158,21 @@ enum Task {
         #[arg(long)]
         json: bool,
     },
+    /// Time that it takes to tell another process something, over topics, raw iceoryx2, the operating system, the broker.
+    Latency {
+        /// Rounds of all ways; each takes about 12 s.
+        #[arg(long, default_value_t = 3)]
+        rounds: usize,
+        /// Picture of the distributions.
+        #[arg(long, value_name = "PNG")]
+        png: Option<PathBuf>,
+        /// One JSON object on standard output instead of a table.
+        #[arg(long)]
+        json: bool,
+    },
+    /// The other process of `gangwerk latency`.
+    #[command(hide = true)]
+    LatencyEnd { way: String, dir: PathBuf, core: String },
     /// What this machine gives to real time, what is missing, and how to get it.
     Doctor,
     /// One process of a run; `gangwerk run` starts them.
@@ -325,9 +340,23 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             fit_friction(&file, out, json)?;
             Ok(ExitCode::SUCCESS)
         }
+        Task::Latency { rounds, png, json } => latency(rounds, png.as_deref(), json),
+        Task::LatencyEnd { way, dir, core } => {
+            cli::latency::answer(&way, &dir, &core)?;
+            Ok(ExitCode::SUCCESS)
+        }
         Task::Doctor => Ok(doctor()),
         process => daemon(process),
     }
+}
+
+fn latency(rounds: usize, png: Option<&std::path::Path>, json: bool) -> Result<ExitCode, Box<dyn Error>> {
+    let report = cli::latency::measure(rounds, |round, way| eprintln!("round {}: {way}", round + 1))?;
+    if let Some(png) = png {
+        report.draw(png)?;
+    }
+    println!("{}", if json { serde_json::to_string(&report)? } else { report.table() });
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The processes of a run. Each ends when the supervisor does.

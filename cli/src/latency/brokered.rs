@@ -1,0 +1,87 @@
+//! Commands from one client of the broker to another, and their answers.
+
+use std::path::Path;
+use std::process::Child;
+
+use broker::Client;
+use broker::daemon::{Tcp, serve};
+use ipc::{Mode, Run, Space};
+use latency::{End, Link, Opened, spin};
+use messages::command::{Domain, PushCommand};
+use messages::{Command, CommandSource};
+use realtime::Stop;
+
+use super::Helper;
+
+fn text(e: impl std::fmt::Display) -> String {
+    e.to_string()
+}
+
+struct Commands {
+    client: Client,
+    end: End,
+    stamp: u64,
+    _space: Space,
+    _made: Option<(Helper, Space)>,
+}
+
+/// The near end commands and hears the answer, the far one takes commands and answers.
+pub(super) fn commands(dir: &Path, end: End, start: impl Fn(&str) -> Result<Child, String>) -> Opened {
+    let mut made = None;
+    if end == End::Near {
+        let space = Space::create(dir).map_err(text)?;
+        run(dir).save().map_err(text)?;
+        made = Some((Helper(start("broker")?), space));
+    }
+    let (process, name, domains): (_, _, &[Domain]) = match end {
+        End::Near => (messages::Process::Observer, "operator", &[]),
+        End::Far => (messages::Process::SimBackend, "sim-backend", &[Domain::Sim]),
+    };
+    let space = Space::open(dir, process).map_err(text)?;
+    let client = Client::start(name, domains, &space)?;
+    spin(|| client.statistics().connected.then_some(()))?;
+    Ok(Box::new(Commands { client, end, stamp: 0, _space: space, _made: made }))
+}
+
+fn run(dir: &Path) -> Run {
+    Run {
+        dir: dir.into(),
+        mode: Mode::RealTime,
+        scene: "none".into(),
+        method: None,
+        config: "none".into(),
+        bus: "shm".into(),
+        robot: true,
+        log: None,
+    }
+}
+
+/// The broker itself, a third process, until its parent ends.
+pub(super) fn broker(dir: &Path) -> Result<(), String> {
+    serve(&run(dir), &Tcp { address: None, keys: None }, &Stop::default())
+}
+
+impl Link for Commands {
+    fn send(&mut self, stamp: u64) -> Result<(), String> {
+        self.stamp = stamp;
+        if self.end == End::Near {
+            let push = PushCommand { force: [0.0; 3], duration: 0.1 };
+            self.client.publish(&Command::Push(push)).ok_or("the ring of commands is full")?;
+        }
+        Ok(())
+    }
+
+    fn receive(&mut self) -> Result<u64, String> {
+        let Self { client, end, .. } = self;
+        spin(|| {
+            std::thread::yield_now();
+            if *end == End::Near {
+                return client.answered().map(drop);
+            }
+            let live = client.next()?;
+            client.answer(&live, Ok(()));
+            Some(())
+        })?;
+        Ok(self.stamp)
+    }
+}
