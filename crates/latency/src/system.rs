@@ -65,7 +65,7 @@ impl Link for Queue {
 impl Drop for Queue {
     fn drop(&mut self) {
         if self.end == End::Near {
-            let _ = self.names.iter().map(|name| mq_unlink(name.as_str())).count();
+            self.names.iter().for_each(|name| drop(mq_unlink(name.as_str())));
         }
     }
 }
