@@ -65,7 +65,9 @@ impl Link for Queue {
 impl Drop for Queue {
     fn drop(&mut self) {
         if self.end == End::Near {
-            self.names.iter().for_each(|name| drop(mq_unlink(name.as_str())));
+            for name in &self.names {
+                let _ = mq_unlink(name.as_str());
+            }
         }
     }
 }
