@@ -67,14 +67,15 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         let (new_targets, new_state) = controller.step(measured, plan.latest());
         state.write(new_state);
         targets.write(new_targets);
-        d.ring(bell);
         while let Some((code, detail)) = controller.take_event() {
             d.report(header, code, detail);
         }
         if silence.begins(header.tick, planner_tick.latest()) {
             d.report(header, EventCode::PlannerSilent, 0);
         }
+        // Last: the joint loop has a higher priority, and takes the core.
         d.end(header, 0);
+        d.ring(bell);
     }
     d.report(header, EventCode::Ended, 0);
     Ok(())
