@@ -51,14 +51,14 @@ pub struct Run {
 }
 
 impl Run {
-    /// Writes `dir/run`. The directory must exist: make the space first.
-    pub fn save(&self) -> Result<(), IpcError> {
+    /// The text of `dir/run`.
+    pub fn to_text(&self) -> String {
         let mode = match self.mode {
             Mode::Lockstep => "lockstep",
             Mode::RealTime => "real-time",
         };
         let log = self.log.as_deref().unwrap_or(Path::new(""));
-        let text = format!(
+        format!(
             "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nbus = {}\nrobot = {}\nlog = {}\n",
             self.scene,
             self.method.as_deref().unwrap_or_default(),
@@ -66,7 +66,12 @@ impl Run {
             self.bus,
             if self.robot { "simulated" } else { "elsewhere" },
             log.display()
-        );
+        )
+    }
+
+    /// Writes `dir/run`. The directory must exist: make the space first.
+    pub fn save(&self) -> Result<(), IpcError> {
+        let text = self.to_text();
         // Whole or not at all: a process never reads half a file.
         let dir = RunDir::open(&self.dir)?;
         let written = dir.new_file("run.new")?.write_all(text.as_bytes());
@@ -82,6 +87,15 @@ impl Run {
         file.read_to_string(&mut text).map_err(|e| {
             IpcError::Other(format!("{}: {e}; processes are started by `gangwerk run`", path.display()))
         })?;
+        Self::parse(dir, &text)
+    }
+
+    /// The run that this text tells of.
+    ///
+    /// # Errors
+    /// Something is missing or cannot be.
+    pub fn parse(dir: &Path, text: &str) -> Result<Self, IpcError> {
+        let path = dir.join("run");
         let value = |key: &str| {
             text.lines()
                 .filter_map(|line| line.split_once(" = ").or(line.strip_suffix(" =").map(|k| (k, ""))))

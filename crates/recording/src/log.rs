@@ -35,6 +35,8 @@ pub struct Message<'a> {
     pub channel: &'a str,
     /// Definition of its type.
     pub definition: &'a [u8],
+    /// Number of the record of its topic; of standard messages their own count.
+    pub number: u32,
     /// \[ns\]
     pub log_time_ns: u64,
     /// CDR with encapsulation header.
@@ -97,6 +99,22 @@ impl Log {
     /// The run.
     pub fn run(&self) -> &RunInfo {
         &self.run
+    }
+
+    /// Shows every file that was put into the log, up to the first message.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is damaged.
+    pub fn each_attachment(&self, mut see: impl FnMut(&str, &[u8])) -> Result<(), RecordingError> {
+        walk(&self.path, |seen| match seen {
+            Seen::Attachment(name, bytes) => {
+                see(name, bytes);
+                ControlFlow::Continue(())
+            }
+            Seen::Message(_) => ControlFlow::Break(()),
+            Seen::Metadata(..) => ControlFlow::Continue(()),
+        })?;
+        Ok(())
     }
 
     /// Shows every message in the order of the file.
@@ -178,6 +196,7 @@ fn read_transforms(payload: &[u8]) -> Vec<Transform> {
 /// What stands in a file.
 pub(crate) enum Seen<'a> {
     Metadata(&'a str, &'a std::collections::BTreeMap<String, String>),
+    Attachment(&'a str, &'a [u8]),
     Message(Message<'a>),
 }
 
@@ -225,6 +244,7 @@ pub(crate) fn walk(
                 channels.insert(channel.id, (channel.topic, channel.schema_id));
                 ControlFlow::Continue(())
             }
+            Entry::Attachment { header, data, .. } => see(Seen::Attachment(&header.name, &data)),
             Entry::Metadata(metadata) => see(Seen::Metadata(&metadata.name, &metadata.metadata)),
             Entry::Message { header, data } => {
                 messages += 1;
@@ -236,6 +256,7 @@ pub(crate) fn walk(
                 see(Seen::Message(Message {
                     channel,
                     definition,
+                    number: header.sequence,
                     log_time_ns: header.log_time,
                     payload: &data,
                 }))
