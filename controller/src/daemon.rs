@@ -57,6 +57,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
                 d.report(header, code, detail);
             }
             commands.answer(&live, verdict(told));
+            d.log.took(header, &live, &verdict(told));
             if !matches!(live.command, Command::Parameter(_)) {
                 continue;
             }
@@ -64,7 +65,11 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             controller.report_parameters(&mut parameters);
             set.write(&parameters);
         }
-        let (new_targets, new_state) = controller.step(measured, plan.latest());
+        d.log.left_out(header, commands.as_mut());
+        let plan = plan.latest();
+        d.log.uses(0, Some(&header));
+        d.log.uses(1, plan.map(|p| &p.header));
+        let (new_targets, new_state) = controller.step(measured, plan);
         state.write(new_state);
         targets.write(new_targets);
         d.ring(bell);

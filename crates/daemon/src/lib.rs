@@ -2,7 +2,11 @@
 //!
 //! Load the configuration, prepare the thread, enter shared memory, build everything: the last allocation. Then wait,
 //! read the newest inputs, step, write; count; report what happened. [`Daemon`] is that frame; the process adds its
-//! ports and its loop.
+//! ports and its loop, and tells [`CycleLog`] what each cycle began with.
+
+mod cycle_log;
+
+pub use cycle_log::CycleLog;
 
 use config::Setup;
 use fieldbus::Address;
@@ -43,6 +47,8 @@ pub struct Daemon {
     pub space: Space,
     /// The request to end.
     pub stop: Stop,
+    /// What each cycle began with.
+    pub log: CycleLog,
     meter: CycleMeter,
     stats: Writer<CycleStats>,
     events: Writer<Event>,
@@ -78,6 +84,7 @@ impl Daemon {
             meter: CycleMeter::new(deadline, granted.degraded(), setup.hash),
             stats: space.writer(topic(process, "cycle_stats")?)?,
             events: space.writer(topic(process, "events")?)?,
+            log: CycleLog::new(process, &space)?,
             bells: Vec::new(),
             cycle: 0,
             granted,
@@ -159,6 +166,7 @@ impl Daemon {
 
     /// The cycle `header` ends, and `skipped` wake-ups were missed.
     pub fn end(&mut self, header: Header, skipped: u64) {
+        self.log.end(header);
         self.meter.end(clock::now(), skipped);
         // Before the first tick the processes that come later are not there yet, and bells connect to them.
         self.cycle += u64::from(header.tick > 0);
