@@ -11,6 +11,7 @@ pub mod fit_friction;
 pub mod operator;
 pub mod param;
 pub mod plot;
+pub mod replay;
 pub mod run;
 pub mod scorecard;
 pub mod sim;

@@ -107,6 +107,15 @@ enum Task {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// Feed the recorded inputs of processes to their real steps: every record they wrote comes out again, bit for bit, or the
+    /// first field that differs is named.
+    Replay {
+        /// An MCAP file of `gangwerk run`.
+        log: PathBuf,
+        /// planner, controller, lowlevel or watchdog; default: all four, one after the other.
+        #[arg(long, value_name = "NAME")]
+        process: Option<String>,
+    },
     /// How near the walk of a log came to the limits of its contact: zero-moment point, foot rotation, wrench cone.
     Stability {
         /// An MCAP file of a simulated robot.
@@ -311,6 +320,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             draw(&log, &out)?;
             Ok(ExitCode::SUCCESS)
         }
+        Task::Replay { log, process } => replay(&log, process.as_deref()),
         Task::Stability { log, out, friction, json } => {
             let out = out.unwrap_or_else(|| log.with_extension(""));
             study::stability(&config, &log, &out, friction, json)
@@ -386,6 +396,22 @@ fn sim(
         println!("{}", serde_json::to_string(&figures)?);
     } else {
         println!("{}", cli::figures::table(&figures));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn replay(log: &std::path::Path, process: Option<&str>) -> Result<ExitCode, Box<dyn Error>> {
+    let all = cli::replay::PROCESSES;
+    let chosen = all.iter().filter(|p| process.is_none_or(|name| p.name() == name));
+    let mut some = false;
+    for &process in chosen {
+        let done = cli::replay::replay(log, process)?;
+        println!("{}: {done}", process.name());
+        some = true;
+    }
+    if !some {
+        let names = all.map(|p| p.name()).join(", ");
+        return Err(format!("--process {}: there is {names}", process.unwrap_or_default()).into());
     }
     Ok(ExitCode::SUCCESS)
 }
