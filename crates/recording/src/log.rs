@@ -8,7 +8,7 @@ use crate::recorder::channel_name;
 use crate::robot::{METADATA, RobotInfo, RunInfo, from_metadata};
 use crate::standard_definitions::{ROBOT_DESCRIPTION, TF};
 use mcap::McapError;
-use mcap::records::Record as Entry;
+use mcap::records::{Channel, Record as Entry, SchemaHeader};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use messages::record::Read as _;
 use messages::{Record, Topic};
@@ -112,7 +112,7 @@ impl Log {
                 ControlFlow::Continue(())
             }
             Seen::Message(_) => ControlFlow::Break(()),
-            Seen::Metadata(..) => ControlFlow::Continue(()),
+            _ => ControlFlow::Continue(()),
         })?;
         Ok(())
     }
@@ -197,6 +197,8 @@ fn read_transforms(payload: &[u8]) -> Vec<Transform> {
 pub(crate) enum Seen<'a> {
     Metadata(&'a str, &'a std::collections::BTreeMap<String, String>),
     Attachment(&'a str, &'a [u8]),
+    Schema(&'a SchemaHeader, &'a [u8]),
+    Channel(&'a Channel),
     Message(Message<'a>),
 }
 
@@ -237,12 +239,14 @@ pub(crate) fn walk(
             .map_err(|e| RecordingError::Damaged(path.into(), messages, e.to_string()))?;
         let flow = match entry {
             Entry::Schema { header, data } => {
+                let flow = see(Seen::Schema(&header, &data));
                 schemas.insert(header.id, data.into_owned());
-                ControlFlow::Continue(())
+                flow
             }
             Entry::Channel(channel) => {
+                let flow = see(Seen::Channel(&channel));
                 channels.insert(channel.id, (channel.topic, channel.schema_id));
-                ControlFlow::Continue(())
+                flow
             }
             Entry::Attachment { header, data, .. } => see(Seen::Attachment(&header.name, &data)),
             Entry::Metadata(metadata) => see(Seen::Metadata(&metadata.name, &metadata.metadata)),

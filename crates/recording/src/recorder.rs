@@ -65,13 +65,7 @@ impl Recorder {
 
     /// Writes to something else than a file.
     pub fn to(sink: Box<dyn Sink>, robot: &RobotInfo, run: &RunInfo) -> Result<Self, RecordingError> {
-        let options = mcap::WriteOptions::new()
-            .profile("ros2")
-            .library("gangwerk")
-            .compression(Some(mcap::Compression::Lz4))
-            .chunk_size(Some(CHUNK_SIZE))
-            .disable_seeking(true);
-        let mut mcap = options.create(sink).map_err(RecordingError::write)?;
+        let mut mcap = options().create(sink).map_err(RecordingError::write)?;
         let metadata = Metadata { name: METADATA.into(), metadata: to_metadata(robot, run) };
         mcap.write_metadata(&metadata).map_err(RecordingError::write)?;
         let mut recorder = Self {
@@ -237,6 +231,16 @@ impl Recorder {
         self.mcap.finish().map_err(RecordingError::write)?;
         self.mcap.into_inner().flush().map_err(RecordingError::write)
     }
+}
+
+/// How every log is written.
+pub(crate) fn options() -> mcap::WriteOptions {
+    mcap::WriteOptions::new()
+        .profile("ros2")
+        .library("gangwerk")
+        .compression(Some(mcap::Compression::Lz4))
+        .chunk_size(Some(CHUNK_SIZE))
+        .disable_seeking(true)
 }
 
 /// Whether the next standard message is due, on the grid of full periods.
