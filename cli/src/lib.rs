@@ -8,6 +8,7 @@ pub mod can;
 pub mod choose;
 pub mod estop;
 pub mod fit_friction;
+pub mod log;
 pub mod operator;
 pub mod param;
 pub mod plot;

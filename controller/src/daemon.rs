@@ -67,12 +67,14 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         }
         d.log.left_out(header, commands.as_mut());
         let plan = plan.latest();
-        d.log.uses(0, Some(&header));
-        d.log.uses(1, plan.map(|p| &p.header));
+        d.log.uses(0, &SENSORS, Some(measured));
+        d.log.uses(1, &PLAN, plan);
         let (new_targets, new_state) = controller.step(measured, plan);
         state.write(new_state);
         targets.write(new_targets);
         d.ring(bell);
+        d.log.keep(&CONTROLLER_STATE, new_state);
+        d.log.keep(&JOINT_TARGETS, new_targets);
         while let Some((code, detail)) = controller.take_event() {
             d.report(header, code, detail);
         }

@@ -100,8 +100,10 @@ fn receive(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, tick: u64, sta
     let sensors = joints.receive(tick, stamp_ns, frames);
     p.sensors.write(sensors);
     d.ring(p.bell_sensors);
+    d.log.keep(&SENSORS, sensors);
     if let Some(frames) = frames {
         p.frames_in.write(frames);
+        d.log.keep(&FRAMES_IN, frames);
         p.heard += 1;
         d.log.now().used[1] = Used { epoch: p.frames_in.epoch(), tick: p.heard };
     }
@@ -129,7 +131,7 @@ fn lockstep(
         }
         take_commands(d, p, joints, header);
         let off = joints.state() == State::Off;
-        d.log.uses(0, p.targets.held().map(|t| &t.header));
+        d.log.uses(0, &JOINT_TARGETS, p.targets.held());
         let (frames, reset) = joints.send(p.targets.held(), None);
         p.reset.write(reset);
         d.ring(p.bell_reset);
@@ -140,6 +142,8 @@ fn lockstep(
         p.bus.set_idle(off);
         p.bus.send(frames);
         p.frames_out.write(frames);
+        d.log.keep(&FRAMES_OUT, frames);
+        d.log.keep(&WATCHDOG_RESET, reset);
         d.ring(p.bell_bus);
         if !p.bus.wait(d, &p.waiter, tick)? || !wait_for_log(d, p, tick)? {
             break;
@@ -178,7 +182,7 @@ fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -
         let off = joints.state() == State::Off;
         cause = cause.filter(|_| !off); // a stop is latched until the supply was off
         let targets = p.targets.latest();
-        d.log.uses(0, targets.map(|t| &t.header));
+        d.log.uses(0, &JOINT_TARGETS, targets);
         d.log.now().cause = cause.map_or(0, |cause| cause as u64);
         let (frames, reset) = joints.send(targets, cause);
         p.bus.set_idle(off);
@@ -186,6 +190,8 @@ fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -
         d.ring(p.bell_bus);
         p.reset.write(reset);
         p.frames_out.write(frames);
+        d.log.keep(&FRAMES_OUT, frames);
+        d.log.keep(&WATCHDOG_RESET, reset);
         report(d, p.bus.as_mut(), joints, header);
         let verdict = period.finish(clock::now());
         if let Verdict::TooMany { .. } = verdict {

@@ -85,7 +85,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         }
         d.log.left_out(header, commands.as_mut());
         let state = state.latest();
-        d.log.uses(0, state.map(|s| &s.header));
+        d.log.uses(0, &CONTROLLER_STATE, state);
         let output = planner.step(header.tick, d.setup.scene.cycle, state, inbox.commands());
         for (live, &verdict) in inbox.live().iter().zip(output.answers) {
             lease.follow(live, verdict);
@@ -96,6 +96,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             *made = *new;
             made.header = header;
             plan.write(&made);
+            d.log.keep(&PLAN, &*made);
         }
         for &(code, detail) in output.events {
             d.report(header, code, detail);

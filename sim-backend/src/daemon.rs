@@ -114,6 +114,7 @@ fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
     };
     let header = state.header;
     p.state.write(state);
+    d.log.keep(&SIM_STATE, state);
     p.bus.answer(d, frames);
     if let Some((code, detail)) = sim.take_event() {
         d.report(header, code, detail);

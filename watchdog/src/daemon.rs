@@ -139,10 +139,11 @@ impl Guard {
         }
         let inputs = Inputs { reset: self.reset.held(), commands: &waiting[..count], skipped, late };
         (d.log.now().skipped, d.log.now().late) = (skipped, late.into());
-        d.log.uses(0, inputs.reset.map(|reset| &reset.header));
+        d.log.uses(0, &WATCHDOG_RESET, inputs.reset);
         let power = self.watchdog.step(&inputs);
         self.power.write(power);
         self.stop.written(power);
+        d.log.keep(&POWER, power);
         d.ring(self.bell);
         if let Some((code, detail)) = supply_event(before, self.watchdog.supply()) {
             d.report(self.now(), code, detail);

@@ -52,6 +52,7 @@ pub struct Daemon {
     meter: CycleMeter,
     stats: Writer<CycleStats>,
     events: Writer<Event>,
+    topic_of_events: &'static Topic,
     bells: Vec<Bell>,
     cycle: u64,
     granted: Granted,
@@ -84,6 +85,7 @@ impl Daemon {
             meter: CycleMeter::new(deadline, granted.degraded(), setup.hash),
             stats: space.writer(topic(process, "cycle_stats")?)?,
             events: space.writer(topic(process, "events")?)?,
+            topic_of_events: topic(process, "events")?,
             log: CycleLog::new(process, &space)?,
             bells: Vec::new(),
             cycle: 0,
@@ -156,18 +158,22 @@ impl Daemon {
     pub fn begin_woken(&mut self, by: Header) {
         let now = clock::now();
         let planned_ns = if self.mode == Mode::RealTime { by.stamp_ns } else { now };
+        self.log.begin(now);
         self.meter.begin(planned_ns, now);
     }
 
     /// A cycle that was planned for `planned_ns` begins.
     pub fn begin(&mut self, planned_ns: u64) {
-        self.meter.begin(planned_ns, clock::now());
+        let now = clock::now();
+        self.log.begin(now);
+        self.meter.begin(planned_ns, now);
     }
 
     /// The cycle `header` ends, and `skipped` wake-ups were missed.
     pub fn end(&mut self, header: Header, skipped: u64) {
-        self.log.end(header);
-        self.meter.end(clock::now(), skipped);
+        let now = clock::now();
+        self.log.end(header, now);
+        self.meter.end(now, skipped);
         // Before the first tick the processes that come later are not there yet, and bells connect to them.
         self.cycle += u64::from(header.tick > 0);
         if self.cycle == WARM_UP {
@@ -190,7 +196,9 @@ impl Daemon {
             self.stats.write(stats);
             self.granted.engage();
         }
-        self.events.write(&Event { header, code: code as u64, detail });
+        let event = Event { header, code: code as u64, detail };
+        self.events.write(&event);
+        self.log.keep(self.topic_of_events, &event);
     }
 }
 

@@ -13,6 +13,7 @@
 //! ```
 
 use crate::IpcError;
+use crate::place::Place;
 use crate::run_dir::RunDir;
 use crate::space::Space;
 use messages::Process;
@@ -121,6 +122,14 @@ impl Run {
             robot: value("robot")? == "simulated",
             log: (!log.is_empty()).then(|| log.into()),
         })
+    }
+
+    /// Where a process keeps its last seconds: [`Space::box_of`], before it enters the space.
+    ///
+    /// # Errors
+    /// The run directory is gone.
+    pub fn box_of(&self, process: Process) -> Result<PathBuf, IpcError> {
+        Ok(Place::of(&self.dir)?.box_of(process))
     }
 
     /// Enters the space of this run.
