@@ -26,7 +26,13 @@ pub fn mend(path: &Path) -> Result<String, Box<dyn Error>> {
 pub fn show(path: &Path) -> Result<(), Box<dyn Error>> {
     let log = Log::open(path)?;
     let run = log.run();
-    println!("scene {}, robot {}, configuration {:016x}, {}", run.scene, log.robot().name, run.config_hash, run.software);
+    println!(
+        "scene {}, robot {}, configuration {:016x}, {}",
+        run.scene,
+        log.robot().name,
+        run.config_hash,
+        run.software
+    );
     let mut crash = None;
     log.each_attachment(|name, bytes| {
         if name == crate::run::CRASH_TEXT {
@@ -46,11 +52,14 @@ pub fn show(path: &Path) -> Result<(), Box<dyn Error>> {
 
 /// Who wanted what, and the answer.
 fn line(taken: &CommandTaken, process: &str) -> String {
-    let name = taken.command().map_or_else(|| "?".into(), |command| {
-        let fields = command.info().fields.iter().enumerate();
-        let values: String = fields.map(|(i, f)| format!(" {}={}", f.name, command.value(i))).collect();
-        format!("{}{values}", command.name())
-    });
+    let name = taken.command().map_or_else(
+        || "?".into(),
+        |command| {
+            let fields = command.info().fields.iter().enumerate();
+            let values: String = fields.map(|(i, f)| format!(" {}={}", f.name, command.value(i))).collect();
+            format!("{}{values}", command.name())
+        },
+    );
     let sender = match taken.origin {
         0 => "the scene".into(),
         n => format!("connection {n}, its {}th", taken.sequence),

@@ -119,7 +119,8 @@ impl Guard {
         let mut count = 0;
         let now = self.now();
         while count < MAX_COMMANDS
-            && let Some(live) = self.timeline.due(now.tick).map(Live::of_scene).or_else(|| self.commands.accept())
+            && let Some(live) =
+                self.timeline.due(now.tick).map(Live::of_scene).or_else(|| self.commands.accept())
         {
             waiting[count] = live.command;
             count += 1;

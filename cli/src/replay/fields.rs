@@ -47,7 +47,8 @@ impl Names {
     /// In an array, a number or an array is an element of its own; a struct begins with the same field every time.
     fn element(&mut self, name: Option<&'static str>) {
         if let Some(Part::Index(count, first)) = self.open.last_mut() {
-            let begins = name.is_none() || *first.get_or_insert(name.unwrap_or_default()) == name.unwrap_or_default();
+            let begins =
+                name.is_none() || *first.get_or_insert(name.unwrap_or_default()) == name.unwrap_or_default();
             *count += usize::from(begins);
         }
     }

@@ -46,7 +46,10 @@ impl std::fmt::Display for Replayed {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { cycles, records, bytes, commands, cut } = self;
         let megabytes = *bytes as f64 * 1e-6;
-        write!(f, "{cycles} cycles, {commands} commands, {records} records, {megabytes:.1} MB: no byte differs")?;
+        write!(
+            f,
+            "{cycles} cycles, {commands} commands, {records} records, {megabytes:.1} MB: no byte differs"
+        )?;
         if *cut { write!(f, "; the log ends in the middle") } else { Ok(()) }
     }
 }
@@ -108,16 +111,18 @@ fn setup_of(log: &Log) -> Result<(Setup, Address), Box<dyn Error>> {
     if let Some(error) = failed {
         return Err(error.into());
     }
-    let run = run.ok_or("the log does not say how it was run: only logs of `gangwerk run` can be replayed")?;
+    let run =
+        run.ok_or("the log does not say how it was run: only logs of `gangwerk run` can be replayed")?;
     let run = ipc::Run::parse(&place.0, &run)?;
     let method: Option<Method> = run.method.as_deref().map(str::parse).transpose()?;
     let bus: Address = run.bus.parse()?;
     let setup = Setup::load(&place.0, &run.scene)?.with_method(method)?.on_bus(bus.is_classic());
     let (theirs, ours) = (log.run().config_hash, setup.hash);
     if theirs != ours {
-        return Err(
-            format!("the configuration in the log (hash {ours:016x}) is not the run's ({theirs:016x})").into()
-        );
+        return Err(format!(
+            "the configuration in the log (hash {ours:016x}) is not the run's ({theirs:016x})"
+        )
+        .into());
     }
     Ok((setup, bus))
 }

@@ -10,8 +10,8 @@ use messages::topics::{
     CONTROLLER_STATE, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, PARAMETERS, PLAN, POWER, SENSORS, WATCHDOG_RESET,
 };
 use messages::{
-    BusFrames, Command, CommandTaken, ControllerState, CycleInputs, EventCode, JointTargets, Parameters, Plan,
-    Process, Sensors, WatchdogReset,
+    BusFrames, Command, CommandTaken, ControllerState, CycleInputs, EventCode, JointTargets, Parameters,
+    Plan, Process, Sensors, WatchdogReset,
 };
 use planner::Planner;
 use watchdog::Watchdog;
@@ -134,7 +134,10 @@ impl Part for Stabilizing {
                 tape.compare(&PARAMETERS, &self.parameters)?;
             }
         }
-        let measured = self.sensors.as_deref().ok_or_else(|| Problem::Broken("a cycle of the controller without sensor data".into()))?;
+        let measured = self
+            .sensors
+            .as_deref()
+            .ok_or_else(|| Problem::Broken("a cycle of the controller without sensor data".into()))?;
         let (targets, state) = self.controller.step(measured, self.plan.as_deref());
         tape.compare(&CONTROLLER_STATE, state)?;
         tape.compare(&JOINT_TARGETS, targets)?;

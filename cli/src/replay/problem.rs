@@ -66,7 +66,10 @@ impl fmt::Display for Problem {
                 write!(f, "the log is not complete: topic {topic}, needed at tick {tick}: {why}")
             }
             Self::Layout { topic } => {
-                write!(f, "topic {topic} holds another layout than this program's: replay it with the version that wrote it")
+                write!(
+                    f,
+                    "topic {topic} holds another layout than this program's: replay it with the version that wrote it"
+                )
             }
             Self::Differs { process, topic, tick, field, logged, replayed } => write!(
                 f,
@@ -74,7 +77,11 @@ impl fmt::Display for Problem {
                 process.name()
             ),
             Self::NotMade { process, topic, tick } => {
-                write!(f, "{} differs: topic {topic}, tick {tick}: the replay does not make this record", process.name())
+                write!(
+                    f,
+                    "{} differs: topic {topic}, tick {tick}: the replay does not make this record",
+                    process.name()
+                )
             }
             Self::Broken(why) => write!(f, "{why}"),
             Self::EndOfCut => write!(f, "the log ends in the middle"),

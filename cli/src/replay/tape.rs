@@ -67,7 +67,8 @@ impl Tape {
                 queues.push(Queue { topic, waiting: VecDeque::new(), last: None, output });
             }
         }
-        let channels: Vec<_> = queues.iter().map(|q| (channel_name(q.topic.name), text_of(q.topic))).collect();
+        let channels: Vec<_> =
+            queues.iter().map(|q| (channel_name(q.topic.name), text_of(q.topic))).collect();
         let (sender, heard) = sync_channel(AHEAD);
         let reading = move || {
             let end = read(&log, &channels, &sender).map_err(|e| e.to_string());
@@ -111,7 +112,12 @@ impl Tape {
         }
         self.cycle += 1;
         if inputs.cycle != self.cycle {
-            let why = format!("cycles {} to {} of {} are missing", self.cycle, inputs.cycle - 1, self.process.name());
+            let why = format!(
+                "cycles {} to {} of {} are missing",
+                self.cycle,
+                inputs.cycle - 1,
+                self.process.name()
+            );
             return Err(self.missing(at, inputs.header.tick, why));
         }
         self.header = inputs.header;
@@ -149,7 +155,9 @@ impl Tape {
         let wanted = (used.epoch, used.tick);
         let by_number = topic.name == "frames_in";
         let at = self.queue_of(topic.name);
-        let key = |number: u32, header: &Header| (header.epoch, if by_number { number.into() } else { header.tick });
+        let key = |number: u32, header: &Header| {
+            (header.epoch, if by_number { number.into() } else { header.tick })
+        };
         if !by_number && held.as_ref().is_some_and(|held| key(0, held.header()) == wanted) {
             return Ok(());
         }
@@ -212,7 +220,8 @@ impl Tape {
         match last.map(|last| logged.number.wrapping_sub(last)) {
             None | Some(1) => Ok(()),
             Some(gap) => {
-                let why = format!("{} records before number {} are missing", gap.wrapping_sub(1), logged.number);
+                let why =
+                    format!("{} records before number {} are missing", gap.wrapping_sub(1), logged.number);
                 Err(self.missing(at, header_of(&logged.payload).tick, why))
             }
         }
@@ -236,7 +245,8 @@ impl Tape {
                     break;
                 }
                 let topic = self.queues[at].topic;
-                let event: Option<Event> = (topic.type_name == "Event").then(|| cdr::decode(&front.payload)).flatten();
+                let event: Option<Event> =
+                    (topic.type_name == "Event").then(|| cdr::decode(&front.payload)).flatten();
                 let code = event.and_then(|event| EventCode::from_number(event.code));
                 if !code.is_some_and(self.not_ours) {
                     let (process, topic) = (self.process, topic.name);
@@ -293,7 +303,9 @@ impl Tape {
 
     /// The queue of the topic that begins like this; of `prefix/PROCESS` there is one.
     fn queue_of(&self, name: &str) -> usize {
-        let begins = |q: &Queue| if name.ends_with('/') { q.topic.name.starts_with(name) } else { q.topic.name == name };
+        let begins = |q: &Queue| {
+            if name.ends_with('/') { q.topic.name.starts_with(name) } else { q.topic.name == name }
+        };
         self.queues.iter().position(begins).expect("a topic of this process")
     }
 }

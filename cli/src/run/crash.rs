@@ -138,6 +138,7 @@ pub(super) fn look(pid: u32) -> String {
     let status = read("status");
     let line = |key: &str| status.lines().find_map(|l| l.strip_prefix(key)).map_or("?", str::trim);
     let wait = read("wchan");
-    let wait = if wait.is_empty() || wait == "0" { "not in the kernel".into() } else { format!("waits in {wait}") };
+    let wait =
+        if wait.is_empty() || wait == "0" { "not in the kernel".into() } else { format!("waits in {wait}") };
     format!("state {}, {wait}; {} voluntary switches", line("State:"), line("voluntary_ctxt_switches:"))
 }

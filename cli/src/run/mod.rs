@@ -127,7 +127,8 @@ pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<
     };
     run.save()?;
     let outcome = supervisor::supervise(run, space, &setup, stop, console)?;
-    if let Some(log) = order.log.as_ref().filter(|_| outcome.lost.iter().any(|(p, _)| *p == Process::Logger)) {
+    if let Some(log) = order.log.as_ref().filter(|_| outcome.lost.iter().any(|(p, _)| *p == Process::Logger))
+    {
         mend(log, console);
     }
     Ok(outcome)

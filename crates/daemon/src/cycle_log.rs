@@ -2,10 +2,10 @@
 //! with the records that were read and written, stays in the process's black box for as long as it has room.
 
 use ipc::{Space, Writer};
-use realtime::black_box::BlackBox;
 use messages::cycle_inputs::{MAX_USED, Used};
 use messages::topics::Process;
 use messages::{CommandSource, CommandTaken, CycleInputs, Header, Live, Record, TOPICS, Topic, Verdict};
+use realtime::black_box::BlackBox;
 use std::error::Error;
 
 /// Writes `cycle_inputs/PROCESS` and `commands/PROCESS`, and the black box. Lives as long as the process.

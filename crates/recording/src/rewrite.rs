@@ -24,7 +24,7 @@ pub struct Repaired {
 /// The file is no log, or there is no room beside it for the new one; then it stays as it was.
 pub fn repair(path: &Path) -> Result<Repaired, RecordingError> {
     let new = path.with_extension("repair");
-    let done = rewrite(path, &new, |_, _| ());
+    let done = rewrite(path, &new, |_, _| true);
     let found = match &done {
         Ok((End::Complete, _)) => None,
         Ok((End::Truncated(_), _)) => Some("it ended in the middle".to_owned()),
@@ -45,7 +45,8 @@ pub fn repair(path: &Path) -> Result<Repaired, RecordingError> {
     Ok(Repaired { messages, found })
 }
 
-/// Copies a log; `edit` sees name of the channel and payload of each message and may change the payload. What stands before
+/// Copies a log; `edit` sees name of the channel and payload of each message, may change the payload, and
+/// says whether the message is kept. What stands before
 /// a damage is written, too, before that is an error. Returns how `from` ended, and the number of messages.
 ///
 /// # Errors
@@ -53,7 +54,7 @@ pub fn repair(path: &Path) -> Result<Repaired, RecordingError> {
 pub fn rewrite(
     from: &Path,
     to: &Path,
-    mut edit: impl FnMut(&str, &mut Vec<u8>),
+    mut edit: impl FnMut(&str, &mut Vec<u8>) -> bool,
 ) -> Result<(End, u64), RecordingError> {
     let file = std::fs::File::create(to).map_err(|e| RecordingError::Create(to.into(), e))?;
     let sink: Box<dyn Sink> = Box::new(BufWriter::new(file));
@@ -86,7 +87,9 @@ pub fn rewrite(
                 messages += 1;
                 payload.clear();
                 payload.extend_from_slice(message.payload);
-                edit(message.channel, &mut payload);
+                if !edit(message.channel, &mut payload) {
+                    return ControlFlow::Continue(());
+                }
                 let header = MessageHeader {
                     channel_id: channels.get(message.channel).copied().unwrap_or(0),
                     sequence: message.number,
