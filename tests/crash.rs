@@ -67,7 +67,7 @@ fn a_controller_that_faults_says_where() {
         let (_, record, shown) =
             after(&site, Process::Controller, |run| run.signal(Process::Controller, signal));
         assert!(shown.contains(&format!("controller died during the run: {name}")), "{shown}");
-        assert!(shown.contains("controller::daemon::main at "), "the function it was in: {shown}");
+        assert!(shown.contains("controller/src/daemon.rs:"), "the function it was in: {shown}");
         let log = Log::open(&record).unwrap();
         two_seconds::<CycleInputs>(&log, &INPUTS_CONTROLLER);
         two_seconds::<JointTargets>(&log, &JOINT_TARGETS);

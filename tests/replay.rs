@@ -134,8 +134,13 @@ fn a_run_in_real_time_is_replayed_bit_for_bit_and_one_bit_is_named() {
         "{said}"
     );
     // An input: the first record that comes out otherwise.
-    let said =
-        after::<Sensors>(&log, Process::Controller, &SENSORS, 4000, Some(|s| flip(&mut s.imu.angular_velocity[0], 40)));
+    let said = after::<Sensors>(
+        &log,
+        Process::Controller,
+        &SENSORS,
+        4000,
+        Some(|s| flip(&mut s.imu.angular_velocity[0], 40)),
+    );
     println!("{said}");
     assert!(said.starts_with("controller differs: topic controller_state, tick 4000, field "), "{said}");
     // Records that are not there.
@@ -157,7 +162,7 @@ fn a_run_in_real_time_is_replayed_bit_for_bit_and_one_bit_is_named() {
 #[test]
 fn a_run_in_lockstep_is_replayed_and_a_log_of_one_process_is_refused() {
     let site = Site::new(EXE);
-    site.scene("walk", 3.0, SCENE);
+    site.scene("walk", 3.0, "[[command]]\ntime = 0.2\ntopic = \"walk/stand\"\n");
     site.run("walk", &["--lockstep"]).end().well();
     let log = site.path("walk.mcap").display().to_string();
     let said = site.gangwerk(&["replay", &log]).well();

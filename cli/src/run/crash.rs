@@ -126,7 +126,7 @@ fn stack(frames: &[i64]) -> String {
             known = true;
         });
         if !known {
-            let _ = write!(text, "\n  {n:2} in a library, {offset:+#x}");
+            let _ = write!(text, "\n  {n:2} in a library");
         }
     }
     text
