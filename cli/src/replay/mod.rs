@@ -1,8 +1,8 @@
 //! `gangwerk replay LOG`: the recorded inputs of a process, fed to its real step, and what comes out held against the log.
 //!
-//! - [`tape`]: the log, topic by topic, in the order of writing; notices what is missing.
-//! - [`parts`]: one process each: which record goes into which step.
-//! - [`fields`]: names the field in which two records differ.
+//! - `tape.rs`: the log, topic by topic, in the order of writing; notices what is missing.
+//! - `parts.rs`: one process each: which record goes into which step.
+//! - `fields.rs`: names the field in which two records differ.
 //!
 //! A replay begins where the process began, with the configuration in the log. It is exact or says why it cannot be.
 

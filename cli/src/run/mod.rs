@@ -1,10 +1,10 @@
 //! `gangwerk run SCENE`: every process of the chain, started, watched and ended.
 //!
-//! - [`supervisor`]: starts the processes, looks after them, ends them.
-//! - [`course`]: when the run ends and what is done before: the answer to Ctrl-C, to deaths, to standing; pure.
-//! - [`pulse`]: who hangs; pure; told by [`hearing`]. [`backoff`]: when who died is started again; pure.
-//! - [`crash`]: what a dead process leaves.
-//! - [`view`]: what the operator sees.
+//! - `supervisor.rs`: starts the processes, looks after them, ends them.
+//! - `course.rs`: when the run ends and what is done before: the answer to Ctrl-C, to deaths, to standing; pure.
+//! - `pulse.rs`: who hangs; pure; told by `hearing.rs`. `backoff.rs`: when who died is started again; pure.
+//! - `crash.rs`: what a dead process leaves.
+//! - `view.rs`: what the operator sees.
 
 mod backoff;
 mod course;
