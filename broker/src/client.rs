@@ -9,6 +9,7 @@
 //! Age and lease of a command are looked at in [`Client::next`], in the cycle in which it takes effect: a stalled courier
 //! or a stalled cycle lets no old command through.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering::Relaxed};
 use std::thread::JoinHandle;
@@ -16,7 +17,7 @@ use std::time::Duration;
 
 use ipc::{Doorbell, QueueReceiver, QueueSender, QueueWaiter, Space};
 use messages::command::{Domain, Priority};
-use messages::{Command, CommandSource, Lease, Live, Stamp, Verdict};
+use messages::{Command, CommandSource, Lease, Live, Reason, Stamp, Verdict};
 use realtime::clock::{SECOND, now};
 use rtrb::{Consumer, Producer, RingBuffer};
 
@@ -48,6 +49,8 @@ pub struct Client {
     sequence: u64,
     /// Name without process id: which commands this process decides about.
     role: String,
+    /// Commands that were too old or had lost their lease.
+    left_out: VecDeque<(Live, Reason)>,
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
@@ -138,7 +141,8 @@ impl Client {
         };
         let thread = std::thread::Builder::new().name("courier".into()).spawn(move || courier.run())?;
         let (role, thread) = (role.into(), Some(thread));
-        Ok(Self { urgent, other, verdicts, answers, doorbell, sequence: 0, role, shared, thread })
+        let left_out = VecDeque::with_capacity(RING);
+        Ok(Self { urgent, other, verdicts, answers, doorbell, sequence: 0, role, left_out, shared, thread })
     }
 
     /// Sends a command to the other processes; the number under which it will be [answered](Client::answered). None, and
@@ -172,7 +176,7 @@ impl Client {
     /// At most what the rings hold at the time of the call.
     pub fn received(&mut self) -> impl Iterator<Item = Command> + '_ {
         let waiting = self.waiting();
-        std::iter::from_fn(|| self.accept()).take(waiting)
+        std::iter::from_fn(|| self.accept().map(|live| live.command)).take(waiting)
     }
 
     /// How many messages wait.
@@ -201,6 +205,9 @@ impl CommandSource for Client {
                 Err(reason) => {
                     self.shared.refused.fetch_add(1, Relaxed);
                     self.answer(&live, Err(reason));
+                    if self.left_out.len() < RING {
+                        self.left_out.push_back((live, reason));
+                    }
                 }
             }
         }
@@ -214,6 +221,10 @@ impl CommandSource for Client {
         {
             self.doorbell.ring();
         }
+    }
+
+    fn left_out(&mut self) -> Option<(Live, Reason)> {
+        self.left_out.pop_front()
     }
 
     fn lease(&self) -> Lease {

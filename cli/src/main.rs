@@ -16,6 +16,7 @@ use cli::run::Order;
 use daemon::Commands;
 use fieldbus::Address;
 use ipc::{Mode, Space};
+use messages::Process;
 use messages::command::Domain;
 use realtime::{CountingAllocator, Grade, Stop};
 
@@ -107,6 +108,20 @@ enum Task {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// What a log holds besides the walk, or a log without an end made whole.
+    Log {
+        #[command(subcommand)]
+        what: LogTask,
+    },
+    /// Feed the recorded inputs of processes to their real steps: every record they wrote comes out again, bit for bit, or the
+    /// first field that differs is named.
+    Replay {
+        /// An MCAP file of `gangwerk run`.
+        log: PathBuf,
+        /// planner, controller, lowlevel or watchdog; default: all four, one after the other.
+        #[arg(long, value_name = "NAME")]
+        process: Option<String>,
+    },
     /// How near the walk of a log came to the limits of its contact: zero-moment point, foot rotation, wrench cone.
     Stability {
         /// An MCAP file of a simulated robot.
@@ -190,6 +205,20 @@ enum Task {
     Controller(Place),
     #[command(hide = true)]
     Lowlevel(Place),
+}
+
+#[derive(Subcommand)]
+enum LogTask {
+    /// What it is of; every command with its sender and its answer; of a crash record, how and where the process ended.
+    Show {
+        /// An MCAP file.
+        log: PathBuf,
+    },
+    /// Give a log its end and index that the death of its logger cost: all that is whole is kept.
+    Repair {
+        /// An MCAP file.
+        log: PathBuf,
+    },
 }
 
 #[derive(clap::Args)]
@@ -326,6 +355,15 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             draw(&log, &out)?;
             Ok(ExitCode::SUCCESS)
         }
+        Task::Log { what } => {
+            realtime::end_with_reader();
+            match what {
+                LogTask::Show { log } => cli::log::show(&log)?,
+                LogTask::Repair { log } => println!("{}", cli::log::mend(&log)?),
+            }
+            Ok(ExitCode::SUCCESS)
+        }
+        Task::Replay { log, process } => replay(&log, process.as_deref()),
         Task::Stability { log, out, friction, json } => {
             let out = out.unwrap_or_else(|| log.with_extension(""));
             study::stability(&config, &log, &out, friction, json)
@@ -363,7 +401,10 @@ fn latency(rounds: usize, png: Option<&std::path::Path>, json: bool) -> Result<E
 fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
     Stop::with_parent()?;
     match task {
-        Task::Broker(p) => broker::daemon::main(&p.run)?,
+        Task::Broker(p) => {
+            last_words(&p.run, Process::Broker)?;
+            broker::daemon::main(&p.run)?;
+        }
         Task::Watchdog(p) => {
             watchdog::daemon::main(&p.run, Box::new(|s: &Space| commands("watchdog", &[Domain::System], s)))?;
         }
@@ -373,7 +414,10 @@ fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
                 Box::new(|s: &Space| commands("sim-backend", &[Domain::Sim], s)),
             )?;
         }
-        Task::Logger(p) => logger::daemon::run(&ipc::Run::load(&p.run)?, &Stop::on_signals()?)?,
+        Task::Logger(p) => {
+            last_words(&p.run, Process::Logger)?;
+            logger::daemon::run(&ipc::Run::load(&p.run)?, &Stop::on_signals()?)?;
+        }
         Task::Planner(p) => {
             planner::daemon::main(&p.run, Box::new(|s: &Space| commands("planner", &[Domain::Walk], s)))?;
         }
@@ -388,6 +432,12 @@ fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
         _ => {}
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Of a process without cycles: where it was, if it dies.
+fn last_words(dir: &std::path::Path, process: Process) -> Result<(), Box<dyn Error>> {
+    let path = ipc::Run::load(dir)?.box_of(process)?;
+    Ok(realtime::black_box::say_last_words(&path).map_err(|e| format!("{}: {e}", path.display()))?)
 }
 
 /// Live commands of these domains, through the broker.
@@ -415,6 +465,22 @@ fn sim(
         println!("{}", serde_json::to_string(&figures)?);
     } else {
         println!("{}", cli::figures::table(&figures));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn replay(log: &std::path::Path, process: Option<&str>) -> Result<ExitCode, Box<dyn Error>> {
+    let all = cli::replay::PROCESSES;
+    let chosen = all.iter().filter(|p| process.is_none_or(|name| p.name() == name));
+    let mut some = false;
+    for &process in chosen {
+        let done = cli::replay::replay(log, process)?;
+        println!("{}: {done}", process.name());
+        some = true;
+    }
+    if !some {
+        let names = all.map(|p| p.name()).join(", ");
+        return Err(format!("--process {}: there is {names}", process.unwrap_or_default()).into());
     }
     Ok(ExitCode::SUCCESS)
 }

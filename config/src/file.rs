@@ -9,16 +9,24 @@ pub fn root(asked: Option<&Path>) -> PathBuf {
     asked.map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), Path::to_owned)
 }
 
-/// FNV-1a, 64 bits, over the bytes of all files that went into a configuration, in the order they were read.
-pub(crate) struct Hash(pub(crate) u64);
+/// A file as it was read.
+pub(crate) type Read = (PathBuf, Vec<u8>);
+
+/// FNV-1a, 64 bits, over the bytes of all files that went into a configuration, in the order they were read; and the files.
+pub(crate) struct Hash(pub(crate) u64, pub(crate) Vec<Read>);
 
 impl Default for Hash {
     fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
+        Self(0xcbf2_9ce4_8422_2325, Vec::new())
     }
 }
 
 impl Hash {
+    fn read(&mut self, path: &Path, bytes: &[u8]) {
+        self.add(bytes);
+        self.1.push((path.into(), bytes.into()));
+    }
+
     fn add(&mut self, bytes: &[u8]) {
         self.0 = bytes.iter().fold(self.0, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3));
     }
@@ -27,13 +35,13 @@ impl Hash {
 /// The text of a file; an error says what lies beside it instead.
 pub(crate) fn text(path: &Path, hash: &mut Hash) -> Result<String, ConfigError> {
     let text = std::fs::read_to_string(path).map_err(|e| unreadable(path, &e))?;
-    hash.add(text.as_bytes());
+    hash.read(path, text.as_bytes());
     Ok(text)
 }
 
 /// Adds a file that another part reads to the hash.
 pub(crate) fn include(path: &Path, hash: &mut Hash) -> Result<(), ConfigError> {
-    hash.add(&std::fs::read(path).map_err(|e| unreadable(path, &e))?);
+    hash.read(path, &std::fs::read(path).map_err(|e| unreadable(path, &e))?);
     Ok(())
 }
 

@@ -1,6 +1,7 @@
 //! Everything a run needs: a scene and the files it names.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use messages::Command;
 
@@ -23,6 +24,9 @@ pub struct Setup {
     pub system: System,
     /// FNV-1a, 64 bits, over the bytes of all files that were read.
     pub hash: u64,
+    /// Those files as they were read, by their names in the configuration directory: [`Setup::load`] from a copy of them
+    /// is this one again.
+    pub files: Arc<[(String, Vec<u8>)]>,
 }
 
 impl Setup {
@@ -38,7 +42,9 @@ impl Setup {
         let gait =
             Gait::load_hashed(&root.join("gaits").join(&scene.gait).with_extension("toml"), &mut hash)?;
         let system = System::load_hashed(&root.join("system.toml"), &mut hash)?;
-        let setup = Self { scene, robot, gait, system, hash: hash.0 };
+        let name = |path: &Path| path.strip_prefix(root).unwrap_or(path).display().to_string();
+        let files = hash.1.into_iter().map(|(path, bytes)| (name(&path), bytes)).collect();
+        let setup = Self { scene, robot, gait, system, hash: hash.0, files };
         let problems = setup.problems();
         if problems.is_empty() { Ok(setup) } else { Err(ConfigError { file: path, problems }) }
     }

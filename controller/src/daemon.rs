@@ -57,6 +57,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
                 d.report(header, code, detail);
             }
             commands.answer(&live, verdict(told));
+            d.log.took(header, &live, &verdict(told));
             if !matches!(live.command, Command::Parameter(_)) {
                 continue;
             }
@@ -64,9 +65,15 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             controller.report_parameters(&mut parameters);
             set.write(&parameters);
         }
-        let (new_targets, new_state) = controller.step(measured, plan.latest());
+        d.log.left_out(header, commands.as_mut());
+        let plan = plan.latest();
+        d.log.uses(0, &SENSORS, Some(measured));
+        d.log.uses(1, &PLAN, plan);
+        let (new_targets, new_state) = controller.step(measured, plan);
         state.write(new_state);
         targets.write(new_targets);
+        d.log.keep(&CONTROLLER_STATE, new_state);
+        d.log.keep(&JOINT_TARGETS, new_targets);
         while let Some((code, detail)) = controller.take_event() {
             d.report(header, code, detail);
         }

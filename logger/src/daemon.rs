@@ -13,6 +13,9 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
+/// The attachment of a log that says how the scene was run, as [`ipc::Run::parse`] reads it.
+pub const RUN: &str = "run";
+
 /// Between two looks at empty rings: a ring holds 256 cycles. In lockstep half of them, without anybody's sleep, take longer
 /// than this on any machine; more looks only take time from those that work.
 const NAP_REAL_TIME: Duration = Duration::from_millis(5);
@@ -63,7 +66,12 @@ fn open(run: &Run, again: bool) -> Result<Open, String> {
     let setup = Setup::load(&run.config, &run.scene).map_err(|e| e.to_string())?;
     let parts = Parts::new(run.log.as_deref().ok_or("this run has no log")?);
     let before = if again { (1..).take_while(|&part| parts.path(part).exists()).count() as u32 } else { 0 };
-    Ok(Box::new(move |part| recorder(&parts.path(before + part), &setup)))
+    let text = run.to_text();
+    Ok(Box::new(move |part| {
+        let mut recorder = recorder(&parts.path(before + part), &setup)?;
+        recorder.attach(RUN, text.as_bytes())?;
+        Ok(recorder)
+    }))
 }
 
 /// What became of a log.

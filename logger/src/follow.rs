@@ -5,16 +5,17 @@ use messages::{Header, Record, Topic};
 
 /// Where the records of a topic come from, one after the other.
 pub trait Source<T> {
-    /// The next record in the order of writing; none if there is no more yet.
-    fn follow(&mut self) -> Option<&T>;
+    /// The next record in the order of writing, and its number; none if there is no more yet.
+    fn follow(&mut self) -> Option<(u64, &T)>;
 
     /// Records overwritten before they were handed out, since the beginning.
     fn lost(&self) -> u64;
 }
 
 impl<T: Record> Source<T> for ipc::Reader<T> {
-    fn follow(&mut self) -> Option<&T> {
-        ipc::Reader::follow(self)
+    fn follow(&mut self) -> Option<(u64, &T)> {
+        ipc::Reader::follow(self)?;
+        Some((self.number(), self.held()?))
     }
     fn lost(&self) -> u64 {
         ipc::Reader::lost(self)
@@ -53,8 +54,8 @@ impl<T: Record, S: Source<T>> Follow for Follower<T, S> {
     fn write_some(&mut self, output: &mut Output, most: usize) -> (usize, Option<Header>) {
         let (mut count, mut last) = (0, None);
         while count < most {
-            let Some(record) = self.source.follow() else { break };
-            output.write(self.topic, record);
+            let Some((number, record)) = self.source.follow() else { break };
+            output.write(self.topic, record, number as u32);
             (count, last) = (count + 1, Some(*record.header()));
         }
         (count, last)

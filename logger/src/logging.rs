@@ -97,7 +97,7 @@ impl Logging {
         let header = self.newest.unwrap_or(Event::default().header);
         let event = Event { header, code: EventCode::LogDropped as u64, detail: lost - self.lost };
         self.lost = lost;
-        self.output.write(&EVENTS_LOGGER, &event);
+        self.output.write(&EVENTS_LOGGER, &event, 0);
         Some(event)
     }
 }

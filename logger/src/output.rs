@@ -56,13 +56,13 @@ impl Output {
         output
     }
 
-    /// Writes a record, or counts it as dropped.
-    pub fn write<T: Record>(&mut self, topic: &Topic, record: &T) {
+    /// Writes the record with this number of its topic, or counts it as dropped.
+    pub fn write<T: Record>(&mut self, topic: &Topic, record: &T, number: u32) {
         let Some(recorder) = &mut self.recorder else {
             self.dropped += 1;
             return;
         };
-        let written = recorder.write(topic, record);
+        let written = recorder.write_numbered(topic, record, number);
         self.unflushed += 1;
         if let Err(error) = written {
             self.give_up(&error);

@@ -24,7 +24,10 @@ pub fn robot_info(robot: &Robot) -> RobotInfo {
     }
 }
 
-/// Makes a log of a robot in a scene, with the poses of its links.
+/// Where the files of the configuration are among the attachments of a log.
+pub const CONFIG: &str = "config/";
+
+/// Makes a log of a robot in a scene, with the poses of its links and the files of the configuration.
 pub fn recorder(path: &Path, setup: &Setup) -> Result<Recorder, RecordingError> {
     let run = RunInfo {
         scene: setup.scene.name.clone(),
@@ -32,7 +35,10 @@ pub fn recorder(path: &Path, setup: &Setup) -> Result<Recorder, RecordingError> 
         software: format!("gangwerk {}", env!("CARGO_PKG_VERSION")),
     };
     let robot = &setup.robot;
-    let recorder = Recorder::create(path, &robot_info(robot), &run)?;
+    let mut recorder = Recorder::create(path, &robot_info(robot), &run)?;
+    for (name, bytes) in setup.files.iter() {
+        recorder.attach(&format!("{CONFIG}{name}"), bytes)?;
+    }
     match Kinematics::new(robot) {
         Ok(kinematics) => Ok(recorder.with_links(Box::new(kinematics))),
         // The log is worth having without pictures of links.

@@ -43,9 +43,9 @@ impl<T: Copy> Ring<T> {
 }
 
 impl<T: Record> Source<T> for Shared<T> {
-    fn follow(&mut self) -> Option<&T> {
+    fn follow(&mut self) -> Option<(u64, &T)> {
         self.1 = self.0.borrow_mut().records.pop_front()?;
-        Some(&self.1)
+        Some((self.1.header().tick, &self.1))
     }
     fn lost(&self) -> u64 {
         self.0.borrow().lost

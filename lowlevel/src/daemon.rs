@@ -6,8 +6,13 @@ use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Waiter, Writer};
 use messages::command::Domain;
-use messages::topics::{BUS_TX, JOINT_TARGETS, LOG_TICK, POWER, SENSORS, SIM_STATE, WATCHDOG_RESET};
-use messages::{Event, EventCode, Header, JointTargets, Power, Process, Sensors, WatchdogReset};
+use messages::cycle_inputs::Used;
+use messages::topics::{
+    BUS_TX, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, LOG_TICK, POWER, SENSORS, SIM_STATE, WATCHDOG_RESET,
+};
+use messages::{
+    BusFrames, Event, EventCode, Header, JointTargets, Live, Power, Process, Sensors, WatchdogReset,
+};
 use realtime::{Period, Verdict, clock};
 use std::error::Error;
 use std::path::Path;
@@ -25,6 +30,9 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut ports = Ports {
         bus: fieldbus::open(&d)?,
         sensors: d.space.writer(&SENSORS)?,
+        frames_in: d.space.writer(&FRAMES_IN)?,
+        frames_out: d.space.writer(&FRAMES_OUT)?,
+        heard: 0,
         reset: d.space.writer(&WATCHDOG_RESET)?,
         targets: d.space.reader(&JOINT_TARGETS)?,
         power: d.space.reader(&POWER)?,
@@ -61,6 +69,10 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
 struct Ports {
     bus: Box<dyn Fieldbus>,
     sensors: Writer<Sensors>,
+    frames_in: Writer<BusFrames>,
+    frames_out: Writer<BusFrames>,
+    /// Cycles so far in which frames came.
+    heard: u64,
     reset: Writer<WatchdogReset>,
     targets: Reader<JointTargets>,
     power: Reader<Power>,
@@ -74,10 +86,28 @@ struct Ports {
 }
 
 /// Commands of this cycle: the scene's that are due, then live ones.
-fn take_commands(p: &mut Ports, joints: &mut JointLoop, tick: u64) {
-    while let Some(command) = p.timeline.due(tick).or_else(|| p.commands.accept()) {
-        joints.command(&command);
+fn take_commands(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, header: Header) {
+    while let Some(live) = p.timeline.due(header.tick).map(Live::of_scene).or_else(|| p.commands.accept()) {
+        joints.command(&live.command);
+        d.log.took(header, &live, &Ok(()));
     }
+    d.log.left_out(header, p.commands.as_mut());
+}
+
+/// First half of a cycle; its header. What came and what is measured goes to those who wait for it first.
+fn receive(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, tick: u64, stamp_ns: u64) -> Header {
+    let frames = p.bus.receive();
+    let sensors = joints.receive(tick, stamp_ns, frames);
+    p.sensors.write(sensors);
+    d.ring(p.bell_sensors);
+    d.log.keep(&SENSORS, sensors);
+    if let Some(frames) = frames {
+        p.frames_in.write(frames);
+        d.log.keep(&FRAMES_IN, frames);
+        p.heard += 1;
+        d.log.now().used[1] = Used { epoch: p.frames_in.epoch(), tick: p.heard };
+    }
+    sensors.header
 }
 
 /// Simulated time: each peer answers tick n before tick n + 1 begins.
@@ -94,16 +124,14 @@ fn lockstep(
     }
     for tick in 1..=last {
         d.begin(clock::now());
-        let sensors = joints.receive(tick, tick * d.period_ns(), p.bus.receive());
-        header = sensors.header;
-        p.sensors.write(sensors);
-        d.ring(p.bell_sensors);
+        header = receive(d, p, joints, tick, tick * d.period_ns());
         let targets = &mut p.targets;
         if !d.wait(&p.waiter, "controller", || targets.latest().is_some_and(|t| t.header.tick == tick))? {
             break;
         }
-        take_commands(p, joints, tick);
+        take_commands(d, p, joints, header);
         let off = joints.state() == State::Off;
+        d.log.uses(0, &JOINT_TARGETS, p.targets.held());
         let (frames, reset) = joints.send(p.targets.held(), None);
         p.reset.write(reset);
         d.ring(p.bell_reset);
@@ -113,6 +141,9 @@ fn lockstep(
         }
         p.bus.set_idle(off);
         p.bus.send(frames);
+        p.frames_out.write(frames);
+        d.log.keep(&FRAMES_OUT, frames);
+        d.log.keep(&WATCHDOG_RESET, reset);
         d.ring(p.bell_bus);
         if !p.bus.wait(d, &p.waiter, tick)? || !wait_for_log(d, p, tick)? {
             break;
@@ -145,19 +176,22 @@ fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -
         }
         clock::sleep_until(period.planned());
         d.begin(period.planned());
-        let sensors = joints.receive(tick, clock::now(), p.bus.receive());
-        header = sensors.header;
-        p.sensors.write(sensors);
-        d.ring(p.bell_sensors);
+        header = receive(d, p, joints, tick, clock::now());
         wait_for_targets(p, tick, period.planned() + answer_ns);
-        take_commands(p, joints, tick);
+        take_commands(d, p, joints, header);
         let off = joints.state() == State::Off;
         cause = cause.filter(|_| !off); // a stop is latched until the supply was off
-        let (frames, reset) = joints.send(p.targets.latest(), cause);
+        let targets = p.targets.latest();
+        d.log.uses(0, &JOINT_TARGETS, targets);
+        d.log.now().cause = cause.map_or(0, |cause| cause as u64);
+        let (frames, reset) = joints.send(targets, cause);
         p.bus.set_idle(off);
         p.bus.send(frames);
         d.ring(p.bell_bus);
         p.reset.write(reset);
+        p.frames_out.write(frames);
+        d.log.keep(&FRAMES_OUT, frames);
+        d.log.keep(&WATCHDOG_RESET, reset);
         report(d, p.bus.as_mut(), joints, header);
         let verdict = period.finish(clock::now());
         if let Verdict::TooMany { .. } = verdict {

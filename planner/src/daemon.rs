@@ -83,15 +83,20 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         {
             inbox.add(live);
         }
-        let output = planner.step(header.tick, d.setup.scene.cycle, state.latest(), inbox.commands());
+        d.log.left_out(header, commands.as_mut());
+        let state = state.latest();
+        d.log.uses(0, &CONTROLLER_STATE, state);
+        let output = planner.step(header.tick, d.setup.scene.cycle, state, inbox.commands());
         for (live, &verdict) in inbox.live().iter().zip(output.answers) {
             lease.follow(live, verdict);
             commands.answer(live, verdict);
+            d.log.took(header, live, &verdict);
         }
         if let Some(new) = output.plan {
             *made = *new;
             made.header = header;
             plan.write(&made);
+            d.log.keep(&PLAN, &*made);
         }
         for &(code, detail) in output.events {
             d.report(header, code, detail);

@@ -90,7 +90,8 @@ struct Ports {
 
 /// One bus cycle; returns its header.
 fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
-    let tick = p.bus.held().map_or(0, |frames| frames.header.tick);
+    let taken = p.bus.held().map_or(Header::default(), |frames| frames.header);
+    let tick = taken.tick;
     while let Some(live) = p.timeline.due(tick).map(Live::of_scene).or_else(|| p.commands.next()) {
         let mut verdict = Ok(());
         match live.command {
@@ -103,7 +104,9 @@ fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
             _ => {}
         }
         p.commands.answer(&live, verdict);
+        d.log.took(taken, &live, &verdict);
     }
+    d.log.left_out(taken, p.commands.as_mut());
     let frames = p.bus.held();
     let (frames, state) = match p.bus.is_late() {
         true => sim.step_late(frames),
@@ -111,6 +114,7 @@ fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
     };
     let header = state.header;
     p.state.write(state);
+    d.log.keep(&SIM_STATE, state);
     p.bus.answer(d, frames);
     if let Some((code, detail)) = sim.take_event() {
         d.report(header, code, detail);

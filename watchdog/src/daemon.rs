@@ -11,7 +11,7 @@ use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, StopLine, Writer};
 use messages::command::Domain;
 use messages::topics::{POWER, WATCHDOG_RESET};
-use messages::{Command, EventCode, Header, Power, Process, WatchdogReset};
+use messages::{Command, EventCode, Header, Live, Power, Process, WatchdogReset};
 use realtime::{Period, Schedule, clock};
 use std::error::Error;
 use std::path::Path;
@@ -117,27 +117,34 @@ impl Guard {
     fn cycle(&mut self, d: &mut Daemon, skipped: u64, late: bool) {
         let mut waiting = [Command::End; MAX_COMMANDS + 1];
         let mut count = 0;
-        let tick = self.now().tick;
+        let now = self.now();
         while count < MAX_COMMANDS
-            && let Some(command) = self.timeline.due(tick).or_else(|| self.commands.accept())
+            && let Some(live) =
+                self.timeline.due(now.tick).map(Live::of_scene).or_else(|| self.commands.accept())
         {
-            waiting[count] = command;
+            waiting[count] = live.command;
             count += 1;
+            d.log.took(now, &live, &Ok(()));
         }
+        d.log.left_out(now, self.commands.as_mut());
         let before = self.watchdog.supply();
         if let Some(asker) = self.stop.asked() {
             // Last, so that no reset and enable of the same cycle undo it; in front there may be no room.
             waiting[count] = Command::EmergencyStop;
             count += 1;
+            d.log.took(now, &Live::of_scene(Command::EmergencyStop), &Ok(()));
             if before != Supply::Off(EventCode::EmergencyStop) {
                 let detail = u64::from(asker.uid) << 32 | u64::from(asker.pid);
                 d.report(self.now(), EventCode::EmergencyStop, detail);
             }
         }
         let inputs = Inputs { reset: self.reset.held(), commands: &waiting[..count], skipped, late };
+        (d.log.now().skipped, d.log.now().late) = (skipped, late.into());
+        d.log.uses(0, &WATCHDOG_RESET, inputs.reset);
         let power = self.watchdog.step(&inputs);
         self.power.write(power);
         self.stop.written(power);
+        d.log.keep(&POWER, power);
         d.ring(self.bell);
         if let Some((code, detail)) = supply_event(before, self.watchdog.supply()) {
             d.report(self.now(), code, detail);

@@ -1,12 +1,14 @@
 //! `gangwerk run SCENE`: every process of the chain, started, watched and ended.
 //!
-//! - `supervisor`: starts the processes, looks after them, ends them.
-//! - `course`: when the run ends and what is done before: the answer to Ctrl-C, to deaths, to standing; pure.
-//! - `pulse`: who hangs; pure; told by `hearing`. `backoff`: when who died is started again; pure.
-//! - `view`: what the operator sees.
+//! - `supervisor.rs`: starts the processes, looks after them, ends them.
+//! - `course.rs`: when the run ends and what is done before: the answer to Ctrl-C, to deaths, to standing; pure.
+//! - `pulse.rs`: who hangs; pure; told by `hearing.rs`. `backoff.rs`: when who died is started again; pure.
+//! - `crash.rs`: what a dead process leaves.
+//! - `view.rs`: what the operator sees.
 
 mod backoff;
 mod course;
+mod crash;
 mod hearing;
 mod pulse;
 mod supervisor;
@@ -27,6 +29,8 @@ use realtime::{Stop, clock};
 use terminal::Console;
 
 use crate::figures::{Figures, Gatherer};
+
+pub use crash::TEXT as CRASH_TEXT;
 
 /// What to run and how.
 #[derive(Clone, Debug)]
@@ -122,7 +126,21 @@ pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<
         log: order.log.clone(),
     };
     run.save()?;
-    supervisor::supervise(run, space, &setup, stop, console)
+    let outcome = supervisor::supervise(run, space, &setup, stop, console)?;
+    if let Some(log) = order.log.as_ref().filter(|_| outcome.lost.iter().any(|(p, _)| *p == Process::Logger))
+    {
+        mend(log, console);
+    }
+    Ok(outcome)
+}
+
+/// Gives the parts of a log their index that the death of the logger cost.
+fn mend(log: &Path, console: &Console) {
+    let parts = logger::Parts::new(log);
+    let there = (1..).map(|part| parts.path(part)).take_while(|path| path.exists());
+    for path in there {
+        console.say(crate::log::mend(&path).unwrap_or_else(|error| error.to_string()));
+    }
 }
 
 /// Builds what every process will build, so that a wrong robot is one error and not seven.

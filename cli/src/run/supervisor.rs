@@ -15,6 +15,7 @@ use terminal::{Console, Feed};
 
 use super::backoff::Backoff;
 use super::course::{Act, Course, Seen};
+use super::crash::{self, Crashes};
 use super::hearing::Hearing;
 use super::pulse::Pulse;
 use super::view::View;
@@ -28,6 +29,8 @@ const START_PATIENCE: u64 = 20 * clock::SECOND;
 const END_PATIENCE: u64 = 5 * clock::SECOND;
 /// How often the ports of dead observers are cleared away.
 const CLEAR_EVERY: u64 = 2 * clock::SECOND;
+/// A process that hangs gets this long to say where.
+const FAREWELL: u64 = clock::SECOND / 10;
 /// What a process said before it died is on its way through its pipe.
 const LAST_WORDS: Duration = Duration::from_millis(50);
 
@@ -48,6 +51,7 @@ pub(super) fn supervise(
         children: Vec::new(),
         restarts: [(Process::Broker, Backoff::default()), (Process::Logger, Backoff::default())],
         pulse: Pulse::default(),
+        crashes: Crashes::new(setup, run.log.as_deref(), console),
         outcome: Outcome::default(),
         console: console.clone(),
         patience: (setup.system.peer_timeout * 1e9) as u64,
@@ -69,6 +73,7 @@ struct Supervisor {
     /// Processes without which the robot walks on.
     restarts: [(Process, Backoff); 2],
     pulse: Pulse,
+    crashes: Crashes,
     course: Course,
     outcome: Outcome,
     console: Console,
@@ -166,8 +171,8 @@ impl Supervisor {
             // Who hangs is treated as who died.
             hearing.listen(operator.statistics().connected);
             if let Some((process, ns)) = self.pulse.look(now, |p| hearing.heard(p)) {
-                self.kill(process);
-                self.lose(process, Cause::Hung(ns), now);
+                let seen = self.kill(process);
+                self.lose(process, Cause::Hung(ns), &seen, now);
             }
             self.restart(now)?;
             if now > cleared + CLEAR_EVERY {
@@ -210,7 +215,7 @@ impl Supervisor {
                 finished |= process != Process::Planner;
             } else {
                 self.find_stopped(now);
-                self.lose(process, Cause::Died(status), now);
+                self.lose(process, Cause::Died(status), "", now);
             }
         }
         finished
@@ -224,8 +229,8 @@ impl Supervisor {
         let stopped =
             self.children.iter().find(|(_, child)| is_stopped(child.id())).map(|(process, _)| *process);
         if let Some(process) = stopped {
-            self.kill(process);
-            self.lose(process, Cause::Hung(self.patience), now);
+            let seen = self.kill(process);
+            self.lose(process, Cause::Hung(self.patience), &seen, now);
         }
     }
 
@@ -242,8 +247,9 @@ impl Supervisor {
         ended
     }
 
-    fn lose(&mut self, process: Process, cause: Cause, now: u64) {
+    fn lose(&mut self, process: Process, cause: Cause, seen: &str, now: u64) {
         self.console.say(format!("{} {cause}", process.name()));
+        self.crashes.save(&self.space, process, &cause, seen);
         self.outcome.lost.push((process, cause));
         self.pulse.forget(process);
         self.course.lost(process, now);
@@ -268,14 +274,25 @@ impl Supervisor {
         Ok(())
     }
 
-    fn kill(&mut self, process: Process) {
+    /// Ends a process that hangs; returns what was to be seen of it. Unless it is stopped, it may first say where it is.
+    fn kill(&mut self, process: Process) -> String {
+        let mut seen = String::new();
         self.children.retain_mut(|(p, child)| {
             if *p == process {
+                seen = crash::look(child.id());
+                if !is_stopped(child.id()) {
+                    realtime::last_words::abort(child.id());
+                    let until = clock::now() + FAREWELL;
+                    while clock::now() < until && matches!(child.try_wait(), Ok(None)) {
+                        std::thread::park_timeout(LOOK / 10);
+                    }
+                }
                 let _ = child.kill();
                 let _ = child.wait();
             }
             *p != process
         });
+        seen
     }
 
     /// Asks those to end.
@@ -315,6 +332,7 @@ impl Supervisor {
             }
         }
         self.children.clear();
+        self.crashes.finish();
     }
 }
 

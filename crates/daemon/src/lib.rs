@@ -2,7 +2,11 @@
 //!
 //! Load the configuration, prepare the thread, enter shared memory, build everything: the last allocation. Then wait,
 //! read the newest inputs, step, write; count; report what happened. [`Daemon`] is that frame; the process adds its
-//! ports and its loop.
+//! ports and its loop, and tells [`CycleLog`] what each cycle began with.
+
+mod cycle_log;
+
+pub use cycle_log::CycleLog;
 
 use config::Setup;
 use fieldbus::Address;
@@ -43,9 +47,12 @@ pub struct Daemon {
     pub space: Space,
     /// The request to end.
     pub stop: Stop,
+    /// What each cycle began with.
+    pub log: CycleLog,
     meter: CycleMeter,
     stats: Writer<CycleStats>,
     events: Writer<Event>,
+    topic_of_events: &'static Topic,
     bells: Vec<Bell>,
     cycle: u64,
     granted: Granted,
@@ -78,6 +85,8 @@ impl Daemon {
             meter: CycleMeter::new(deadline, granted.degraded(), setup.hash),
             stats: space.writer(topic(process, "cycle_stats")?)?,
             events: space.writer(topic(process, "events")?)?,
+            topic_of_events: topic(process, "events")?,
+            log: CycleLog::new(process, &space)?,
             bells: Vec::new(),
             cycle: 0,
             granted,
@@ -149,17 +158,22 @@ impl Daemon {
     pub fn begin_woken(&mut self, by: Header) {
         let now = clock::now();
         let planned_ns = if self.mode == Mode::RealTime { by.stamp_ns } else { now };
+        self.log.begin(now);
         self.meter.begin(planned_ns, now);
     }
 
     /// A cycle that was planned for `planned_ns` begins.
     pub fn begin(&mut self, planned_ns: u64) {
-        self.meter.begin(planned_ns, clock::now());
+        let now = clock::now();
+        self.log.begin(now);
+        self.meter.begin(planned_ns, now);
     }
 
     /// The cycle `header` ends, and `skipped` wake-ups were missed.
     pub fn end(&mut self, header: Header, skipped: u64) {
-        self.meter.end(clock::now(), skipped);
+        let now = clock::now();
+        self.log.end(header, now);
+        self.meter.end(now, skipped);
         // Before the first tick the processes that come later are not there yet, and bells connect to them.
         self.cycle += u64::from(header.tick > 0);
         if self.cycle == WARM_UP {
@@ -182,7 +196,9 @@ impl Daemon {
             self.stats.write(stats);
             self.granted.engage();
         }
-        self.events.write(&Event { header, code: code as u64, detail });
+        let event = Event { header, code: code as u64, detail };
+        self.events.write(&event);
+        self.log.keep(self.topic_of_events, &event);
     }
 }
 

@@ -41,6 +41,11 @@ impl Place {
         StdPath::new(SHM).join(self.prefix.trim_end_matches('_'))
     }
 
+    /// The black box of a process.
+    pub(crate) fn box_of(&self, process: messages::Process) -> PathBuf {
+        self.root().join(format!("box_{}", process.name()))
+    }
+
     /// Makes the root, for this user only.
     pub(crate) fn make_root(&self) -> Result<(), IpcError> {
         let root = self.root();

@@ -132,6 +132,11 @@ impl<T: Record> Reader<T> {
         self.missed > 0
     }
 
+    /// Number of the record handed out last, from 1 with each slot that is used for the first time.
+    pub fn number(&self) -> u64 {
+        self.held.number
+    }
+
     /// Records that were overwritten before [`Reader::follow`] came to them.
     pub fn lost(&self) -> u64 {
         self.lost

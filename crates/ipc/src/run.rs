@@ -13,6 +13,7 @@
 //! ```
 
 use crate::IpcError;
+use crate::place::Place;
 use crate::run_dir::RunDir;
 use crate::space::Space;
 use messages::Process;
@@ -51,14 +52,14 @@ pub struct Run {
 }
 
 impl Run {
-    /// Writes `dir/run`. The directory must exist: make the space first.
-    pub fn save(&self) -> Result<(), IpcError> {
+    /// The text of `dir/run`.
+    pub fn to_text(&self) -> String {
         let mode = match self.mode {
             Mode::Lockstep => "lockstep",
             Mode::RealTime => "real-time",
         };
         let log = self.log.as_deref().unwrap_or(Path::new(""));
-        let text = format!(
+        format!(
             "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nbus = {}\nrobot = {}\nlog = {}\n",
             self.scene,
             self.method.as_deref().unwrap_or_default(),
@@ -66,7 +67,12 @@ impl Run {
             self.bus,
             if self.robot { "simulated" } else { "elsewhere" },
             log.display()
-        );
+        )
+    }
+
+    /// Writes `dir/run`. The directory must exist: make the space first.
+    pub fn save(&self) -> Result<(), IpcError> {
+        let text = self.to_text();
         // Whole or not at all: a process never reads half a file.
         let dir = RunDir::open(&self.dir)?;
         let written = dir.new_file("run.new")?.write_all(text.as_bytes());
@@ -82,6 +88,15 @@ impl Run {
         file.read_to_string(&mut text).map_err(|e| {
             IpcError::Other(format!("{}: {e}; processes are started by `gangwerk run`", path.display()))
         })?;
+        Self::parse(dir, &text)
+    }
+
+    /// The run that this text tells of.
+    ///
+    /// # Errors
+    /// Something is missing or cannot be.
+    pub fn parse(dir: &Path, text: &str) -> Result<Self, IpcError> {
+        let path = dir.join("run");
         let value = |key: &str| {
             text.lines()
                 .filter_map(|line| line.split_once(" = ").or(line.strip_suffix(" =").map(|k| (k, ""))))
@@ -107,6 +122,14 @@ impl Run {
             robot: value("robot")? == "simulated",
             log: (!log.is_empty()).then(|| log.into()),
         })
+    }
+
+    /// Where a process keeps its last seconds: [`Space::box_of`], before it enters the space.
+    ///
+    /// # Errors
+    /// The run directory is gone.
+    pub fn box_of(&self, process: Process) -> Result<PathBuf, IpcError> {
+        Ok(Place::of(&self.dir)?.box_of(process))
     }
 
     /// Enters the space of this run.

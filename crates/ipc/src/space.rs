@@ -13,13 +13,13 @@ use iceoryx2::prelude::*;
 use messages::topics::{ForType, with_type};
 use messages::{Process, Record, TOPICS, Topic};
 use std::cell::OnceCell;
-use std::path::Path as StdPath;
+use std::path::{Path as StdPath, PathBuf};
 use std::time::Duration;
 
 /// Name of the supervisor's lock and node.
 const SUPERVISOR: &str = "supervisor";
-/// Room kept free in shared memory for queues, bells and rings of other programs \[B\].
-const SPARE: u64 = 8 << 20;
+/// Room kept free in shared memory for queues, bells, rings of other programs, and the last seconds of processes \[B\].
+const SPARE: u64 = 56 << 20;
 /// How long clearing up after dead processes may wait for somebody else who does it.
 const CLEAR_PATIENCE: Duration = Duration::from_millis(200);
 
@@ -127,6 +127,11 @@ impl Space {
     /// The run directory.
     pub fn dir(&self) -> &StdPath {
         &self.place.dir
+    }
+
+    /// Where a process keeps its last seconds. In shared memory, and gone with it.
+    pub fn box_of(&self, process: Process) -> PathBuf {
+        self.place.box_of(process)
     }
 
     /// The writer of a topic. Only the process named in the table may have it.

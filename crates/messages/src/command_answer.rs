@@ -125,14 +125,17 @@ pub trait CommandSource {
     /// [the one that decides](Command::decided_by) is heard.
     fn answer(&mut self, live: &Live, verdict: Verdict);
 
+    /// The next command that [`CommandSource::next`] has answered by itself and left out, and why.
+    fn left_out(&mut self) -> Option<(Live, Reason)>;
+
     /// The newest word about the command lease.
     fn lease(&self) -> crate::command_stamp::Lease;
 
     /// The next command, accepted as it is: for processes that do whatever they are told, or tell it by their state.
-    fn accept(&mut self) -> Option<Command> {
+    fn accept(&mut self) -> Option<Live> {
         let live = self.next()?;
         self.answer(&live, Ok(()));
-        Some(live.command)
+        Some(live)
     }
 }
 
@@ -146,6 +149,10 @@ impl CommandSource for NoCommands {
     }
 
     fn answer(&mut self, _: &Live, _: Verdict) {}
+
+    fn left_out(&mut self) -> Option<(Live, Reason)> {
+        None
+    }
 
     fn lease(&self) -> crate::command_stamp::Lease {
         crate::command_stamp::Lease::default()

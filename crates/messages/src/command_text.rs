@@ -5,7 +5,7 @@
 //! out. Nothing here runs in a control cycle: errors are text and allocate.
 
 use crate::command::{
-    Command, DistanceCommand, FixateCommand, HeadJointsCommand, LowerCommand, ParameterCommand,
+    Command, DistanceCommand, Domain, FixateCommand, HeadJointsCommand, LowerCommand, ParameterCommand,
     PlatformCommand, PushCommand, StepCommand, VelocityCommand,
 };
 
@@ -205,6 +205,12 @@ impl Command {
     /// The number of that field of its [`CommandInfo::fields`]; zero if there is none.
     pub fn value(&self, field: usize) -> f64 {
         self.values().get(field).copied().unwrap_or(0.0)
+    }
+
+    /// The command with this address and these numbers, whatever they are; none if there is no such command.
+    pub fn of_values(address: (Domain, u16), values: &[f64; MAX_FIELDS]) -> Option<Self> {
+        let info = COMMANDS.iter().find(|info| info.example().address() == address)?;
+        Some((info.build)(values))
     }
 
     /// The row of [`COMMANDS`] for this command.

@@ -62,6 +62,10 @@ pub trait Visit {
     fn field(&mut self, _name: &'static str) {}
     /// A fixed-size array begins; it ends with [`Visit::end`].
     fn array(&mut self, _len: usize) {}
+    /// An array of as many elements as there are begins; it ends with [`Visit::end`].
+    fn sequence(&mut self, len: usize) {
+        self.array(len);
+    }
     /// The innermost part that began ends.
     fn end(&mut self) {}
 }

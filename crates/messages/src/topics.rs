@@ -2,8 +2,8 @@
 
 use crate::record::Record;
 use crate::{
-    BusFrames, ControllerState, CycleStats, Event, JointTargets, Parameters, Plan, Power, Sensors, SimState,
-    WatchdogReset,
+    BusFrames, CommandTaken, ControllerState, CycleInputs, CycleStats, Event, JointTargets, Parameters, Plan,
+    Power, Sensors, SimState, WatchdogReset,
 };
 
 /// The processes of a running robot, in the order they are started.
@@ -28,12 +28,13 @@ pub enum Process {
 }
 
 impl Process {
-    /// All processes that `gangwerk run` starts, in order: the joint loop is the clock and comes last.
+    /// All processes that `gangwerk run` starts, in order: the logger before those whose first cycle it is to have, the joint
+    /// loop, which is the clock, last.
     pub const ALL: [Self; 7] = [
         Self::Broker,
+        Self::Logger,
         Self::Watchdog,
         Self::SimBackend,
-        Self::Logger,
         Self::Planner,
         Self::Controller,
         Self::Lowlevel,
@@ -127,7 +128,7 @@ topics! {
         0 Hz, stale 0, depth 8, logged true;
     /// Sign of life of the joint loop.
     WATCHDOG_RESET: WatchdogReset = "watchdog_reset", Lowlevel -> [Watchdog], wakes [Watchdog],
-        1000 Hz, stale 3, depth 4, logged false;
+        1000 Hz, stale 3, depth 256, logged true;
     /// State of the motor supply.
     POWER: Power = "power", Watchdog -> [SimBackend, Lowlevel], wakes [Lowlevel],
         1000 Hz, stale 3, depth 256, logged true;
@@ -143,6 +144,42 @@ topics! {
     /// How far the log has come; in lockstep the joint loop does not run ahead of it.
     LOG_TICK: Event = "log_tick", Logger -> [Lowlevel], wakes [Lowlevel],
         0 Hz, stale 0, depth 4, logged false;
+    /// Frames that the joint loop received, in the cycles in which there were any.
+    FRAMES_IN: BusFrames = "frames_in", Lowlevel -> [], wakes [],
+        1000 Hz, stale 0, depth 192, logged true;
+    /// Frames that it sent.
+    FRAMES_OUT: BusFrames = "frames_out", Lowlevel -> [], wakes [],
+        1000 Hz, stale 0, depth 192, logged true;
+    /// What each cycle of the watchdog began with.
+    INPUTS_WATCHDOG: CycleInputs = "cycle_inputs/watchdog", Watchdog -> [], wakes [],
+        1000 Hz, stale 0, depth 256, logged true;
+    /// What each cycle of the simulated robot began with.
+    INPUTS_SIM_BACKEND: CycleInputs = "cycle_inputs/sim-backend", SimBackend -> [], wakes [],
+        1000 Hz, stale 0, depth 256, logged true;
+    /// What each cycle of the joint loop began with.
+    INPUTS_LOWLEVEL: CycleInputs = "cycle_inputs/lowlevel", Lowlevel -> [], wakes [],
+        1000 Hz, stale 0, depth 256, logged true;
+    /// What each cycle of the planner began with.
+    INPUTS_PLANNER: CycleInputs = "cycle_inputs/planner", Planner -> [], wakes [],
+        1000 Hz, stale 0, depth 256, logged true;
+    /// What each cycle of the stabilizer began with.
+    INPUTS_CONTROLLER: CycleInputs = "cycle_inputs/controller", Controller -> [], wakes [],
+        1000 Hz, stale 0, depth 256, logged true;
+    /// Commands that the watchdog took or left out.
+    COMMANDS_WATCHDOG: CommandTaken = "commands/watchdog", Watchdog -> [], wakes [],
+        0 Hz, stale 0, depth 64, logged true;
+    /// Commands that the simulated robot took or left out.
+    COMMANDS_SIM_BACKEND: CommandTaken = "commands/sim-backend", SimBackend -> [], wakes [],
+        0 Hz, stale 0, depth 64, logged true;
+    /// Commands that the joint loop took or left out.
+    COMMANDS_LOWLEVEL: CommandTaken = "commands/lowlevel", Lowlevel -> [], wakes [],
+        0 Hz, stale 0, depth 64, logged true;
+    /// Commands that the planner took or left out.
+    COMMANDS_PLANNER: CommandTaken = "commands/planner", Planner -> [], wakes [],
+        0 Hz, stale 0, depth 64, logged true;
+    /// Commands that the stabilizer took or left out.
+    COMMANDS_CONTROLLER: CommandTaken = "commands/controller", Controller -> [], wakes [],
+        0 Hz, stale 0, depth 64, logged true;
     /// Cycle statistics of the watchdog.
     STATS_WATCHDOG: CycleStats = "cycle_stats/watchdog", Watchdog -> [], wakes [],
         10 Hz, stale 0, depth 16, logged true;

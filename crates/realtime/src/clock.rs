@@ -1,4 +1,4 @@
-//! The monotonic clock. Wall time exists in file names only; nothing here reads it.
+//! The monotonic clock. Wall time exists in file names only: [`unix_ms`].
 
 use rustix::thread::{ClockId, clock_nanosleep_absolute};
 use rustix::time::Timespec;
@@ -10,6 +10,12 @@ pub const SECOND: u64 = 1_000_000_000;
 pub fn now() -> u64 {
     let t = rustix::time::clock_gettime(rustix::time::ClockId::Monotonic);
     t.tv_sec as u64 * SECOND + t.tv_nsec as u64
+}
+
+/// Wall time for names of files: milliseconds since 1970.
+pub fn unix_ms() -> u64 {
+    let t = rustix::time::clock_gettime(rustix::time::ClockId::Realtime);
+    t.tv_sec as u64 * 1000 + t.tv_nsec as u64 / 1_000_000
 }
 
 /// Sleeps until that time \[ns\]; returns at once if it has passed.

@@ -4,12 +4,15 @@
 //! - [`clock`]: monotonic now and absolute sleep. [`Period`]: a grid of wake-ups and what happens on overrun.
 //! - [`CycleMeter`]: lateness, execution time, page faults and allocations of a cycle, as `cycle_stats` publishes them.
 //! - [`CountingAllocator`]: counts what the cycle's thread allocates after arming.
+//! - [`black_box`], [`last_words`]: what a process leaves when it dies.
 //! - [`Stop`]: the request to end, by signal.
 //! - [`preflight`]: what this machine gives to real time.
 
 pub mod allocations;
+pub mod black_box;
 pub mod clock;
 mod histogram;
+pub mod last_words;
 mod meter;
 mod period;
 mod preflight;

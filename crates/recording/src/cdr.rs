@@ -95,6 +95,9 @@ impl Visit for Encoder {
     fn u8(&mut self, value: u8) {
         self.bytes.push(value);
     }
+    fn sequence(&mut self, len: usize) {
+        self.count(len);
+    }
 }
 
 /// Reads a payload.

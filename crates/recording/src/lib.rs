@@ -2,6 +2,7 @@
 //!
 //! - [`Recorder`]: writes every logged topic of [`messages::TOPICS`] verbatim, and standard messages made from them.
 //! - [`Log`]: reads a log back into records, also one that was cut off by a crash.
+//! - [`repair`]: gives a log its index that was cut off by a crash.
 //! - [`traffic`]: frames of CAN lines.
 //! - [`payload_hashes`]: two runs are equal if these are.
 //!
@@ -15,6 +16,7 @@ mod links;
 mod log;
 pub mod polygon;
 mod recorder;
+mod rewrite;
 mod robot;
 mod standard;
 mod standard_definitions;
@@ -25,4 +27,5 @@ pub use hashes::payload_hashes;
 pub use links::{Link, LinkPoses, Pose};
 pub use log::{End, FrameTree, Log, Message, Transform};
 pub use recorder::{Recorder, STANDARD_RATE, Sink, channel_name};
+pub use rewrite::{Repaired, repair, rewrite};
 pub use robot::{FootInfo, RobotInfo, RunInfo};

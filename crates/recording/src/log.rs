@@ -8,7 +8,7 @@ use crate::recorder::channel_name;
 use crate::robot::{METADATA, RobotInfo, RunInfo, from_metadata};
 use crate::standard_definitions::{ROBOT_DESCRIPTION, TF};
 use mcap::McapError;
-use mcap::records::Record as Entry;
+use mcap::records::{Channel, Record as Entry, SchemaHeader};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use messages::record::Read as _;
 use messages::{Record, Topic};
@@ -35,6 +35,8 @@ pub struct Message<'a> {
     pub channel: &'a str,
     /// Definition of its type.
     pub definition: &'a [u8],
+    /// Number of the record of its topic; of standard messages their own count.
+    pub number: u32,
     /// \[ns\]
     pub log_time_ns: u64,
     /// CDR with encapsulation header.
@@ -97,6 +99,22 @@ impl Log {
     /// The run.
     pub fn run(&self) -> &RunInfo {
         &self.run
+    }
+
+    /// Shows every file that was put into the log, up to the first message.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is damaged.
+    pub fn each_attachment(&self, mut see: impl FnMut(&str, &[u8])) -> Result<(), RecordingError> {
+        walk(&self.path, |seen| match seen {
+            Seen::Attachment(name, bytes) => {
+                see(name, bytes);
+                ControlFlow::Continue(())
+            }
+            Seen::Message(_) => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        })?;
+        Ok(())
     }
 
     /// Shows every message in the order of the file.
@@ -178,6 +196,9 @@ fn read_transforms(payload: &[u8]) -> Vec<Transform> {
 /// What stands in a file.
 pub(crate) enum Seen<'a> {
     Metadata(&'a str, &'a std::collections::BTreeMap<String, String>),
+    Attachment(&'a str, &'a [u8]),
+    Schema(&'a SchemaHeader, &'a [u8]),
+    Channel(&'a Channel),
     Message(Message<'a>),
 }
 
@@ -218,13 +239,16 @@ pub(crate) fn walk(
             .map_err(|e| RecordingError::Damaged(path.into(), messages, e.to_string()))?;
         let flow = match entry {
             Entry::Schema { header, data } => {
+                let flow = see(Seen::Schema(&header, &data));
                 schemas.insert(header.id, data.into_owned());
-                ControlFlow::Continue(())
+                flow
             }
             Entry::Channel(channel) => {
+                let flow = see(Seen::Channel(&channel));
                 channels.insert(channel.id, (channel.topic, channel.schema_id));
-                ControlFlow::Continue(())
+                flow
             }
+            Entry::Attachment { header, data, .. } => see(Seen::Attachment(&header.name, &data)),
             Entry::Metadata(metadata) => see(Seen::Metadata(&metadata.name, &metadata.metadata)),
             Entry::Message { header, data } => {
                 messages += 1;
@@ -236,6 +260,7 @@ pub(crate) fn walk(
                 see(Seen::Message(Message {
                     channel,
                     definition,
+                    number: header.sequence,
                     log_time_ns: header.log_time,
                     payload: &data,
                 }))

@@ -65,13 +65,7 @@ impl Recorder {
 
     /// Writes to something else than a file.
     pub fn to(sink: Box<dyn Sink>, robot: &RobotInfo, run: &RunInfo) -> Result<Self, RecordingError> {
-        let options = mcap::WriteOptions::new()
-            .profile("ros2")
-            .library("gangwerk")
-            .compression(Some(mcap::Compression::Lz4))
-            .chunk_size(Some(CHUNK_SIZE))
-            .disable_seeking(true);
-        let mut mcap = options.create(sink).map_err(RecordingError::write)?;
+        let mut mcap = options().create(sink).map_err(RecordingError::write)?;
         let metadata = Metadata { name: METADATA.into(), metadata: to_metadata(robot, run) };
         mcap.write_metadata(&metadata).map_err(RecordingError::write)?;
         let mut recorder = Self {
@@ -94,6 +88,21 @@ impl Recorder {
         self.poses = vec![Pose::IDENTITY; links.links().len()];
         self.links = Some(links);
         self
+    }
+
+    /// Puts a file into the log; before the first record.
+    ///
+    /// # Errors
+    /// The log can no longer be written.
+    pub fn attach(&mut self, name: &str, bytes: &[u8]) -> Result<(), RecordingError> {
+        let attachment = mcap::Attachment {
+            log_time: 0,
+            create_time: 0,
+            name: name.into(),
+            media_type: "text/plain".into(),
+            data: bytes.into(),
+        };
+        self.mcap.attach(&attachment).map_err(RecordingError::write)
     }
 
     /// All channels in the order of the table, so that equal runs give equal files.
@@ -128,6 +137,20 @@ impl Recorder {
 
     /// Writes a record of a logged topic, and the standard messages that follow from it. Time is that of its header.
     pub fn write<T: Record>(&mut self, topic: &Topic, record: &T) -> Result<(), RecordingError> {
+        let next = self.channels.iter().find(|c| c.topic == topic.name).map_or(0, |c| c.sequence);
+        self.write_numbered(topic, record, next)
+    }
+
+    /// The same for the record with this number of its topic: a gap between numbers shows what the log lost.
+    ///
+    /// # Errors
+    /// The log can no longer be written.
+    pub fn write_numbered<T: Record>(
+        &mut self,
+        topic: &Topic,
+        record: &T,
+        number: u32,
+    ) -> Result<(), RecordingError> {
         let stamp = record.header().stamp_ns;
         if !self.described {
             self.described = true;
@@ -135,6 +158,9 @@ impl Recorder {
             self.put(ROBOT_DESCRIPTION.topic, stamp)?;
         }
         self.encoder.encode(record);
+        if let Some(channel) = self.channels.iter_mut().find(|c| c.topic == topic.name) {
+            channel.sequence = number;
+        }
         self.put(topic.name, stamp)?;
         let any: &dyn Any = record;
         if let Some(sensors) = any.downcast_ref::<Sensors>() {
@@ -205,6 +231,16 @@ impl Recorder {
         self.mcap.finish().map_err(RecordingError::write)?;
         self.mcap.into_inner().flush().map_err(RecordingError::write)
     }
+}
+
+/// How every log is written.
+pub(crate) fn options() -> mcap::WriteOptions {
+    mcap::WriteOptions::new()
+        .profile("ros2")
+        .library("gangwerk")
+        .compression(Some(mcap::Compression::Lz4))
+        .chunk_size(Some(CHUNK_SIZE))
+        .disable_seeking(true)
 }
 
 /// Whether the next standard message is due, on the grid of full periods.

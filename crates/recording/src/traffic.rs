@@ -6,7 +6,7 @@ use crate::cdr::{Decoder, Encoder};
 use crate::definition::PACKAGE;
 use crate::error::RecordingError;
 use crate::log::{End, Seen, walk};
-use crate::recorder::Sink;
+use crate::recorder::{Sink, options};
 use crate::standard_definitions::TIME;
 use mcap::records::{MessageHeader, Metadata};
 use messages::record::{Read, Visit};
@@ -17,8 +17,6 @@ use std::path::Path;
 
 /// Name of the metadata record.
 const METADATA: &str = "gangwerk.can";
-/// \[B\] Chunks are closed at this size.
-const CHUNK_SIZE: u64 = 512 * 1024;
 
 const DEFINITION: &str = "\
 # One frame of a CAN line.
@@ -78,14 +76,8 @@ impl TrafficWriter {
     /// It cannot be made or written.
     pub fn create(path: &Path) -> Result<Self, RecordingError> {
         let file = std::fs::File::create(path).map_err(|e| RecordingError::Create(path.into(), e))?;
-        let options = mcap::WriteOptions::new()
-            .profile("ros2")
-            .library("gangwerk")
-            .compression(Some(mcap::Compression::Lz4))
-            .chunk_size(Some(CHUNK_SIZE))
-            .disable_seeking(true);
         let sink: Box<dyn Sink> = Box::new(BufWriter::new(file));
-        let mut mcap = options.create(sink).map_err(RecordingError::write)?;
+        let mut mcap = options().create(sink).map_err(RecordingError::write)?;
         let about = BTreeMap::from([("software".into(), env!("CARGO_PKG_VERSION").into())]);
         mcap.write_metadata(&Metadata { name: METADATA.into(), metadata: about })
             .map_err(RecordingError::write)?;

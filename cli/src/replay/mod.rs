@@ -1,0 +1,156 @@
+//! `gangwerk replay LOG`: the recorded inputs of a process, fed to its real step, and what comes out held against the log.
+//!
+//! - `tape.rs`: the log, topic by topic, in the order of writing; notices what is missing.
+//! - `parts.rs`: one process each: which record goes into which step.
+//! - `fields.rs`: names the field in which two records differ.
+//!
+//! A replay begins where the process began, with the configuration in the log. It is exact or says why it cannot be.
+
+mod fields;
+mod parts;
+mod problem;
+mod tape;
+
+use std::error::Error;
+use std::path::{Component, Path, PathBuf};
+
+use config::Setup;
+use config::tolerance::Method;
+use fieldbus::Address;
+use messages::Process;
+use recording::Log;
+
+pub use problem::Problem;
+use tape::Tape;
+
+/// Processes whose step can be replayed.
+pub const PROCESSES: [Process; 4] =
+    [Process::Planner, Process::Controller, Process::Lowlevel, Process::Watchdog];
+
+/// What was replayed, and is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Replayed {
+    /// Cycles of the process.
+    pub cycles: u64,
+    /// Records that it wrote.
+    pub records: u64,
+    /// \[B\] Their size in the log.
+    pub bytes: u64,
+    /// Commands that it took.
+    pub commands: u64,
+    /// The log ends in the middle, as that of a killed logger; what is in it is the same.
+    pub cut: bool,
+}
+
+impl std::fmt::Display for Replayed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { cycles, records, bytes, commands, cut } = self;
+        let megabytes = *bytes as f64 * 1e-6;
+        write!(
+            f,
+            "{cycles} cycles, {commands} commands, {records} records, {megabytes:.1} MB: no byte differs"
+        )?;
+        if *cut { write!(f, "; the log ends in the middle") } else { Ok(()) }
+    }
+}
+
+/// Replays one process of a log.
+///
+/// # Errors
+/// The log cannot be read, was not made by `gangwerk run`, or has another layout; a [`Problem`]: a record that the replay
+/// needs is missing, or one differs.
+pub fn replay(log: &Path, process: Process) -> Result<Replayed, Box<dyn Error>> {
+    let file = Log::open(log)?;
+    let (setup, bus) = setup_of(&file)?;
+    let mut part = parts::of(process, &setup, &bus)?;
+    let mut tape = Tape::open(file, process)?;
+    let mut done = Replayed::default();
+    part.begin(&mut tape)?;
+    loop {
+        match cycle(&mut tape, part.as_mut(), &mut done) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(Problem::EndOfCut) => {
+                done.cut = true;
+                break;
+            }
+            Err(problem) => return Err(problem.into()),
+        }
+    }
+    if done.cycles == 0 {
+        return Err(Problem::NoCycles { process }.into());
+    }
+    if !done.cut {
+        tape.nothing_is_left()?;
+    }
+    (done.records, done.bytes) = tape.compared();
+    Ok(done)
+}
+
+/// One cycle; `Ok(false)`: there is no more.
+fn cycle(tape: &mut Tape, part: &mut dyn parts::Part, done: &mut Replayed) -> Result<bool, Problem> {
+    let Some(inputs) = tape.inputs()? else { return Ok(false) };
+    let commands = tape.commands(&inputs)?;
+    part.cycle(tape, &inputs, &commands)?;
+    tape.end_of_cycle(&inputs)?;
+    done.cycles += 1;
+    done.commands += commands.len() as u64;
+    Ok(true)
+}
+
+/// The configuration of a log, from the files in it, and the field bus.
+fn setup_of(log: &Log) -> Result<(Setup, Address), Box<dyn Error>> {
+    let place = Unpacked::new()?;
+    let mut run = None;
+    let mut failed = None;
+    log.each_attachment(|name, bytes| match name.strip_prefix(logger::CONFIG) {
+        Some(name) => failed = failed.take().or(place.put(Path::new(name), bytes).err()),
+        None if name == logger::daemon::RUN => run = Some(String::from_utf8_lossy(bytes).into_owned()),
+        None => {}
+    })?;
+    if let Some(error) = failed {
+        return Err(error.into());
+    }
+    let run =
+        run.ok_or("the log does not say how it was run: only logs of `gangwerk run` can be replayed")?;
+    let run = ipc::Run::parse(&place.0, &run)?;
+    let method: Option<Method> = run.method.as_deref().map(str::parse).transpose()?;
+    let bus: Address = run.bus.parse()?;
+    let setup = Setup::load(&place.0, &run.scene)?.with_method(method)?.on_bus(bus.is_classic());
+    let (theirs, ours) = (log.run().config_hash, setup.hash);
+    if theirs != ours {
+        return Err(format!(
+            "the configuration in the log (hash {ours:016x}) is not the run's ({theirs:016x})"
+        )
+        .into());
+    }
+    Ok((setup, bus))
+}
+
+/// A directory for the configuration of a log; gone when dropped.
+struct Unpacked(PathBuf);
+
+impl Unpacked {
+    fn new() -> Result<Self, String> {
+        static COUNT: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
+        let n = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("gangwerk-replay-{}-{n}", std::process::id()));
+        std::fs::create_dir(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        Ok(Self(path))
+    }
+
+    fn put(&self, name: &Path, bytes: &[u8]) -> Result<(), String> {
+        if !name.components().all(|part| matches!(part, Component::Normal(_))) {
+            return Err(format!("the log holds a file with the name {}", name.display()));
+        }
+        let path = self.0.join(name);
+        let made = path.parent().map_or(Ok(()), std::fs::create_dir_all);
+        made.and_then(|()| std::fs::write(&path, bytes)).map_err(|e| format!("{}: {e}", path.display()))
+    }
+}
+
+impl Drop for Unpacked {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}

@@ -1,0 +1,218 @@
+//! The steps of four processes: which recorded input goes where, in the order of their daemons.
+
+use std::error::Error;
+
+use config::Setup;
+use controller::Controller;
+use fieldbus::Address;
+use lowlevel::JointLoop;
+use messages::topics::{
+    CONTROLLER_STATE, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, PARAMETERS, PLAN, POWER, SENSORS, WATCHDOG_RESET,
+};
+use messages::{
+    BusFrames, Command, CommandTaken, ControllerState, CycleInputs, EventCode, JointTargets, Parameters,
+    Plan, Process, Sensors, WatchdogReset,
+};
+use planner::Planner;
+use watchdog::Watchdog;
+
+use super::problem::Problem;
+use super::tape::Tape;
+
+/// One process.
+pub(super) trait Part {
+    /// What it writes before its first cycle.
+    fn begin(&mut self, _: &mut Tape) -> Result<(), Problem> {
+        Ok(())
+    }
+
+    /// One cycle: fetches what it used, steps, holds what it made against the log.
+    fn cycle(
+        &mut self,
+        tape: &mut Tape,
+        inputs: &CycleInputs,
+        commands: &[CommandTaken],
+    ) -> Result<(), Problem>;
+}
+
+/// The process as it is when it begins.
+pub(super) fn of(process: Process, setup: &Setup, bus: &Address) -> Result<Box<dyn Part>, Box<dyn Error>> {
+    let Setup { scene, robot, gait, system, .. } = setup;
+    Ok(match process {
+        Process::Planner => {
+            let mut planner = Planner::of(gait, robot);
+            planner.see(planner::vision::known(setup)?);
+            Box::new(Planning { planner, dt: scene.cycle, state: None, made: Box::default() })
+        }
+        Process::Controller => Box::new(Stabilizing {
+            controller: Controller::new(robot, gait, scene.cycle)?,
+            parameters: Parameters::default(),
+            sensors: None,
+            plan: None,
+        }),
+        Process::Lowlevel => Box::new(Driving {
+            joints: JointLoop::new(robot, system, scene.cycle),
+            real_bus: *bus != Address::Shared,
+            targets: None,
+            frames: None,
+        }),
+        Process::Watchdog => {
+            Box::new(Guarding { watchdog: Watchdog::new(system.watchdog_missed, system.toggle_missed), reset: None })
+        }
+        other => {
+            return Err(format!(
+                "{} cannot be replayed; planner, controller, lowlevel and watchdog can",
+                other.name()
+            )
+            .into());
+        }
+    })
+}
+
+/// The command of a record.
+fn command(taken: &CommandTaken) -> Result<Command, Problem> {
+    let unknown = || Problem::Broken(format!("command {}/{} of the log is unknown", taken.domain, taken.id));
+    taken.command().ok_or_else(unknown)
+}
+
+struct Planning {
+    planner: Planner,
+    dt: f64,
+    state: Option<Box<ControllerState>>,
+    made: Box<Plan>,
+}
+
+impl Part for Planning {
+    fn cycle(
+        &mut self,
+        tape: &mut Tape,
+        inputs: &CycleInputs,
+        commands: &[CommandTaken],
+    ) -> Result<(), Problem> {
+        tape.fetch(&CONTROLLER_STATE, inputs.used[0], &mut self.state)?;
+        let commands = commands.iter().map(command).collect::<Result<Vec<_>, _>>()?;
+        let output = self.planner.step(inputs.header.tick, self.dt, self.state.as_deref(), &commands);
+        if let Some(plan) = output.plan {
+            *self.made = *plan;
+            self.made.header = inputs.header;
+            tape.compare(&PLAN, &*self.made)?;
+        }
+        output.events.iter().try_for_each(|&(code, detail)| tape.event(inputs.header, code, detail))
+    }
+}
+
+struct Stabilizing {
+    controller: Controller,
+    parameters: Parameters,
+    sensors: Option<Box<Sensors>>,
+    plan: Option<Box<Plan>>,
+}
+
+impl Part for Stabilizing {
+    fn begin(&mut self, tape: &mut Tape) -> Result<(), Problem> {
+        self.controller.report_parameters(&mut self.parameters);
+        tape.compare(&PARAMETERS, &self.parameters)
+    }
+
+    fn cycle(
+        &mut self,
+        tape: &mut Tape,
+        inputs: &CycleInputs,
+        commands: &[CommandTaken],
+    ) -> Result<(), Problem> {
+        let header = inputs.header;
+        tape.fetch(&SENSORS, inputs.used[0], &mut self.sensors)?;
+        tape.fetch(&PLAN, inputs.used[1], &mut self.plan)?;
+        for taken in commands {
+            let command = command(taken)?;
+            if let Some((code, detail)) = self.controller.command(&command) {
+                tape.event(header, code, detail)?;
+            }
+            if matches!(command, Command::Parameter(_)) {
+                self.parameters.header = header;
+                self.controller.report_parameters(&mut self.parameters);
+                tape.compare(&PARAMETERS, &self.parameters)?;
+            }
+        }
+        let measured = self
+            .sensors
+            .as_deref()
+            .ok_or_else(|| Problem::Broken("a cycle of the controller without sensor data".into()))?;
+        let (targets, state) = self.controller.step(measured, self.plan.as_deref());
+        tape.compare(&CONTROLLER_STATE, state)?;
+        tape.compare(&JOINT_TARGETS, targets)?;
+        while let Some((code, detail)) = self.controller.take_event() {
+            tape.event(header, code, detail)?;
+        }
+        Ok(())
+    }
+}
+
+struct Driving {
+    joints: JointLoop,
+    real_bus: bool,
+    targets: Option<Box<JointTargets>>,
+    frames: Option<Box<BusFrames>>,
+}
+
+impl Part for Driving {
+    fn begin(&mut self, tape: &mut Tape) -> Result<(), Problem> {
+        if self.real_bus {
+            tape.on_real_bus();
+        }
+        Ok(())
+    }
+
+    fn cycle(
+        &mut self,
+        tape: &mut Tape,
+        inputs: &CycleInputs,
+        commands: &[CommandTaken],
+    ) -> Result<(), Problem> {
+        let header = inputs.header;
+        tape.fetch(&JOINT_TARGETS, inputs.used[0], &mut self.targets)?;
+        tape.fetch(&FRAMES_IN, inputs.used[1], &mut self.frames)?;
+        let sensors = self.joints.receive(header.tick, header.stamp_ns, self.frames.as_deref());
+        tape.compare(&SENSORS, sensors)?;
+        for taken in commands {
+            self.joints.command(&command(taken)?);
+        }
+        let cause = EventCode::from_number(inputs.cause).filter(|&cause| cause != EventCode::None);
+        let (frames, reset) = self.joints.send(self.targets.as_deref(), cause);
+        tape.compare(&FRAMES_OUT, frames)?;
+        tape.compare(&WATCHDOG_RESET, reset)?;
+        while let Some((code, detail)) = self.joints.take_event() {
+            tape.event(header, code, detail)?;
+        }
+        Ok(())
+    }
+}
+
+struct Guarding {
+    watchdog: Watchdog,
+    reset: Option<Box<WatchdogReset>>,
+}
+
+impl Part for Guarding {
+    fn cycle(
+        &mut self,
+        tape: &mut Tape,
+        inputs: &CycleInputs,
+        commands: &[CommandTaken],
+    ) -> Result<(), Problem> {
+        tape.fetch(&WATCHDOG_RESET, inputs.used[0], &mut self.reset)?;
+        let commands = commands.iter().map(command).collect::<Result<Vec<_>, _>>()?;
+        let before = self.watchdog.supply();
+        let power = self.watchdog.step(&watchdog::Inputs {
+            reset: self.reset.as_deref(),
+            commands: &commands,
+            skipped: inputs.skipped,
+            late: inputs.late == 1,
+        });
+        tape.compare(&POWER, power)?;
+        match watchdog::supply_event(before, self.watchdog.supply()) {
+            Some((code, detail)) => tape.event(inputs.header, code, detail),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! A log once more, message by message: with an index if it had none, because its writer died.
+
+use crate::error::RecordingError;
+use crate::log::{End, Seen, walk};
+use crate::recorder::{Sink, options};
+use mcap::records::{MessageHeader, Metadata};
+use std::collections::{BTreeMap, HashMap};
+use std::io::{BufWriter, Write};
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// What became of a log that was repaired.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Repaired {
+    /// Messages that are in it now.
+    pub messages: u64,
+    /// Why it was not complete; none: it was, and nothing was done.
+    pub found: Option<String>,
+}
+
+/// Gives a log its end and index, if it lacks them: everything up to the cut, or up to the first damage, is kept.
+///
+/// # Errors
+/// The file is no log, or there is no room beside it for the new one; then it stays as it was.
+pub fn repair(path: &Path) -> Result<Repaired, RecordingError> {
+    let new = path.with_extension("repair");
+    let done = rewrite(path, &new, |_, _| true);
+    let found = match &done {
+        Ok((End::Complete, _)) => None,
+        Ok((End::Truncated(_), _)) => Some("it ended in the middle".to_owned()),
+        Err(e) => Some(e.to_string()),
+    };
+    let messages = match done {
+        Ok((_, messages)) | Err(RecordingError::Damaged(_, messages, _)) => messages,
+        Err(e) => {
+            let _ = std::fs::remove_file(&new);
+            return Err(e);
+        }
+    };
+    match found {
+        Some(_) => std::fs::rename(&new, path),
+        None => std::fs::remove_file(&new),
+    }
+    .map_err(|e| RecordingError::Create(path.into(), e))?;
+    Ok(Repaired { messages, found })
+}
+
+/// Copies a log; `edit` sees name of the channel and payload of each message, may change the payload, and
+/// says whether the message is kept. What stands before
+/// a damage is written, too, before that is an error. Returns how `from` ended, and the number of messages.
+///
+/// # Errors
+/// `from` is no log or damaged, or `to` cannot be written.
+pub fn rewrite(
+    from: &Path,
+    to: &Path,
+    mut edit: impl FnMut(&str, &mut Vec<u8>) -> bool,
+) -> Result<(End, u64), RecordingError> {
+    let file = std::fs::File::create(to).map_err(|e| RecordingError::Create(to.into(), e))?;
+    let sink: Box<dyn Sink> = Box::new(BufWriter::new(file));
+    let mut mcap = options().create(sink).map_err(RecordingError::write)?;
+    let mut schemas = HashMap::new();
+    let mut channels: HashMap<String, u16> = HashMap::new();
+    let (mut payload, mut messages, mut failed) = (Vec::new(), 0, None);
+    let end = walk(from, |seen| {
+        let written = match seen {
+            Seen::Metadata(name, map) => {
+                mcap.write_metadata(&Metadata { name: name.into(), metadata: map.clone() })
+            }
+            Seen::Attachment(name, bytes) => mcap.attach(&mcap::Attachment {
+                log_time: 0,
+                create_time: 0,
+                name: name.into(),
+                media_type: "text/plain".into(),
+                data: bytes.into(),
+            }),
+            Seen::Schema(header, data) => mcap
+                .add_schema(&header.name, &header.encoding, data)
+                .map(|id| _ = schemas.insert(header.id, id)),
+            Seen::Channel(channel) => {
+                let schema = schemas.get(&channel.schema_id).copied().unwrap_or(0);
+                let metadata: &BTreeMap<String, String> = &channel.metadata;
+                mcap.add_channel(schema, &channel.topic, &channel.message_encoding, metadata)
+                    .map(|id| _ = channels.insert(channel.topic.clone(), id))
+            }
+            Seen::Message(message) => {
+                messages += 1;
+                payload.clear();
+                payload.extend_from_slice(message.payload);
+                if !edit(message.channel, &mut payload) {
+                    return ControlFlow::Continue(());
+                }
+                let header = MessageHeader {
+                    channel_id: channels.get(message.channel).copied().unwrap_or(0),
+                    sequence: message.number,
+                    log_time: message.log_time_ns,
+                    publish_time: message.log_time_ns,
+                };
+                mcap.write_to_known_channel(&header, &payload)
+            }
+        };
+        failed = written.err();
+        if failed.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    if let Some(error) = failed {
+        return Err(RecordingError::write(error));
+    }
+    mcap.finish().map_err(RecordingError::write)?;
+    mcap.into_inner().flush().map_err(RecordingError::write)?;
+    Ok((end?, messages))
+}
