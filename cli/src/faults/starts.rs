@@ -1,9 +1,8 @@
 //! Runs that must not start, and runs that must start all the same: F19, F22 to F25, F28, F34, F35, F37.
 
-use std::time::Instant;
-
 use harness::{Running, Said, Signal, Site, doze};
 use messages::Process;
+use realtime::clock;
 
 use super::lab::{Found, Lab, Seen};
 use super::robot::Robot;
@@ -20,10 +19,10 @@ const UPTIME: &str = "300000000";
 fn short(site: &Site, wrapper: &[&str], more: &[&str]) -> Result<(f64, Said), String> {
     site.scene("fault", SHORT, WAIT);
     let arguments = site.run_arguments("fault", more);
-    let begun = Instant::now();
+    let begun = clock::now();
     let run = site.start_under(wrapper, &arguments.iter().map(String::as_str).collect::<Vec<_>>());
     let said = run.try_end()?;
-    Ok((begun.elapsed().as_secs_f64() * 1e3, said))
+    Ok(((clock::now() - begun) as f64 * 1e-6, said))
 }
 
 /// Refused for the reason that was given to it: there is no record of a run that did not start, only what it says.
@@ -122,7 +121,7 @@ pub(super) fn death_at_start(lab: &mut Lab) -> Found {
     let site = lab.patient();
     site.scene("fault", SHORT, WAIT);
     let mut run: Running = site.run("fault", &["--no-log"]);
-    let begun = Instant::now();
+    let begun = clock::now();
     while !site.run_dir().join("planner.lock").exists() && run.is_alive() {
         doze(0.0005);
     }
@@ -130,7 +129,7 @@ pub(super) fn death_at_start(lab: &mut Lab) -> Found {
     let code = run.try_end()?.code;
     let armed = site.run_dir().join("lowlevel.lock").exists();
     let seen = Seen::new("F28", "the joint loop was never started")
-        .after_ms(begun.elapsed().as_secs_f64() * 1e3)
+        .after_ms((clock::now() - begun) as f64 * 1e-6)
         .demand(code == Some(1), format!("exit code 1, not {code:?}"))
         .demand(!armed, "never armed");
     Ok((vec![seen], None))
