@@ -7,6 +7,7 @@ extern crate terminal;
 pub mod can;
 pub mod choose;
 pub mod estop;
+pub mod faults;
 pub mod fit_friction;
 pub mod latency;
 pub mod log;

@@ -4,6 +4,7 @@
 #[macro_use(println, eprintln)]
 extern crate terminal;
 
+mod fault_table;
 mod run_command;
 mod study;
 
@@ -162,6 +163,8 @@ enum Task {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// Faults F1 to F40 against a walking robot: expected, observed, time. Exit code 1 if one is not as expected.
+    Faults(fault_table::Arguments),
     /// Fit friction parameters of a gear to a table of efficiencies, with the older model beside the newer one.
     FitFriction {
         /// A table, for example config/gears/hfuc_25_100.toml.
@@ -374,6 +377,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             cli::scorecard::main(&order, json, out.as_deref())?;
             Ok(ExitCode::SUCCESS)
         }
+        Task::Faults(arguments) => fault_table::run(&arguments),
         Task::FitFriction { file, out, json } => {
             fit_friction(&file, out, json)?;
             Ok(ExitCode::SUCCESS)

@@ -112,6 +112,9 @@ pub(super) enum Task {
     },
     /// What the walking robot does when the bus fails: lost, late, corrupted frames, silent nodes, cables.
     BusFaults {
+        /// The walk.
+        #[arg(long, default_value = studies::bus_faults::SCENE)]
+        scene: String,
         /// At how many instants of a stride each fault begins.
         #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=100))]
         instants: u64,
@@ -194,8 +197,8 @@ pub(super) fn run(config: &Path, what: Task, json: bool) -> Result<ExitCode, Box
             let report = arm_swing::run(config, depth, &out)?;
             (serde_json::to_string(&report)?, arm_swing::table(&report))
         }
-        Task::BusFaults { instants } => {
-            let report = bus_faults::run(config, instants as usize)?;
+        Task::BusFaults { scene, instants } => {
+            let report = bus_faults::run(config, &scene, instants as usize)?;
             (serde_json::to_string(&report)?, bus_faults::table(&report))
         }
         Task::Stalls { scene, instants, seed } => {

@@ -10,6 +10,7 @@ use drives::{
     OutOfDomain, ScrewFriction, Transmission,
 };
 
+use crate::brake::Brake;
 use crate::joint_control;
 use crate::robot::{Joint, joint_index};
 use crate::section::{NOT_NEGATIVE, POSITIVE, Section, nearest};
@@ -39,6 +40,8 @@ pub struct Drive {
     pub friction: Friction,
     /// Elasticity of the gear at its output; rigid if there is none.
     pub elasticity: Option<Elasticity>,
+    /// Brake, if it has one.
+    pub brake: Option<Brake>,
     /// \[A\], \[s\] Current that may flow for ever, and time constant of the winding's temperature, if they are known.
     pub winding: Option<[f64; 2]>,
     /// \[1\] Counts of the motor's encoder in a turn, if they are not those of the other drives.
@@ -211,6 +214,7 @@ impl Drive {
             current_limit: row.number("current_limit", "A", POSITIVE),
             friction: train.friction,
             elasticity: train.elasticity,
+            brake: Brake::of(row),
             winding: bought.winding,
             encoder_counts: bought.encoder_counts,
             control,

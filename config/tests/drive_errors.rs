@@ -90,6 +90,27 @@ fn values_that_cannot_be() {
     );
 }
 
+#[test]
+fn brakes_that_cannot_be() {
+    refused(
+        "brakes",
+        &[
+            ("current_limit = 30.0", "current_limit = 30.0\nbrake = { torque = 0.0, delay = 0.02 }"),
+            ("current_limit = 50.0", "current_limit = 50.0\nbrake = { torque = 5.0, dellay = 1.5 }"),
+        ],
+        &[
+            "drive[0].brake.torque: 0 is not allowed; it takes a number above 0 N m",
+            "drive[4].brake.delay: missing; it takes a number from 0 to 1 s",
+            "drive[4].brake.dellay: unknown key; the nearest known one is `delay`",
+        ],
+    );
+    refused(
+        "brake-delay",
+        &[("current_limit = 30.0", "current_limit = 30.0\nbrake = { torque = 5.0, delay = 1.5 }")],
+        &["drive[0].brake.delay: 1.5 is not allowed; it takes a number from 0 to 1 s"],
+    );
+}
+
 /// A coupler of 50 mm stands across the screw within the ankle's range; a lever straight behind the pivot has its dead
 /// point within the knee's.
 #[test]

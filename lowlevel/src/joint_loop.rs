@@ -264,7 +264,7 @@ impl JointLoop {
         for (j, joint) in self.robot.joints.iter().enumerate() {
             if !self.leads(j) {
                 self.rejoin[j].forget();
-                continue; // its brake holds it
+                continue; // it has no torque
             }
             let last = self.last[j];
             // Neither what is carried on nor what is left of an offset leads out of the joint's range.

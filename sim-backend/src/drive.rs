@@ -1,4 +1,7 @@
-//! Joints of a type 1 model: they follow their targets (2.74); with the supply off, brakes bring them to rest.
+//! Joints of a type 1 model: they follow their targets (2.74).
+//!
+//! They have no torque, so they cannot be limp: with the supply off they come to rest at their own rate of braking, and stay.
+//! That stands for friction in gears; what a robot without brakes does when its motors have no torque, types 2 to 5 tell.
 
 use config::robot::Joint;
 
@@ -34,7 +37,7 @@ impl Drive {
         }
     }
 
-    /// Begins a cycle of `dt` \[s\] in which the brake works on the joint.
+    /// Begins a cycle of `dt` \[s\] in which the joint is brought to rest.
     pub fn brake(joint: &Joint, from: Motion, dt: f64) -> Self {
         let less = joint.braking * dt;
         let speed = if from.speed.abs() <= less { 0.0 } else { from.speed - less * from.speed.signum() };

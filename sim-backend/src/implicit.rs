@@ -153,19 +153,19 @@ impl Train {
 impl Shaft {
     /// Motor and friction as functions of the speed at the end of the step.
     fn begin(&mut self, h: f64, given: &Given<'_>) -> Result<(), NoLoadTorque> {
-        let current = given.current[self.motor];
+        let on = given.drives(self.motor);
+        let current = if on { given.current[self.motor] } else { 0.0 };
         let found = self.drive.friction.sliding(self.speed, self.drive.motor.torque(current));
         let before = Sliding { dry: self.step.dry, viscous: self.step.viscous };
         let Sliding { dry, viscous } = *found.as_ref().unwrap_or(&before);
-        let powered = given.drives(self.motor);
-        let brake = if powered { 0.0 } else { self.brake() };
-        let motor = self.motor_line(h, powered, current);
-        self.step = Step { motor, dry, coulomb: dry + brake, viscous, ..self.step };
+        // Power stage off: open terminals, no torque.
+        let motor = if on { self.motor_line(h, current) } else { Line::default() };
+        self.step = Step { motor, dry, coulomb: dry + given.brake(self), viscous, ..self.step };
         found.map(|_| ())
     }
 
     /// Torque of the motor: (2.57) and the control laws, implicit.
-    fn motor_line(&self, h: f64, powered: bool, current: f64) -> Line {
+    fn motor_line(&self, h: f64, current: f64) -> Line {
         let motor = &self.drive.motor;
         let constant = motor.torque_constant;
         let at_voltage = |voltage: f64| {
@@ -173,9 +173,6 @@ impl Shaft {
             let per = h / motor.inductance * a * constant;
             Line { t: constant * a * current + per * voltage, b: per * constant, link: 0.0 }
         };
-        if !powered {
-            return at_voltage(0.0);
-        }
         let voltage = self.voltage(current);
         let Law::Cascade(cascade) = self.drive.control.law else { return at_voltage(voltage) };
         if voltage.abs() >= self.drive.voltage_limit {

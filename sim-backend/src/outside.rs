@@ -14,8 +14,12 @@ pub struct Outside {
     pub push: [f64; 3],
     /// Motor supply.
     pub powered: bool,
-    /// Drives whose power stage is off all the same, one bit each: their brakes hold.
+    /// Drives whose power stage is off all the same, one bit each.
+    pub off: u64,
+    /// Drives whose brakes are closed, one bit each; one without a brake does not care.
     pub braked: u64,
+    /// Drives that have not had torque yet, one bit each: until then somebody holds their joints in the start pose.
+    pub held: u64,
     /// Rope that holds the torso.
     pub rope: Option<Rope>,
 }

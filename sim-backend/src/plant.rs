@@ -459,7 +459,9 @@ fn given<'a>(l: &Layout, x: &'a [f64], reference: &'a [Motion], outside: &Outsid
         current: &x[l.current()],
         reference,
         powered: outside.powered,
+        off: outside.off,
         braked: outside.braked,
+        held: outside.held,
     }
 }
 

@@ -240,7 +240,7 @@ impl SimBackend {
         }
         if !self.fallen {
             outside.powered = powered;
-            outside.braked = self.begin_cycle(frames, powered);
+            [outside.off, outside.braked, outside.held] = self.begin_cycle(frames, powered);
             self.last_good.copy_from_slice(&self.state);
             self.plant.sample(dt, &self.state, &self.drives, &outside);
             let h = dt / f64::from(self.scene.substeps);
@@ -263,8 +263,9 @@ impl SimBackend {
         }
     }
 
-    /// Chooses how each joint is to move during this cycle; the drives without torque, one bit each.
-    fn begin_cycle(&mut self, frames: Option<&BusFrames>, powered: bool) -> u64 {
+    /// Chooses how each joint is to move during this cycle; the drives without torque, those whose brakes are closed, and
+    /// those that are held from outside, one bit each.
+    fn begin_cycle(&mut self, frames: Option<&BusFrames>, powered: bool) -> [u64; 3] {
         let dt = self.scene.cycle;
         let new = frames.filter(|f| f.header.tick > self.followed);
         let received = new.map(|f| decode_targets(&self.robot.layout, f, &mut self.command));
@@ -278,14 +279,14 @@ impl SimBackend {
         if let Some(joint) = self.stages.step(&told, powered, dt, &self.goals, &self.motions, current) {
             self.event.get_or_insert((EventCode::NodeStopped, self.hearing.node_of(joint) as u64));
         }
-        let mut braked = 0;
+        let [mut off, mut braked, mut held] = [0; 3];
         for (j, joint) in self.robot.joints.iter().enumerate() {
             let (from, action) = (self.goals[j], self.stages.action(j));
             let angle = targets.angle[j] - self.offset[j] + self.stages.origin(j);
             let follows = self.hearing.follows(j, angle - from.angle, joint.speed_limit * dt);
             self.drives[j] = match (action, follows) {
-                (Action::Brake, _) if self.plant.layout().joints > 0 => Drive::resting(self.motions[j].angle),
-                (Action::Brake | Action::Ramp, _) => Drive::brake(joint, from, dt),
+                (Action::Off, _) if self.plant.layout().joints > 0 => Drive::resting(self.motions[j].angle),
+                (Action::Off | Action::Ramp, _) => Drive::brake(joint, from, dt),
                 (Action::Search(speed), _) => {
                     let change = joint.braking * dt;
                     let speed = from.speed + (speed - from.speed).clamp(-change, change);
@@ -296,9 +297,12 @@ impl SimBackend {
                     Drive::follow(from, from.angle + from.speed * dt, from.speed, dt)
                 }
             };
-            braked |= u64::from(action == Action::Brake) << j;
+            off |= u64::from(action == Action::Off) << j;
+            let (brake, off_for) = (self.robot.drives.get(j).and_then(|d| d.brake), self.stages.off_for(j));
+            braked |= u64::from(brake.is_some_and(|brake| off_for > brake.delay)) << j;
+            held |= u64::from(off_for == f64::INFINITY) << j;
         }
-        braked
+        [off, braked, held]
     }
 
     /// Checks and tidies the state the steps have left.

@@ -19,8 +19,8 @@ const REST: f64 = 1e-9;
 /// What a joint does in this cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Action {
-    /// No torque: the brake holds.
-    Brake,
+    /// No torque.
+    Off,
     /// Follows its targets.
     Follow,
     /// Comes to rest on its ramp, and is held.
@@ -61,6 +61,8 @@ pub(crate) struct Stages {
     /// \[A\] Current limits.
     limit: Vec<f64>,
     actions: Vec<Action>,
+    /// \[s\] For how long they have had no torque.
+    off_for: Vec<f64>,
 }
 
 impl Stages {
@@ -84,7 +86,8 @@ impl Stages {
         Self {
             searches: robot.homes.iter().zip(pose).map(search).collect(),
             temperature: robot.joints.iter().zip(windings).map(warm).collect(),
-            actions: vec![Action::Brake; drives.len()],
+            actions: vec![Action::Off; drives.len()],
+            off_for: vec![f64::INFINITY; drives.len()],
             protection,
             drives,
             limit: robot.drives.iter().map(|drive| drive.current_limit).collect(),
@@ -126,6 +129,7 @@ impl Stages {
                 stopped = stopped.or(Some(j));
             }
             self.actions[j] = self.choose(j, now[j].angle);
+            self.off_for[j] = if self.actions[j] == Action::Off { self.off_for[j] + dt } else { 0.0 };
         }
         stopped
     }
@@ -133,6 +137,11 @@ impl Stages {
     /// What a joint does in this cycle.
     pub(crate) fn action(&self, j: usize) -> Action {
         self.actions[j]
+    }
+
+    /// \[s\] For how long a drive has had no torque, this cycle included; infinite: it never had any.
+    pub(crate) fn off_for(&self, j: usize) -> f64 {
+        self.off_for[j]
     }
 
     /// Whether a joint knows its angle.
@@ -168,7 +177,7 @@ impl Stages {
     fn choose(&mut self, j: usize, angle: f64) -> Action {
         let drive = &self.drives[j];
         match &mut self.searches[j] {
-            _ if !drive.drives() => Action::Brake,
+            _ if !drive.drives() => Action::Off,
             _ if drive.ramps() => Action::Ramp,
             Some(search) if search.homing != Homing::Found => {
                 let closed = angle >= search.switch.angle;
@@ -277,7 +286,7 @@ mod tests {
     #[test]
     fn a_joint_without_reference_is_enabled_only_to_find_it() {
         let mut rig = Rig::new(true);
-        assert_eq!((rig.state(HEAD), rig.stages.action(HEAD)), (State::SwitchedOn, Action::Brake));
+        assert_eq!((rig.state(HEAD), rig.stages.action(HEAD)), (State::SwitchedOn, Action::Off));
         assert_eq!((rig.state(KNEE), rig.stages.action(KNEE)), (State::OperationEnabled, Action::Follow));
         assert_eq!(rig.stages.origin(HEAD), rig.now[HEAD].angle, "its encoder counts from zero");
         rig.mode = JointMode::Home;
@@ -328,7 +337,7 @@ mod tests {
         assert_eq!(rig.state(KNEE), State::OperationEnabled);
         rig.current[KNEE] = -61.0;
         rig.step();
-        assert_eq!((rig.error(KNEE), rig.stages.action(KNEE)), (Some(Fault::OverCurrent), Action::Brake));
+        assert_eq!((rig.error(KNEE), rig.stages.action(KNEE)), (Some(Fault::OverCurrent), Action::Off));
         rig.current[HEAD] = f64::NAN;
         rig.step();
         assert_eq!(rig.error(HEAD), Some(Fault::OverCurrent), "no number is no small one");
@@ -346,7 +355,7 @@ mod tests {
         assert_eq!((rig.error(KNEE), rig.stages.action(KNEE)), (Some(Fault::FollowingError), Action::Ramp));
     }
 
-    /// Its reference comes to rest, the brake closes; frames alone do not wake it, nor does an old reset.
+    /// Its reference comes to rest, its torque goes; frames alone do not wake it, nor does an old reset.
     #[test]
     fn a_drive_that_hears_nothing_stops_by_itself_and_only_a_reset_leads_back() {
         let mut rig = Rig::new(false);
@@ -360,7 +369,7 @@ mod tests {
         assert_eq!((rig.state(KNEE), rig.stopped), (State::FaultReaction, None), "not yet at rest");
         rig.goals[KNEE].speed = 0.0;
         rig.steps(2);
-        assert_eq!((rig.state(KNEE), rig.stages.action(KNEE)), (State::Fault, Action::Brake));
+        assert_eq!((rig.state(KNEE), rig.stages.action(KNEE)), (State::Fault, Action::Off));
         rig.hears = true;
         rig.steps(100);
         let mut out = Sensors::default();
@@ -401,10 +410,10 @@ mod tests {
     }
 
     #[test]
-    fn without_supply_every_brake_holds() {
+    fn without_supply_no_drive_has_torque() {
         let mut rig = Rig::new(false);
         rig.supply = false;
         rig.step();
-        assert!((0..24).all(|j| rig.stages.action(j) == Action::Brake && rig.error(j).is_none()));
+        assert!((0..24).all(|j| rig.stages.action(j) == Action::Off && rig.error(j).is_none()));
     }
 }

@@ -94,16 +94,29 @@ pub struct Given<'a> {
     pub current: &'a [f64],
     /// How the joints are to move.
     pub reference: &'a [Motion],
-    /// Whether the motor supply is on; without it the terminals are shorted and brakes hold.
+    /// Whether the motor supply is on; without it no motor has torque.
     pub powered: bool,
     /// Drives without torque all the same, one bit each.
+    pub off: u64,
+    /// Drives whose brakes are closed, one bit each.
     pub braked: u64,
+    /// Drives held from outside, one bit each.
+    pub held: u64,
 }
 
 impl Given<'_> {
     /// Whether a drive's power stage is on.
     pub(crate) fn drives(&self, drive: usize) -> bool {
-        self.powered && self.braked >> drive & 1 == 0
+        self.powered && self.off >> drive & 1 == 0
+    }
+
+    /// Torque up to which a shaft is held now \[N m\]: by its brake, or by who holds the joint as its motor could.
+    pub(crate) fn brake(&self, shaft: &Shaft) -> f64 {
+        if self.held >> shaft.motor & 1 == 1 {
+            return shaft.drive.motor.torque(shaft.drive.current_limit);
+        }
+        let closed = self.braked >> shaft.motor & 1 == 1;
+        shaft.drive.brake.filter(|_| closed).map_or(0.0, |brake| brake.torque)
     }
 }
 
@@ -192,14 +205,19 @@ impl Train {
     pub fn explicit(&mut self, given: &Given<'_>, data: &mut Data, torque: &mut [f64], rate: &mut [f64]) {
         for (k, s) in self.shafts.iter().enumerate() {
             let current = given.current[k];
-            let voltage = if given.drives(k) { s.voltage(current) } else { 0.0 };
-            rate[k] = s.drive.motor.current_rate(current, voltage, s.speed); // (2.57)
-            let driving = s.drive.motor.torque(current);
+            // Power stage off: open terminals, at the voltage the motor induces; what current is left makes no torque.
+            let motor = &s.drive.motor;
+            let (voltage, driving) = if given.drives(k) {
+                (s.voltage(current), motor.torque(current))
+            } else {
+                (motor.torque_constant * s.speed, 0.0)
+            };
+            rate[k] = motor.current_rate(current, voltage, s.speed); // (2.57)
             let friction = s.drive.friction.torque(s.speed, driving, SLOW).unwrap_or_else(|why| {
                 self.fault.get_or_insert(Fault { drive: k, why: Why::Friction(why) });
                 0.0
             });
-            let brake = if given.drives(k) { 0.0 } else { s.brake() * (s.speed / SLOW).clamp(-1.0, 1.0) };
+            let brake = given.brake(s) * (s.speed / SLOW).clamp(-1.0, 1.0);
             s.apply(given, driving + friction - brake, data, torque);
         }
     }
@@ -280,11 +298,6 @@ impl Shaft {
     /// Whether the ratio changes with the joints.
     fn is_linkage(&self) -> bool {
         !matches!(self.drive.transmission, Transmission::Harmonic { .. })
-    }
-
-    /// Torque of the brake \[N m\]: what the motor could hold.
-    pub(crate) fn brake(&self) -> f64 {
-        self.drive.motor.torque(self.drive.current_limit)
     }
 
     /// Hands the torque of the shaft on to the joints, through the gear.

@@ -1,12 +1,15 @@
 //! Every type of model as a robot at the end of the bus: repeatable, harmless when the supply fails, and never a number
 //! that is none.
 
+use config::brake::Brake;
 use config::scene::Integrator;
 use config::{Setup, root};
 use messages::command::PushCommand;
 use messages::frames::{DriveCommand, encode_targets};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, MAX_JOINTS, Power, SimState};
 use sim_backend::SimBackend;
+
+const KNEE: usize = 5;
 
 fn setup(depth: u8) -> Setup {
     let mut setup = Setup::load(&root(None), "stand").unwrap();
@@ -107,11 +110,53 @@ fn what_diverges_is_reported_and_held() {
     }
 }
 
+/// The supply fails on the ground, no drive has a brake: legs with motors fold; one second later the robot is down.
+#[test]
+fn without_brakes_a_standing_robot_collapses() {
+    for depth in 2..=3 {
+        let setup = setup(depth);
+        let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+        cycles(&mut sim, &setup, [1, 50], true, |_, _| {});
+        let before = sim.state().joint_angle[KNEE];
+        cycles(&mut sim, &setup, [50, 1050], false, |_, _| {});
+        let given = (sim.state().joint_angle[KNEE] - before).abs();
+        assert!(given > 0.5 && sim.state().fallen == 1, "type {depth}: the knee gives way by {given} rad");
+    }
+}
+
+/// A brake holds its delay after the torque has gone, and not before.
+#[test]
+fn a_brake_closes_after_its_delay() {
+    let given = [0.0, 0.05].map(|delay| {
+        let mut setup = setup(2);
+        brakes(&mut setup, delay);
+        let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+        cycles(&mut sim, &setup, [1, 50], true, |_, _| {});
+        let before = sim.state().joint_angle[KNEE];
+        cycles(&mut sim, &setup, [50, 100], false, |_, _| {});
+        let early = (sim.state().joint_angle[KNEE] - before).abs();
+        cycles(&mut sim, &setup, [100, 250], false, |_, _| {});
+        let held = sim.state().joint_angle[KNEE];
+        cycles(&mut sim, &setup, [250, 500], false, |_, _| {});
+        assert!((sim.state().joint_angle[KNEE] - held).abs() < 1e-3, "held after {delay} s");
+        early
+    });
+    assert!(given[0] < 1e-3 && given[1] > 0.01, "{given:?}");
+}
+
+/// Brakes that hold what the motors could hold.
+fn brakes(setup: &mut Setup, delay: f64) {
+    for drive in &mut setup.robot.drives {
+        drive.brake = Some(Brake { torque: drive.motor.torque(drive.current_limit), delay });
+    }
+}
+
 /// The supply fails on the ground: brakes hold, the robot stays up.
 #[test]
 fn brakes_hold_a_standing_robot() {
     for depth in 1..=5 {
-        let setup = setup(depth);
+        let mut setup = setup(depth);
+        brakes(&mut setup, 0.0);
         let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
         cycles(&mut sim, &setup, [1, 50], true, |_, _| {});
         let before = *sim.state();

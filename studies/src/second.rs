@@ -12,7 +12,8 @@ use sim_backend::plant::{Outside, Plant};
 use crate::chain::Chain;
 
 /// What the drives are supplied with while a second is replayed: motors on, nobody pushes.
-pub const POWERED: Outside = Outside { push: [0.0; 3], powered: true, braked: 0, rope: None };
+pub const POWERED: Outside =
+    Outside { push: [0.0; 3], powered: true, off: 0, braked: 0, held: 0, rope: None };
 
 /// A second of motion.
 pub struct Second {

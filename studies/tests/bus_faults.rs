@@ -11,7 +11,8 @@ const INSTANTS: usize = 2;
 
 #[test]
 fn faults_are_named_and_answered_in_time() {
-    let report = bus_faults::run(&config::root(None), INSTANTS).expect("the robot of scene `walk_2kmh`");
+    let report = bus_faults::run(&config::root(None), bus_faults::SCENE, INSTANTS)
+        .expect("the robot of scene `walk_2kmh`");
     println!("{}", bus_faults::table(&report));
     let failed: Vec<_> = report.failed().map(|row| format!("{}: {}", row.fault, row.unmet)).collect();
     assert!(failed.is_empty(), "not as demanded: {failed:#?}");

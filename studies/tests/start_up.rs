@@ -91,7 +91,7 @@ fn without_homing_no_drive_is_switched_on_and_nothing_moves() {
     assert_eq!(story.order().last(), Some(&StartUp::NotHomed));
     assert_eq!(story.told(EventCode::NotHomed), Some(22), "the camera head: {:?}", story.events);
     assert!(story.told(EventCode::ZeroRefused).is_some() && story.told(EventCode::NotStanding).is_some());
-    assert!(story.moved < 5e-3, "brakes hold: {} rad", story.moved);
+    assert!(story.moved < 5e-3, "held until the drives are on: {} rad", story.moved);
 }
 
 /// Lowered, but not zeroed: it does not count as standing, and walking is refused.

@@ -56,9 +56,10 @@ pub(super) fn of(process: Process, setup: &Setup, bus: &Address) -> Result<Box<d
             targets: None,
             frames: None,
         }),
-        Process::Watchdog => {
-            Box::new(Guarding { watchdog: Watchdog::new(system.watchdog_missed, system.toggle_missed), reset: None })
-        }
+        Process::Watchdog => Box::new(Guarding {
+            watchdog: Watchdog::new(system.watchdog_missed, system.toggle_missed),
+            reset: None,
+        }),
         other => {
             return Err(format!(
                 "{} cannot be replayed; planner, controller, lowlevel and watchdog can",

@@ -32,6 +32,9 @@ use crate::figures::{Figures, Gatherer};
 
 pub use crash::TEXT as CRASH_TEXT;
 
+/// Open files that the supervisor needs, with room for topics to come; 775 at the last count.
+const OPEN_FILES: u64 = 1024;
+
 /// What to run and how.
 #[derive(Clone, Debug)]
 pub struct Order {
@@ -100,6 +103,13 @@ pub struct Outcome {
 /// # Errors
 /// The configuration is wrong, another run uses the directory, or a process does not start.
 pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<dyn Error>> {
+    let files = realtime::most_open_files();
+    if files < OPEN_FILES {
+        return Err(format!(
+            "this user may have {files} open files, a run takes {OPEN_FILES}: ulimit -n {OPEN_FILES}"
+        )
+        .into());
+    }
     // From here errors name the files of the operator; the processes read the copy.
     let theirs = Setup::load(&order.config, &order.scene)?;
     let space = Space::create(&order.dir)?;

@@ -36,7 +36,7 @@ pub enum State {
     SwitchOnDisabled,
     /// Voltage may be switched on.
     Ready,
-    /// Power stage ready, no torque: the brake holds.
+    /// Power stage ready, no torque.
     SwitchedOn,
     /// Targets are followed.
     OperationEnabled,
@@ -44,7 +44,7 @@ pub enum State {
     QuickStop,
     /// Brakes on the ramp because of a fault.
     FaultReaction,
-    /// No torque: the brake holds. Only the edge of a fault reset leads out.
+    /// No torque. Only the edge of a fault reset leads out.
     Fault,
 }
 
@@ -97,7 +97,7 @@ impl Fault {
         Self::ALL.into_iter().find(|fault| *fault as u16 == code)
     }
 
-    /// Whether the power stage may still brake on the ramp; otherwise it lets go at once, and the brake closes.
+    /// Whether the power stage may still brake on the ramp; otherwise it lets go at once.
     pub const fn ramps(self) -> bool {
         !matches!(self, Self::OverCurrent)
     }
@@ -154,7 +154,7 @@ impl Drive {
         self.error
     }
 
-    /// Whether the power stage drives the motor; otherwise the brake holds it.
+    /// Whether the power stage drives the motor; otherwise it has no torque, and a brake holds it if there is one.
     pub fn drives(&self) -> bool {
         matches!(self.state, State::OperationEnabled | State::QuickStop | State::FaultReaction)
     }

@@ -8,7 +8,7 @@ pub enum StartUp {
     Off = 0,
     /// Supply on; joints that do not know their angles keep all drives from being switched on.
     NotHomed = 1,
-    /// These joints look for their references; brakes hold the others.
+    /// These joints look for their references; the others are held.
     Homing = 2,
     /// Drives are being switched on.
     Enabling = 3,

@@ -4,6 +4,11 @@ use crate::thread::{CAP_IPC_LOCK, CAP_SYS_NICE, has_capability};
 use rustix::process::{Resource, getrlimit};
 use std::fs::read_to_string;
 
+/// Files that this process may have open \[1\].
+pub fn most_open_files() -> u64 {
+    getrlimit(Resource::Nofile).current.unwrap_or(u64::MAX)
+}
+
 /// How good a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grade {

@@ -209,12 +209,12 @@ impl Rig {
         let current = &x[self.plant.layout().current()];
         let mut sum = Flow::default();
         for ((d, i), (_, speed)) in self.robot.drives.iter().zip(current).zip(self.motors(t, x)) {
-            sum.motors += d.motor.torque(*i) * speed;
-            sum.friction += d.friction.torque(speed, d.motor.torque(*i), SLOW).unwrap() * speed;
+            let driving = if self.outside.powered { d.motor.torque(*i) } else { 0.0 };
+            sum.motors += driving * speed;
+            sum.friction += d.friction.torque(speed, driving, SLOW).unwrap() * speed;
             sum.heat += d.motor.resistance * i * i;
-            if !self.outside.powered {
-                let hold = d.motor.torque(d.current_limit);
-                sum.brakes -= hold * (speed / SLOW).clamp(-1.0, 1.0) * speed;
+            if let Some(brake) = d.brake.filter(|_| self.outside.braked != 0) {
+                sum.brakes -= brake.torque * (speed / SLOW).clamp(-1.0, 1.0) * speed;
             }
         }
         sum

@@ -1,6 +1,6 @@
 //! Faults of the field bus while Lola walks: what is noticed, named and done, and how the robot ends.
 //!
-//! Each case begins at several instants of a stride, in the walk of scene `walk_2kmh`. Cycles are counted from the first
+//! Each case begins at several instants of a stride, in the walk of scene `walk_2kmh` unless told otherwise. Cycles are counted from the first
 //! one that the fault strikes.
 //!
 //! | file | what |
@@ -25,8 +25,8 @@ use cases::Case;
 pub use text::table;
 use trial::Trial;
 
-/// The walk that is disturbed.
-const SCENE: &str = "walk_2kmh";
+/// The walk that is disturbed, unless another one is.
+pub const SCENE: &str = "walk_2kmh";
 
 /// How a robot ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -96,12 +96,12 @@ impl Report {
     }
 }
 
-/// All cases at `instants` of a stride.
+/// All cases at `instants` of a stride of a scene.
 ///
 /// # Errors
 /// A configuration or robot is wrong, or the robot falls without a fault.
-pub fn run(config: &Path, instants: usize) -> Result<Report, Box<dyn Error>> {
-    let setup = Setup::load(config, SCENE)?;
+pub fn run(config: &Path, scene: &str, instants: usize) -> Result<Report, Box<dyn Error>> {
+    let setup = Setup::load(config, scene)?;
     let starts = push::at_instants(&setup, instants)?;
     let cases = cases::all(&setup);
     let trials = parallel::map(cases.len() * instants, |k| {

@@ -161,6 +161,7 @@ impl Loop {
             current_limit: 1e9,
             friction: self.friction,
             elasticity: Some(Elasticity::linear(self.joint.stiffness)),
+            brake: None,
             winding: None,
             encoder_counts: None,
             control: JointControl {

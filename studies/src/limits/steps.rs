@@ -96,7 +96,7 @@ struct Standing {
     drives: Vec<Drive>,
 }
 
-const POWERED: Outside = Outside { push: [0.0; 3], powered: true, braked: 0, rope: None };
+const POWERED: Outside = Outside { push: [0.0; 3], powered: true, off: 0, braked: 0, held: 0, rope: None };
 
 impl Standing {
     /// Comes to rest in steps of `h` \[s\].

@@ -86,6 +86,14 @@ impl Site {
         Running::start(&mut self.command(arguments), self)
     }
 
+    /// Starts `WRAPPER gangwerk ARGUMENTS`: a program that changes something of its own and becomes what it is given.
+    pub fn start_under(&self, wrapper: &[&str], arguments: &[&str]) -> Running {
+        let mut command = Command::new(wrapper.first().copied().unwrap_or("env"));
+        command.args(wrapper.get(1..).unwrap_or_default()).arg(&self.exe).args(arguments);
+        self.place(&mut command);
+        Running::start(&mut command, self)
+    }
+
     /// The same on these cores only.
     pub fn start_on(&self, cores: &[usize], arguments: &[&str]) -> Running {
         let mut command = self.command(arguments);
@@ -140,13 +148,13 @@ impl Site {
 
     fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(&self.exe);
+        command.args(arguments);
+        self.place(&mut command);
         command
-            .args(arguments)
-            .arg("--config")
-            .arg(self.dir.join("config"))
-            .current_dir(&self.dir)
-            .stdin(Stdio::null());
-        command
+    }
+
+    fn place(&self, command: &mut Command) {
+        command.arg("--config").arg(self.dir.join("config")).current_dir(&self.dir).stdin(Stdio::null());
     }
 }
 

@@ -81,15 +81,24 @@ impl Running {
 
     /// Waits for its end.
     #[track_caller]
-    pub fn end(mut self) -> Said {
+    pub fn end(self) -> Said {
+        self.try_end().unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    /// Waits for its end.
+    ///
+    /// # Errors
+    /// It does not end in time; what it said.
+    pub fn try_end(mut self) -> Result<Said, String> {
         let begun = clock::now();
         while self.is_alive() {
-            let late = clock::now() - begun > (PATIENCE * 1e9) as u64;
-            assert!(!late, "did not end within {PATIENCE} s: {}", self.err());
+            if clock::now() - begun > (PATIENCE * 1e9) as u64 {
+                return Err(format!("did not end within {PATIENCE} s: {}", self.err()));
+            }
             doze(0.005);
         }
         let code = self.child.wait().expect("it has ended").code();
-        Said { code, out: fs::read_to_string(&self.out).unwrap_or_default(), err: self.err() }
+        Ok(Said { code, out: fs::read_to_string(&self.out).unwrap_or_default(), err: self.err() })
     }
 
     /// Asks it to end, as Ctrl-C does.
@@ -130,17 +139,23 @@ impl Running {
     /// The shared memory of the run, as soon as all its processes are there.
     #[track_caller]
     pub fn space(&mut self) -> Space {
+        self.try_space().unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    /// The same.
+    ///
+    /// # Errors
+    /// It does not start; what it said.
+    pub fn try_space(&mut self) -> Result<Space, String> {
         let begun = clock::now();
         let last = Process::Lowlevel.name();
         while !self.run_dir.join(format!("{last}.lock")).exists() {
-            assert!(
-                self.is_alive() && clock::now() - begun < 30 * clock::SECOND,
-                "did not start: {}",
-                self.err()
-            );
+            if !self.is_alive() || clock::now() - begun > 30 * clock::SECOND {
+                return Err(format!("did not start: {}", self.err()));
+            }
             doze(0.005);
         }
-        Space::open(&self.run_dir, Process::Observer).unwrap_or_else(|e| panic!("{e}"))
+        Space::open(&self.run_dir, Process::Observer).map_err(|e| e.to_string())
     }
 }
 

@@ -1,0 +1,131 @@
+//! What every scenario is given, and what it finds.
+
+use config::Setup;
+use harness::Site;
+use messages::Process;
+
+use super::robot::Robot;
+use super::scene::WALK;
+
+/// \[s\] Simulated time between which a walking robot is hurt: two strides.
+const WALKS: [f64; 2] = [3.6, 5.2];
+
+/// Pseudo-random numbers: the same of the same seed.
+#[derive(Clone, Debug)]
+pub(super) struct Random(pub(super) u64);
+
+impl Random {
+    /// In \[0, 1).
+    pub(super) fn share(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as f64 / (1u64 << 31) as f64
+    }
+
+    /// Between two numbers.
+    pub(super) fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
+        low + (high - low) * self.share()
+    }
+
+    /// One of these.
+    pub(super) fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
+        all[((all.len() as f64 * self.share()) as usize).min(all.len() - 1)]
+    }
+}
+
+/// What was seen of one fault.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen {
+    pub(super) fault: &'static str,
+    /// What happened.
+    pub(super) reaction: String,
+    /// From fault to reaction, in bus cycles and \[ms\].
+    pub(super) cycles: Option<u64>,
+    pub(super) ms: Option<f64>,
+    /// What of the expectation was not met.
+    pub(super) unmet: Vec<String>,
+}
+
+impl Seen {
+    pub(super) fn new(fault: &'static str, reaction: impl Into<String>) -> Self {
+        Self { fault, reaction: reaction.into(), ..Self::default() }
+    }
+
+    /// The reaction came after so many bus cycles.
+    pub(super) fn after(mut self, cycles: Option<u64>, robot: &Robot) -> Self {
+        self.cycles = cycles;
+        self.ms = cycles.map(|n| n as f64 * robot.setup.scene.cycle * 1e3);
+        self
+    }
+
+    /// The reaction came after so much wall time \[ms\].
+    pub(super) fn after_ms(mut self, ms: f64) -> Self {
+        self.ms = Some(ms);
+        self
+    }
+
+    /// It is demanded that the reaction came within so many cycles.
+    pub(super) fn within(self, most: u64) -> Self {
+        let met = self.cycles.is_some_and(|n| n <= most);
+        self.demand(met, format!("within {most} cycles"))
+    }
+
+    pub(super) fn demand(mut self, met: bool, what: impl Into<String>) -> Self {
+        if !met {
+            self.unmet.push(what.into());
+        }
+        self
+    }
+
+    /// It is demanded that the robot walks on.
+    pub(super) fn walks(mut self, robot: &Robot) -> Self {
+        self.unmet.extend(robot.walks_on().map(str::to_owned));
+        self
+    }
+}
+
+/// What a scenario found, and what spoilt it from outside, if something did.
+pub(super) type Found = Result<(Vec<Seen>, Option<String>), String>;
+
+/// The laboratory.
+pub(super) struct Lab {
+    pub(super) exe: String,
+    pub(super) random: Random,
+}
+
+impl Lab {
+    /// A place whose watchdog bears a machine that is shared with others.
+    pub(super) fn patient(&self) -> Site {
+        Site::patient(&self.exe)
+    }
+
+    /// An instant of the walk \[s\].
+    pub(super) fn instant(&mut self) -> f64 {
+        self.random.between(WALKS)
+    }
+
+    /// A robot that walks, at the instant of the fault.
+    pub(super) fn walking(&mut self, site: Site, more: &[&str]) -> Result<Robot, String> {
+        let at = self.instant();
+        let mut robot = Robot::start(site, WALK, more)?;
+        robot.until(at)?;
+        robot.mark();
+        Ok(robot)
+    }
+
+    /// A robot that walks and whose process is killed in mid-stride.
+    pub(super) fn killed(
+        &mut self,
+        site: Site,
+        victim: Process,
+        signal: harness::Signal,
+    ) -> Result<Robot, String> {
+        let robot = self.walking(site, &["--no-log"])?;
+        robot.run.signal(victim, signal);
+        Ok(robot)
+    }
+}
+
+/// What the configuration of a robot says about its limits.
+pub(super) fn limits(setup: &Setup) -> (u64, u64) {
+    (u64::from(setup.system.watchdog_missed), u64::from(setup.system.targets_missed))
+}
