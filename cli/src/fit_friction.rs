@@ -2,8 +2,9 @@
 //! picture like the thesis's figures 2.18 and 2.19.
 
 use std::collections::BTreeMap;
+use std::error::Error;
 use std::f64::consts::TAU;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use config::efficiency::Efficiencies;
 use drawing::color::{BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION};
@@ -130,6 +131,23 @@ impl Report {
         }
         chart
     }
+}
+
+/// `gangwerk fit-friction`: table or JSON, and the picture.
+///
+/// # Errors
+/// See [`run`]; or the picture cannot be written.
+pub fn main(file: &Path, out: Option<PathBuf>, json: bool) -> Result<(), Box<dyn Error>> {
+    let report = run(file)?;
+    println!("{}", if json { report.json() } else { report.table() });
+    let beside = || file.file_stem().map(|stem| PathBuf::from(stem).with_extension("png"));
+    if let Some(out) = out.or_else(|| if json { None } else { beside() }) {
+        report.draw(&out)?;
+        if !json {
+            println!("{}", out.display());
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

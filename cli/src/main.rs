@@ -366,7 +366,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             }
             Ok(ExitCode::SUCCESS)
         }
-        Task::Replay { log, process } => replay(&log, process.as_deref()),
+        Task::Replay { log, process } => cli::replay::main(&log, process.as_deref()),
         Task::Stability { log, out, friction, json } => {
             let out = out.unwrap_or_else(|| log.with_extension(""));
             study::stability(&config, &log, &out, friction, json)
@@ -379,10 +379,10 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         }
         Task::Faults(arguments) => fault_table::run(&arguments),
         Task::FitFriction { file, out, json } => {
-            fit_friction(&file, out, json)?;
+            cli::fit_friction::main(&file, out, json)?;
             Ok(ExitCode::SUCCESS)
         }
-        Task::Latency { rounds, png, json } => latency(rounds, png.as_deref(), json),
+        Task::Latency { rounds, png, json } => cli::latency::main(rounds, png.as_deref(), json),
         Task::LatencyEnd { way, dir, core } => {
             cli::latency::answer(&way, &dir, &core)?;
             Ok(ExitCode::SUCCESS)
@@ -390,15 +390,6 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         Task::Doctor => Ok(doctor()),
         process => daemon(process),
     }
-}
-
-fn latency(rounds: usize, png: Option<&std::path::Path>, json: bool) -> Result<ExitCode, Box<dyn Error>> {
-    let report = cli::latency::measure(rounds, |round, way| eprintln!("round {}: {way}", round + 1))?;
-    if let Some(png) = png {
-        report.draw(png)?;
-    }
-    println!("{}", if json { serde_json::to_string(&report)? } else { report.table() });
-    Ok(ExitCode::SUCCESS)
 }
 
 /// The processes of a run. Each ends when the supervisor does.
@@ -473,22 +464,6 @@ fn sim(
     Ok(ExitCode::SUCCESS)
 }
 
-fn replay(log: &std::path::Path, process: Option<&str>) -> Result<ExitCode, Box<dyn Error>> {
-    let all = cli::replay::PROCESSES;
-    let chosen = all.iter().filter(|p| process.is_none_or(|name| p.name() == name));
-    let mut some = false;
-    for &process in chosen {
-        let done = cli::replay::replay(log, process)?;
-        println!("{}: {done}", process.name());
-        some = true;
-    }
-    if !some {
-        let names = all.map(|p| p.name()).join(", ");
-        return Err(format!("--process {}: there is {names}", process.unwrap_or_default()).into());
-    }
-    Ok(ExitCode::SUCCESS)
-}
-
 fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Error>> {
     let pictures = cli::plot::run(log, out)?;
     for path in &pictures.written {
@@ -496,19 +471,6 @@ fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Erro
     }
     for reason in &pictures.skipped {
         eprintln!("not drawn: {reason}");
-    }
-    Ok(())
-}
-
-fn fit_friction(file: &std::path::Path, out: Option<PathBuf>, json: bool) -> Result<(), Box<dyn Error>> {
-    let report = cli::fit_friction::run(file)?;
-    println!("{}", if json { report.json() } else { report.table() });
-    let beside = || file.file_stem().map(|stem| PathBuf::from(stem).with_extension("png"));
-    if let Some(out) = out.or_else(|| if json { None } else { beside() }) {
-        report.draw(&out)?;
-        if !json {
-            println!("{}", out.display());
-        }
     }
     Ok(())
 }

@@ -8,8 +8,9 @@
 mod brokered;
 mod report;
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::Duration;
 
 use latency::{End, Link, Opened, raw, system, topics};
@@ -199,4 +200,17 @@ impl Drop for Dir {
         raw::clear(&self.0);
         let _ = std::fs::remove_dir_all(&self.0);
     }
+}
+
+/// `gangwerk latency`: table or JSON, and perhaps the picture.
+///
+/// # Errors
+/// See [`measure`]; or the picture cannot be written.
+pub fn main(rounds: usize, png: Option<&Path>, json: bool) -> Result<ExitCode, Box<dyn Error>> {
+    let report = measure(rounds, |round, way| eprintln!("round {}: {way}", round + 1))?;
+    if let Some(png) = png {
+        report.draw(png)?;
+    }
+    println!("{}", if json { serde_json::to_string(&report)? } else { report.table() });
+    Ok(ExitCode::SUCCESS)
 }

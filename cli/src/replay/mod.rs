@@ -13,6 +13,7 @@ mod tape;
 
 use std::error::Error;
 use std::path::{Component, Path, PathBuf};
+use std::process::ExitCode;
 
 use config::Setup;
 use config::tolerance::Method;
@@ -153,4 +154,24 @@ impl Drop for Unpacked {
     fn drop(&mut self) {
         let _ = std::fs::remove_dir_all(&self.0);
     }
+}
+
+/// `gangwerk replay`: every process, or one, and what came of it.
+///
+/// # Errors
+/// There is no such process, or see [`replay`].
+pub fn main(log: &Path, process: Option<&str>) -> Result<ExitCode, Box<dyn Error>> {
+    let all = PROCESSES;
+    let chosen = all.iter().filter(|p| process.is_none_or(|name| p.name() == name));
+    let mut some = false;
+    for &process in chosen {
+        let done = replay(log, process)?;
+        println!("{}: {done}", process.name());
+        some = true;
+    }
+    if !some {
+        let names = all.map(|p| p.name()).join(", ");
+        return Err(format!("--process {}: there is {names}", process.unwrap_or_default()).into());
+    }
+    Ok(ExitCode::SUCCESS)
 }

@@ -170,7 +170,10 @@ impl Supervisor {
             let mut seen = Seen { finished: self.bury(now), ..Seen::default() };
             // Who hangs is treated as who died.
             hearing.listen(operator.statistics().connected);
-            if let Some((process, ns)) = self.pulse.look(now, |p| hearing.heard(p)) {
+            // The last records of who died are heard after the death.
+            let Self { pulse, children, .. } = self;
+            let alive = |p: Process| children.iter().any(|(child, _)| *child == p);
+            if let Some((process, ns)) = pulse.look(now, |p| alive(p) && hearing.heard(p)) {
                 let seen = self.kill(process);
                 self.lose(process, Cause::Hung(ns), &seen, now);
             }
