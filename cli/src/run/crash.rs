@@ -4,11 +4,11 @@
 //! ended, in which cycle, what it said, and where it was. `gangwerk log show` prints that text.
 
 use std::fmt::Write as _;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
 use config::Setup;
-use ipc::Space;
 use messages::topics::{ForType, with_type};
 use messages::{Process, Record, TOPICS, Topic};
 use realtime::black_box::{Entry, Left};
@@ -42,8 +42,8 @@ impl Crashes {
     }
 
     /// Saves what a dead process left. `seen`: what was found out about it while it lived.
-    pub(super) fn save(&mut self, space: &Space, process: Process, cause: &Cause, seen: &str) {
-        let Ok(left) = Left::read(&space.box_of(process)) else { return }; // died before it had one
+    pub(super) fn save(&mut self, memory: &File, process: Process, cause: &Cause, seen: &str) {
+        let Ok(left) = Left::of(memory) else { return }; // died before it had one
         let text = report(process, cause, seen, &left, clock::now());
         let path = self.place.join(format!("crash-{}-{}.mcap", process.name(), clock::unix_ms()));
         let (setup, console) = (self.setup.clone(), self.console.clone());

@@ -1,6 +1,7 @@
 //! Starts the processes, looks after them, ends them.
 
 use std::error::Error;
+use std::fs::File;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command as Spawn, ExitStatus, Stdio};
 use std::time::Duration;
@@ -10,7 +11,7 @@ use ipc::{Mode, Run, Space};
 use messages::command::Domain;
 use messages::topics::Topic;
 use messages::{Command, CycleStats, Event, EventCode, Process};
-use realtime::{Stop, clock};
+use realtime::{Stop, black_box, clock};
 use terminal::{Console, Feed};
 
 use super::backoff::Backoff;
@@ -52,6 +53,7 @@ pub(super) fn supervise(
         restarts: [(Process::Broker, Backoff::default()), (Process::Logger, Backoff::default())],
         pulse: Pulse::default(),
         crashes: Crashes::new(setup, run.log.as_deref(), console),
+        memories: Vec::new(),
         outcome: Outcome::default(),
         console: console.clone(),
         patience: (setup.system.peer_timeout * 1e9) as u64,
@@ -74,6 +76,8 @@ struct Supervisor {
     restarts: [(Process, Backoff); 2],
     pulse: Pulse,
     crashes: Crashes,
+    /// Where the processes keep their last seconds.
+    memories: Vec<(Process, File)>,
     course: Course,
     outcome: Outcome,
     console: Console,
@@ -106,17 +110,20 @@ impl Supervisor {
 
     fn spawn(&mut self, process: Process) -> Result<(), Box<dyn Error>> {
         let (feed, errors) = Feed::new()?;
+        let memory = black_box::memory()?;
         let child = Spawn::new(std::env::current_exe()?)
             .arg(process.name())
             .arg("--run")
             .arg(&self.run.dir)
-            .stdin(Stdio::null())
+            .stdin(memory.try_clone()?)
             .stdout(Stdio::null())
             .stderr(errors)
             .process_group(0) // the terminal's Ctrl-C is the supervisor's to hear
             .spawn()?;
         feed.into_lines(self.console.clone())?;
         self.children.push((process, child));
+        self.memories.retain(|(p, _)| *p != process);
+        self.memories.push((process, memory));
         Ok(())
     }
 
@@ -252,7 +259,9 @@ impl Supervisor {
 
     fn lose(&mut self, process: Process, cause: Cause, seen: &str, now: u64) {
         self.console.say(format!("{} {cause}", process.name()));
-        self.crashes.save(&self.space, process, &cause, seen);
+        if let Some((_, memory)) = self.memories.iter().find(|(p, _)| *p == process) {
+            self.crashes.save(memory, process, &cause, seen);
+        }
         self.outcome.lost.push((process, cause));
         self.pulse.forget(process);
         self.course.lost(process, now);

@@ -1,4 +1,5 @@
-//! The last seconds of a process in a file mapped into memory: what it leaves when it dies, by whatever cause.
+//! The last seconds of a process in memory that outlives it: what it leaves when it dies, by whatever cause. The memory is
+//! that of whoever started it ([`memory`]), or, if nobody gave it any, a file.
 //!
 //! A ring of entries (kind, tick, bytes) behind [`LastWords`]. Writing is copying: no system call, no lock, no allocation.
 //! The pages belong to the kernel as soon as they are written, so that who survives finds them; `tail` moves before what it
@@ -7,10 +8,12 @@
 
 use crate::last_words::LastWords;
 use messages::Record;
+use rustix::fs::{MemfdFlags, fallocate, memfd_create};
 use rustix::mm::{MapFlags, ProtFlags, mmap, munmap};
 use std::fs::File;
 use std::io::{Error, ErrorKind, Result};
-use std::os::unix::fs::OpenOptionsExt;
+use std::os::fd::AsFd;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering::Acquire, Ordering::Relaxed, Ordering::Release};
 
@@ -79,6 +82,23 @@ pub struct Left {
     pub frames: Vec<i64>,
 }
 
+/// Memory for the box of a process that is to be started, as its standard input: no part of `/dev/shm`, which is small in
+/// containers.
+///
+/// # Errors
+/// The kernel gives none.
+pub fn memory() -> Result<File> {
+    Ok(memfd_create("gangwerk-box", MemfdFlags::CLOEXEC)?.into())
+}
+
+/// Standard input, if it is such memory: empty, ours, and without a name.
+fn given() -> Option<File> {
+    let file = File::from(std::io::stdin().as_fd().try_clone_to_owned().ok()?);
+    let seen = file.metadata().ok()?;
+    let ours = seen.is_file() && seen.len() == 0 && seen.nlink() == 0;
+    (ours && seen.uid() == rustix::process::getuid().as_raw()).then_some(file)
+}
+
 /// For a process without cycles: a box that holds its last words only.
 ///
 /// # Errors
@@ -90,16 +110,22 @@ pub fn say_last_words(path: &Path) -> Result<()> {
 }
 
 impl BlackBox {
-    /// Makes the file with a ring of `size` bytes and touches all of it. Allocates nothing later.
+    /// A ring of `size` bytes in the memory that came as standard input, or in a new file; touches all of it. Allocates
+    /// nothing later.
     ///
     /// # Errors
     /// There is no room, or the file cannot be mapped.
     pub fn create(path: &Path, size: usize) -> Result<Self> {
         let size = size.next_multiple_of(8);
-        let _ = std::fs::remove_file(path);
-        let file = File::options().read(true).write(true).create_new(true).mode(0o600).open(path)?;
+        let file = given().map_or_else(
+            || {
+                let _ = std::fs::remove_file(path);
+                File::options().read(true).write(true).create_new(true).mode(0o600).open(path)
+            },
+            Ok,
+        )?;
         // Now, and not when the page is first written: that would be SIGBUS on a full tmpfs.
-        rustix::fs::fallocate(&file, rustix::fs::FallocateFlags::empty(), 0, (FRONT + size) as u64)?;
+        fallocate(&file, rustix::fs::FallocateFlags::empty(), 0, (FRONT + size) as u64)?;
         let map = Map::of(&file, FRONT + size)?;
         let front: *mut Front = map.at.cast();
         // SAFETY: the mapping is writable, page-aligned, longer than a `Front`, zeroed, and nobody else knows it yet.
@@ -175,18 +201,25 @@ impl Entry {
 }
 
 impl Left {
-    /// Reads what a process left, alive or dead.
+    /// Reads what a process left in a file, alive or dead.
     ///
     /// # Errors
     /// There is no such file, or it is none.
     pub fn read(path: &Path) -> Result<Self> {
-        let file = File::open(path)?;
+        Self::of(&File::options().read(true).write(true).open(path)?)
+    }
+
+    /// Reads what a process left in its memory.
+    ///
+    /// # Errors
+    /// It has not made its box yet.
+    pub fn of(file: &File) -> Result<Self> {
         let len = file.metadata()?.len() as usize;
         let broken = |what| Error::new(ErrorKind::InvalidData, what);
         if len < FRONT {
             return Err(broken("too short"));
         }
-        let map = Map::of(&File::options().read(true).write(true).open(path)?, len)?;
+        let map = Map::of(file, len)?;
         // SAFETY: the mapping is at least as long as a `Front`, page-aligned, and any bytes are one: integers.
         let front = unsafe { &*map.at.cast::<Front>() };
         if front.magic != MAGIC || front.size as usize != len - FRONT {
