@@ -8,7 +8,7 @@ use ipc::{Mode, Reader, Waiter, Writer};
 use messages::command::Domain;
 use messages::cycle_inputs::Used;
 use messages::topics::{
-    BUS_TX, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, LOG_TICK, POWER, SENSORS, SIM_STATE, WATCHDOG_RESET,
+    BUS_TX, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, LOG_TICK, POWER, SENSORS, WATCHDOG_RESET,
 };
 use messages::{
     BusFrames, Event, EventCode, Header, JointTargets, Live, Power, Process, Sensors, WatchdogReset,
@@ -154,9 +154,9 @@ fn lockstep(
     Ok(header)
 }
 
-/// Nobody runs ahead of the log by more than half a ring: nothing is lost.
+/// Nobody runs ahead of the log by more than half of the shortest ring that is logged in each cycle: nothing is lost.
 fn wait_for_log(d: &Daemon, p: &mut Ports, tick: u64) -> Result<bool, Box<dyn Error>> {
-    let ahead = SIM_STATE.depth as u64 / 2;
+    let ahead = FRAMES_OUT.depth as u64 / 2;
     if !d.logged || tick <= ahead {
         return Ok(true);
     }

@@ -19,7 +19,7 @@ use std::time::Duration;
 /// Name of the supervisor's lock and node.
 const SUPERVISOR: &str = "supervisor";
 /// Room kept free in shared memory for queues, bells, rings of other programs \[B\].
-const SPARE: u64 = 8 << 20;
+const SPARE: u64 = 16 << 20;
 /// How long clearing up after dead processes may wait for somebody else who does it.
 const CLEAR_PATIENCE: Duration = Duration::from_millis(200);
 

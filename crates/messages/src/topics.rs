@@ -146,10 +146,10 @@ topics! {
         0 Hz, stale 0, depth 4, logged false;
     /// Frames that the joint loop received, in the cycles in which there were any.
     FRAMES_IN: BusFrames = "frames_in", Lowlevel -> [], wakes [],
-        1000 Hz, stale 0, depth 128, logged true;
+        1000 Hz, stale 0, depth 64, logged true;
     /// Frames that it sent.
     FRAMES_OUT: BusFrames = "frames_out", Lowlevel -> [], wakes [],
-        1000 Hz, stale 0, depth 128, logged true;
+        1000 Hz, stale 0, depth 64, logged true;
     /// What each cycle of the watchdog began with.
     INPUTS_WATCHDOG: CycleInputs = "cycle_inputs/watchdog", Watchdog -> [], wakes [],
         1000 Hz, stale 0, depth 256, logged true;
