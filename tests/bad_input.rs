@@ -35,6 +35,16 @@ fn one_error(said: &Said, texts: &[&str]) {
 }
 
 #[test]
+fn real_time_that_is_required_and_not_to_be_had_is_refused_before_anything_is_armed() {
+    let site = Site::patient(EXE);
+    site.edit("system.toml", "[process.planner]\ncore = 1", "[process.planner]\ncore = 900");
+    let said = site.run("stand", &["--no-log", "--rt", "required"]).end();
+    one_error(&said, &["planner", "--rt required", "gangwerk doctor"]);
+    assert!(!said.err.contains("PowerOn"), "{}", said.err);
+    assert_eq!(site.shared_memory(), [""; 0], "left in /dev/shm");
+}
+
+#[test]
 fn a_misspelt_key_is_named_with_its_line_and_the_nearest_one() {
     let site = Site::patient(EXE);
     site.edit("gaits/lola.toml", "swing_height", "swing_heigth");

@@ -57,6 +57,9 @@ enum Task {
         /// No log and no pictures.
         #[arg(long)]
         no_log: bool,
+        /// Refuse to arm if a process does not get the scheduling and the locked memory that it asks for.
+        #[arg(long, value_name = "required", value_parser = ["required"])]
+        rt: Option<String>,
         /// Log, but draw no pictures.
         #[arg(long)]
         no_plots: bool,
@@ -316,14 +319,16 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         out: "runs/latest".into(),
         no_log: false,
         no_plots: false,
+        rt: None,
         dir: ipc::default_dir(),
     });
     match task {
-        Task::Run { scene, lockstep, bus, no_robot, out, no_log, no_plots, dir } => {
+        Task::Run { scene, lockstep, bus, no_robot, out, no_log, no_plots, rt, dir } => {
             let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
             let log = (!no_log).then(|| out.join(format!("{scene}.mcap")));
-            let robot = !no_robot;
-            run_command::run(Order { mode, scene, method: None, config, bus, robot, dir, log }, no_plots)
+            let (robot, rt_required) = (!no_robot, rt.is_some());
+            let order = Order { mode, scene, method: None, config, bus, robot, dir, log, rt_required };
+            run_command::run(order, no_plots)
         }
         Task::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
         Task::Sim { scene, json, log, can } => sim(&config, &scene, json, log, can),

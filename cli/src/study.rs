@@ -309,8 +309,17 @@ fn realtime_study(
     let before = cyclictest();
     let (mode, dir, config) = (Mode::RealTime, ipc::default_dir(), config.to_path_buf());
     let method = choice.map(|choice| choice.method);
-    let order =
-        Order { bus: Address::Shared, robot: true, mode, scene, method, config, dir, log: Some(log.clone()) };
+    let order = Order {
+        bus: Address::Shared,
+        robot: true,
+        mode,
+        scene,
+        method,
+        config,
+        dir,
+        log: Some(log.clone()),
+        rt_required: false,
+    };
     let stop = realtime::Stop::on_signals()?;
     cli::run::run(&order, stop, &Console::start(None, realtime::clock::now)?)?;
     let after = cyclictest();

@@ -54,6 +54,8 @@ pub struct Order {
     pub dir: PathBuf,
     /// Where the log goes; none: no log.
     pub log: Option<PathBuf>,
+    /// In real time, a process without the scheduling that it asks for is not armed.
+    pub rt_required: bool,
 }
 
 /// What ended a process before its time.
@@ -103,7 +105,7 @@ pub struct Outcome {
 /// # Errors
 /// The configuration is wrong, another run uses the directory, or a process does not start.
 pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<dyn Error>> {
-    let files = realtime::most_open_files();
+    let files = realtime::open_files(OPEN_FILES);
     if files < OPEN_FILES {
         return Err(format!(
             "this user may have {files} open files, a run takes {OPEN_FILES}: ulimit -n {OPEN_FILES}"
@@ -136,7 +138,7 @@ pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<
         log: order.log.clone(),
     };
     run.save()?;
-    let outcome = supervisor::supervise(run, space, &setup, stop, console)?;
+    let outcome = supervisor::supervise(run, space, &setup, order.rt_required, stop, console)?;
     if let Some(log) = order.log.as_ref().filter(|_| outcome.lost.iter().any(|(p, _)| *p == Process::Logger))
     {
         mend(log, console);

@@ -43,6 +43,7 @@ pub(super) fn supervise(
     run: Run,
     space: Space,
     setup: &Setup,
+    rt_required: bool,
     stop: Stop,
     console: &Console,
 ) -> Result<Outcome, Box<dyn Error>> {
@@ -57,6 +58,7 @@ pub(super) fn supervise(
         outcome: Outcome::default(),
         console: console.clone(),
         patience: (setup.system.peer_timeout * 1e9) as u64,
+        rt_required: rt_required && run.mode == Mode::RealTime,
         course,
         run,
         space,
@@ -83,6 +85,7 @@ struct Supervisor {
     console: Console,
     /// How long processes wait for each other in lockstep \[ns\].
     patience: u64,
+    rt_required: bool,
     run: Run,
     space: Space,
     stop: Stop,
@@ -146,11 +149,21 @@ impl Supervisor {
         Ok(())
     }
 
-    /// A process that walks with another configuration than the others is not let near a robot.
+    /// A process that walks with another configuration than the others is not let near a robot; nor, if that is required, one
+    /// without real time.
     fn compare(&self, process: Process, hash: u64) -> Result<(), Box<dyn Error>> {
         let Ok(topic) = topic("cycle_stats", process) else { return Ok(()) }; // reads none
         let mut stats = self.space.reader::<CycleStats>(topic)?;
-        match stats.latest().map(|stats| stats.config_hash) {
+        let stats = stats.latest();
+        match stats.map(|stats| stats.config_hash) {
+            Some(theirs) if theirs == hash && self.rt_required && stats.is_some_and(|s| s.degraded != 0) => {
+                Err(format!(
+                    "{} does not get the scheduling or the locked memory that it asks for, and --rt required is asked for: \
+                     nothing was armed; `gangwerk doctor` says what is missing and how to get it",
+                    process.name()
+                )
+                .into())
+            }
             Some(theirs) if theirs == hash => Ok(()),
             theirs => Err(format!(
                 "{} has another configuration (hash {:016x}) than the supervisor ({hash:016x}): nothing was armed; start \

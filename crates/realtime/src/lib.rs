@@ -23,6 +23,6 @@ pub use allocations::CountingAllocator;
 pub use histogram::Histogram;
 pub use meter::CycleMeter;
 pub use period::{Period, Verdict};
-pub use preflight::{Check, Grade, most_open_files, preflight};
+pub use preflight::{Check, Grade, open_files, preflight};
 pub use stop::{Stop, end_with_reader, terminate};
 pub use thread::{Granted, Schedule, prepare_side_thread, prepare_thread, run_on_any_core};

@@ -1,11 +1,16 @@
 //! What this machine gives to real time: what `gangwerk doctor` prints.
 
 use crate::thread::{CAP_IPC_LOCK, CAP_SYS_NICE, has_capability};
-use rustix::process::{Resource, getrlimit};
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::fs::read_to_string;
 
-/// Files that this process may have open \[1\].
-pub fn most_open_files() -> u64 {
+/// Files that this process may have open \[1\], after it has allowed itself as many as wanted, if it may.
+pub fn open_files(wanted: u64) -> u64 {
+    let limit = getrlimit(Resource::Nofile);
+    let may = limit.maximum.is_none_or(|most| most >= wanted);
+    if may && limit.current.is_some_and(|now| now < wanted) {
+        let _ = setrlimit(Resource::Nofile, Rlimit { current: Some(wanted), ..limit });
+    }
     getrlimit(Resource::Nofile).current.unwrap_or(u64::MAX)
 }
 
