@@ -3,13 +3,14 @@
 //! - `supervisor.rs`: starts the processes, looks after them, ends them.
 //! - `course.rs`: when the run ends and what is done before: the answer to Ctrl-C, to deaths, to standing; pure.
 //! - `pulse.rs`: who hangs; pure; told by `hearing.rs`. `backoff.rs`: when who died is started again; pure.
-//! - `crash.rs`: what a dead process leaves.
+//! - `crash.rs`: what a dead process leaves. `manager.rs`: what a service manager hears.
 //! - `view.rs`: what the operator sees.
 
 mod backoff;
 mod course;
 mod crash;
 mod hearing;
+mod manager;
 mod pulse;
 mod supervisor;
 mod view;

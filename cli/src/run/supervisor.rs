@@ -18,6 +18,7 @@ use super::backoff::Backoff;
 use super::course::{Act, Course, Seen};
 use super::crash::{self, Crashes};
 use super::hearing::Hearing;
+use super::manager::{ENVIRONMENT, Manager};
 use super::pulse::Pulse;
 use super::view::View;
 use super::{Cause, Outcome};
@@ -55,6 +56,7 @@ pub(super) fn supervise(
         pulse: Pulse::default(),
         crashes: Crashes::new(setup, run.log.as_deref(), console),
         memories: Vec::new(),
+        manager: Manager::new(),
         outcome: Outcome::default(),
         console: console.clone(),
         patience: (setup.system.peer_timeout * 1e9) as u64,
@@ -66,6 +68,7 @@ pub(super) fn supervise(
     };
     let result = supervisor.start(setup).and_then(|()| supervisor.watch(&mut view));
     // Whatever became of it: nobody is left alive, and what was said last is heard.
+    supervisor.manager.stopping();
     supervisor.end();
     view.update();
     supervisor.outcome.missing = view.missing();
@@ -80,6 +83,7 @@ struct Supervisor {
     crashes: Crashes,
     /// Where the processes keep their last seconds.
     memories: Vec<(Process, File)>,
+    manager: Manager,
     course: Course,
     outcome: Outcome,
     console: Console,
@@ -114,7 +118,9 @@ impl Supervisor {
     fn spawn(&mut self, process: Process) -> Result<(), Box<dyn Error>> {
         let (feed, errors) = Feed::new()?;
         let memory = black_box::memory()?;
-        let child = Spawn::new(std::env::current_exe()?)
+        let mut child = Spawn::new(std::env::current_exe()?);
+        ENVIRONMENT.iter().for_each(|name| _ = child.env_remove(name));
+        let child = child
             .arg(process.name())
             .arg("--run")
             .arg(&self.run.dir)
@@ -183,10 +189,12 @@ impl Supervisor {
         let mut witness: Option<broker::Client> = None;
         let mut hearing = Hearing::new(&self.space, self.run.mode)?;
         let mut cleared = clock::now();
+        self.manager.ready();
         loop {
             std::thread::park_timeout(LOOK);
             view.update();
             let now = clock::now();
+            self.manager.look(now);
             let mut seen = Seen { finished: self.bury(now), ..Seen::default() };
             // Who hangs is treated as who died.
             hearing.listen(operator.statistics().connected);
@@ -208,6 +216,7 @@ impl Supervisor {
             match self.course.step(now, seen) {
                 Act::GoOn => {}
                 Act::Stand => {
+                    self.manager.stopping();
                     self.outcome.interrupted = true;
                     self.console.say(
                         "asked to end: the robot stops and stands first; once more: emergency stop, and the end at once",
