@@ -39,7 +39,12 @@ fn real_time_that_is_required_and_not_to_be_had_is_refused_before_anything_is_ar
     let site = Site::patient(EXE);
     site.edit("system.toml", "[process.planner]\ncore = 1", "[process.planner]\ncore = 900");
     let said = site.run("stand", &["--no-log", "--rt", "required"]).end();
-    one_error(&said, &["planner", "--rt required", "gangwerk doctor"]);
+    assert_eq!(said.code, Some(1), "{said:#?}");
+    for text in
+        ["planner degraded: not bound to core 900", "error: planner", "--rt required", "gangwerk doctor"]
+    {
+        assert!(said.err.contains(text), "`{text}` in: {}", said.err);
+    }
     assert!(!said.err.contains("PowerOn"), "{}", said.err);
     assert_eq!(site.shared_memory(), [""; 0], "left in /dev/shm");
 }
