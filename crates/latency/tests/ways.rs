@@ -1,12 +1,8 @@
 //! Each way brings what was sent to the other end, in order, and says when there is nobody.
 
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 use latency::{End, Opened, raw, system, topics};
-
-/// One test at a time: iceoryx2 sets the umask of the whole process while it makes its files.
-static TURN: Mutex<()> = Mutex::new(());
 
 type Open = fn(&Path, End) -> Opened;
 
@@ -29,9 +25,14 @@ fn place(number: usize) -> PathBuf {
     dir
 }
 
+/// One after the other: iceoryx2 sets the umask of the whole process while it makes its files.
 #[test]
+fn every_way_brings_what_was_sent_and_tells_who_is_alone() {
+    what_is_sent_arrives_once_and_in_order();
+    an_end_that_is_alone_is_told_so();
+}
+
 fn what_is_sent_arrives_once_and_in_order() {
-    let _turn = TURN.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     for (number, (name, open)) in WAYS.into_iter().enumerate() {
         let dir = place(number);
         let mut near = open(&dir, End::Near).unwrap_or_else(|e| panic!("{name}: {e}"));
@@ -58,9 +59,7 @@ fn what_is_sent_arrives_once_and_in_order() {
     }
 }
 
-#[test]
 fn an_end_that_is_alone_is_told_so() {
-    let _turn = TURN.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     for (number, (name, open)) in WAYS.into_iter().enumerate().filter(|(_, (name, _))| *name != "TCP") {
         let dir = place(WAYS.len() + number);
         let mut near = open(&dir, End::Near).unwrap_or_else(|e| panic!("{name}: {e}"));
