@@ -86,8 +86,7 @@ pub(super) fn watchdog_stopped(lab: &mut Lab) -> Found {
     robot.run.pause(Process::Watchdog, 0.1 + quiet(&robot) as f64 * robot.setup.scene.cycle);
     robot.watch(1.5);
     let off = robot.power_off();
-    let from = off.map_or(0, |n| n as usize);
-    let again = robot.after()[from..].iter().any(|s| s.power == 1);
+    let again = robot.after().iter().skip_while(|s| s.power == 1).any(|s| s.power == 1);
     let seen = Seen::new("F7", "relay fell, stayed off")
         .after(off, &robot)
         .within(quiet(&robot) + LINE)

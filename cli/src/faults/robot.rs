@@ -179,9 +179,15 @@ impl Robot {
         &self.sims[self.at.min(self.sims.len())..]
     }
 
+    /// Cycles from the fault to this record, by the robot's time: records may have been missed.
+    fn cycles(&self, state: &SimState) -> u64 {
+        let before = self.sims[..self.at.min(self.sims.len())].last().map_or(state.time, |s| s.time);
+        ((state.time - before) / self.setup.scene.cycle).round() as u64
+    }
+
     /// First cycle without supply after the fault.
     pub(super) fn power_off(&self) -> Option<u64> {
-        self.after().iter().position(|s| s.power == 0).map(|n| n as u64)
+        self.after().iter().find(|s| s.power == 0).map(|s| self.cycles(s))
     }
 
     /// Whether it has fallen since the fault.
@@ -199,7 +205,7 @@ impl Robot {
     pub(super) fn at_rest(&self) -> Option<u64> {
         let after = self.after();
         let first = after.windows(2).rposition(|w| Self::speed(w) > REST).map_or(0, |i| i + 1);
-        (first + RESTED < after.len()).then_some(first as u64)
+        (first + RESTED < after.len()).then(|| self.cycles(&after[first]))
     }
 
     /// The first event of this kind since the fault, in cycles.
