@@ -1,6 +1,5 @@
-//! The broker under load: `cargo run --release -p broker --example load -- latency | commands | flood | connect ADDRESS SECONDS`.
+//! The broker under load: `cargo run --release -p broker --example load -- commands | flood | connect ADDRESS SECONDS`.
 //!
-//! - `latency`: from one client's cycle to another's, through broker and both couriers: p50, p99.
 //! - `commands`: 20 clients on the socket with 500 stops each per second: how many were answered, how many were lost.
 //! - `flood`: a process of its own connects 5,000 times a second and sends garbage; the answers to one honest client.
 //! - `connect`: that process.
@@ -13,13 +12,11 @@ use std::time::Duration;
 
 use broker::daemon::{Tcp, serve};
 use broker::{Client, StreamClient};
-use ipc::{Mode, Run, Space};
-use messages::command::{Domain, PushCommand};
+use ipc::{Run, Space};
+use messages::command::Domain;
 use messages::{Command, CommandSource};
 use realtime::Stop;
 use realtime::clock::{SECOND, now, sleep_until};
-
-const PUSH: Command = Command::Push(PushCommand { force: [0.0; 3], duration: 0.1 });
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -27,10 +24,9 @@ fn main() {
         ["connect", address, seconds] => {
             connect(address.parse().expect("an address"), seconds.parse().expect("seconds"));
         }
-        ["latency"] => with_broker(latency),
         ["commands"] => with_broker(commands),
         ["flood"] => with_broker(flood),
-        _ => eprintln!("latency | commands | flood"),
+        _ => eprintln!("commands | flood"),
     }
 }
 
@@ -38,16 +34,7 @@ fn main() {
 fn with_broker(what: fn(&Space, &Path)) {
     let dir = std::env::temp_dir().join(format!("gangwerk-load-{}", std::process::id()));
     let space = Space::create(&dir).expect("space");
-    let run = Run {
-        dir: dir.clone(),
-        mode: Mode::RealTime,
-        scene: "none".into(),
-        method: None,
-        config: "none".into(),
-        bus: "shm".into(),
-        robot: true,
-        log: None,
-    };
+    let run = Run::bare(&dir);
     run.save().expect("run");
     let stop = Stop::default();
     let tcp = Tcp { address: Some(([127, 0, 0, 1], 0).into()), keys: None };
@@ -75,40 +62,6 @@ fn percentiles(name: &str, mut times: Vec<u64>) {
         at(0.99),
         at(1.0)
     );
-}
-
-fn connected(client: &Client) {
-    while !client.statistics().connected {
-        sleep_until(now() + SECOND / 1000);
-    }
-}
-
-/// Commands of one client to another one that looks all the time, as often as a control cycle sends them at most.
-fn latency(space: &Space, _: &Path) {
-    let mut receiver = Client::start("sim-backend", &[Domain::Sim], space).expect("client");
-    let mut sender = Client::start("operator", &[], space).expect("client");
-    connected(&receiver);
-    connected(&sender);
-    let (mut there, mut back) = (Vec::new(), Vec::new());
-    for _ in 0..5000 {
-        let sent = now();
-        sender.publish(&PUSH);
-        let live = loop {
-            if let Some(live) = receiver.next() {
-                break live;
-            }
-            thread::yield_now();
-        };
-        there.push(now() - sent);
-        receiver.answer(&live, Ok(()));
-        while sender.answered().is_none() {
-            thread::yield_now();
-        }
-        back.push(now() - sent);
-        sleep_until(now() + SECOND / 2000);
-    }
-    percentiles("client to client", there);
-    percentiles("command and answer", back);
 }
 
 fn planner(space: &Space) -> Client {

@@ -5,7 +5,7 @@ use messages::{Command, Reason, Stamp};
 
 use crate::lease::LeaseKeeper;
 
-/// What the broker keeps of a sender.
+/// State of a sender, as the broker keeps it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Sender {
     /// Number of its connection.
@@ -36,7 +36,7 @@ impl Sender {
 /// Grant under which the command may pass; 0 if it needs none. Stop and emergency stop always pass, end if its sender may.
 ///
 /// # Errors
-/// What is missing. A refused command uses its sequence up.
+/// The right, age, sequence or lease that is missing. A refused command uses its sequence up.
 pub fn admit(
     sender: &mut Sender,
     lease: &mut LeaseKeeper,

@@ -28,7 +28,7 @@ use crate::message::{
 
 /// Room in each ring; more than the broker sends without an answer.
 const RING: usize = 128;
-/// How often the thread looks whether it shall end; what comes in or goes out wakes it.
+/// Interval at which the thread looks whether it shall end; what comes in or goes out wakes it.
 const POLL: Duration = Duration::from_millis(10);
 /// Time from one renewal of the registration to the next \[ns\].
 const RENEW: u64 = SECOND / 5;
@@ -68,7 +68,7 @@ struct FarEnds {
     received: Producer<Live>,
 }
 
-/// What became of a command that this client sent.
+/// Answer to a command that this client sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answered {
     /// Number that [`Client::publish`] gave it.
@@ -343,7 +343,7 @@ impl Courier {
         }
     }
 
-    /// What the control cycle made of commands: here numbers become text.
+    /// Verdicts of the control cycle on commands: here numbers become text.
     fn carry_verdicts(&mut self) {
         while let Ok((live, verdict)) = self.verdicts.pop() {
             let (code, text) = verdict
@@ -380,7 +380,7 @@ impl Courier {
     }
 }
 
-/// What the broker says to this client itself.
+/// Messages of the broker to this client itself.
 fn hear(message: &Message<'_>, shared: &Shared, answers: &mut Producer<Answered>) {
     let sequence = message.stamp.sequence;
     match message.id {

@@ -40,12 +40,12 @@ pub const RATE: f64 = 2000.0;
 pub const UNANSWERED: usize = 64;
 /// Frames that wait for one client, answers not counted.
 const WAITING: usize = 128;
-/// How long the rest of what a closed connection sent is read.
+/// Time for which the rest of a closed connection is read.
 const FAREWELL: Duration = Duration::from_millis(200);
 /// Longest name of a client \[B\].
 const NAME: usize = 64;
 
-/// What a connection may do before it shows a key.
+/// Rights of a connection before it shows a key.
 #[derive(Clone, Debug)]
 pub struct Rights {
     /// Who it is, for the log and for others that want the lease.

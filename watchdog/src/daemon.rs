@@ -112,8 +112,8 @@ struct Guard {
 }
 
 impl Guard {
-    /// One step, `skipped` cycles after the last one, perhaps `late` in its cycle, with the newest sign of life and the commands of this cycle: the
-    /// scene's that are due, then live ones.
+    /// One step with the newest sign of life and the commands of this cycle: the scene's that are due, then live ones.
+    /// `skipped` own cycles were missed before it; `late` in its cycle is one after a quarter of it.
     fn cycle(&mut self, d: &mut Daemon, skipped: u64, late: bool) {
         let mut waiting = [Command::End; MAX_COMMANDS + 1];
         let mut count = 0;

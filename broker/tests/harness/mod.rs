@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use broker::daemon::Tcp;
 use broker::{Client, StreamClient};
-use ipc::{Mode, Run, Space};
+use ipc::{Run, Space};
 use messages::Process;
 use messages::command::Domain;
 use rustix::process::{Pid, Signal, kill_process};
@@ -54,16 +54,7 @@ impl System {
         let dir = std::env::temp_dir().join(format!("gangwerk-broker-{}-{name}", std::process::id()));
         let _ = std::fs::remove_dir_all(&dir);
         let space = Space::create(&dir).expect("space");
-        let run = Run {
-            dir: dir.clone(),
-            mode: Mode::RealTime,
-            scene: "none".into(),
-            method: None,
-            config: "none".into(),
-            bus: "shm".into(),
-            robot: true,
-            log: None,
-        };
+        let run = Run::bare(&dir);
         run.save().expect("run");
         Self { run, broker: None, space, _dir: RemoveDir(dir) }
     }

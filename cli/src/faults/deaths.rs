@@ -73,7 +73,8 @@ fn quiet(robot: &Robot) -> u64 {
 }
 
 pub(super) fn watchdog_killed(lab: &mut Lab) -> Found {
-    let mut robot = lab.killed(lab.patient(), Process::Watchdog, Signal::KILL)?;
+    // As shipped, as in F3.
+    let mut robot = lab.killed(Site::new(&lab.exe), Process::Watchdog, Signal::KILL)?;
     robot.watch(1.0);
     let off = robot.power_off();
     let seen = Seen::new("F4", "relay fell").after(off, &robot).within(quiet(&robot) + LINE);
@@ -82,7 +83,7 @@ pub(super) fn watchdog_killed(lab: &mut Lab) -> Found {
 }
 
 pub(super) fn watchdog_stopped(lab: &mut Lab) -> Found {
-    let mut robot = lab.walking(lab.patient(), &["--no-log"])?;
+    let mut robot = lab.walking(Site::new(&lab.exe), &["--no-log"])?;
     robot.run.pause(Process::Watchdog, 0.1 + quiet(&robot) as f64 * robot.setup.scene.cycle);
     robot.watch(1.5);
     let off = robot.power_off();

@@ -5,7 +5,7 @@ use std::process::Child;
 
 use broker::Client;
 use broker::daemon::{Tcp, serve};
-use ipc::{Mode, Run, Space};
+use ipc::{Run, Space};
 use latency::{End, Link, Opened, spin};
 use messages::command::{Domain, PushCommand};
 use messages::{Command, CommandSource};
@@ -30,7 +30,7 @@ pub(super) fn commands(dir: &Path, end: End, start: impl Fn(&str) -> Result<Chil
     let mut made = None;
     if end == End::Near {
         let space = Space::create(dir).map_err(text)?;
-        run(dir).save().map_err(text)?;
+        Run::bare(dir).save().map_err(text)?;
         made = Some((Helper(start("broker")?), space));
     }
     let (process, name, domains): (_, _, &[Domain]) = match end {
@@ -43,22 +43,9 @@ pub(super) fn commands(dir: &Path, end: End, start: impl Fn(&str) -> Result<Chil
     Ok(Box::new(Commands { client, end, stamp: 0, _space: space, _made: made }))
 }
 
-fn run(dir: &Path) -> Run {
-    Run {
-        dir: dir.into(),
-        mode: Mode::RealTime,
-        scene: "none".into(),
-        method: None,
-        config: "none".into(),
-        bus: "shm".into(),
-        robot: true,
-        log: None,
-    }
-}
-
 /// The broker itself, a third process, until its parent ends.
 pub(super) fn broker(dir: &Path) -> Result<(), String> {
-    serve(&run(dir), &Tcp { address: None, keys: None }, &Stop::default())
+    serve(&Run::bare(dir), &Tcp { address: None, keys: None }, &Stop::default())
 }
 
 impl Link for Commands {

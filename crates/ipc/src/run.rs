@@ -52,6 +52,20 @@ pub struct Run {
 }
 
 impl Run {
+    /// A run in real time of nothing but a broker: no scene, no configuration.
+    pub fn bare(dir: &Path) -> Self {
+        Self {
+            dir: dir.into(),
+            mode: Mode::RealTime,
+            scene: "none".into(),
+            method: None,
+            config: "none".into(),
+            bus: "shm".into(),
+            robot: true,
+            log: None,
+        }
+    }
+
     /// The text of `dir/run`.
     pub fn to_text(&self) -> String {
         let mode = match self.mode {
