@@ -18,7 +18,7 @@ use messages::frames::Received;
 use messages::layout::{Carries, Layout};
 use messages::{BusCounters, BusFrames, EventCode, Sensors};
 
-use crate::reading::{Bounds, Readings};
+use crate::reading::{Bounds, Readings, copy_joint};
 
 /// Room for events of one cycle.
 const EVENTS: usize = 8;
@@ -52,6 +52,8 @@ pub(crate) struct LineGuard {
     node_of: [usize; messages::MAX_JOINTS],
     /// Drives that said once that they are not enabled.
     doubted: [bool; messages::MAX_JOINTS],
+    /// Joints that said once that they found out where they are, or that they no longer know.
+    referenced: [bool; messages::MAX_JOINTS],
     /// What is believed of this cycle before it is heard.
     believed: Sensors,
     counters: BusCounters,
@@ -83,6 +85,7 @@ impl LineGuard {
             nodes,
             node_of,
             doubted: [false; messages::MAX_JOINTS],
+            referenced: [false; messages::MAX_JOINTS],
             believed: Sensors::default(),
             counters: BusCounters::default(),
             frames: robot.layout.sent(false).count() as u64,
@@ -122,17 +125,19 @@ impl LineGuard {
             }
             None => self.counters.lost += self.frames,
         }
+        let found = if powered { self.doubt_references(sensors) } else { [false; messages::MAX_JOINTS] };
         for i in 0..self.nodes.len() {
             let node = &self.nodes[i];
             let mut heard = frames.is_some() && received.complete(i);
             // Without power a joint may be moved by hand, and nobody acts on what is read.
-            // A joint that has found out where it is reads another angle from one cycle to the next.
-            let turned = |&j: &usize| self.believed.drive_status[j] ^ sensors.drive_status[j];
-            let found = node.reads.joints.iter().any(|j| turned(j) & u32::from(REFERENCED) != 0);
-            let check = powered && node.heard && !found;
+            let check = powered && node.heard;
             let cycles = node.missed.saturating_add(skipped).saturating_add(1);
-            if check && !self.bounds.believes(&node.reads, &self.believed, sensors, cycles) {
+            if check && !self.bounds.believes(&node.reads, &self.believed, sensors, cycles, &found) {
                 node.reads.copy(&self.believed, sensors);
+                for &j in node.reads.joints.iter().filter(|j| found[**j]) {
+                    sensors.drive_status[j] ^= u32::from(REFERENCED);
+                    self.referenced[j] = true;
+                }
                 self.refuse(Refused::Jump, 1);
                 heard = false;
             }
@@ -151,6 +156,24 @@ impl LineGuard {
             }
             *doubted = falls && !*doubted;
         }
+    }
+
+    /// A joint that has found out where it is reads another angle from one cycle to the next. It is believed the second time
+    /// it says so, as a bent bit says it once; until then its angle is carried on. Returns the joints that are believed now.
+    fn doubt_references(&mut self, sensors: &mut Sensors) -> [bool; messages::MAX_JOINTS] {
+        let mut found = [false; messages::MAX_JOINTS];
+        let known = self.nodes.iter().filter(|node| node.heard);
+        for &j in known.flat_map(|node| &node.reads.joints) {
+            let referenced = &mut self.referenced[j];
+            let turned = (self.believed.drive_status[j] ^ sensors.drive_status[j]) & u32::from(REFERENCED);
+            found[j] = turned != 0 && *referenced;
+            *referenced = turned != 0 && !*referenced;
+            if *referenced {
+                sensors.drive_status[j] ^= turned;
+                copy_joint(j, &self.believed, sensors);
+            }
+        }
+        found
     }
 
     /// Why the joints must come to rest.

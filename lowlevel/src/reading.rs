@@ -40,6 +40,14 @@ pub(crate) struct Bounds {
     force: f64,
 }
 
+/// Copies what is read of a joint.
+pub(crate) fn copy_joint(j: usize, from: &Sensors, to: &mut Sensors) {
+    to.joint_angle[j] = from.joint_angle[j];
+    to.joint_speed[j] = from.joint_speed[j];
+    to.motor_angle[j] = from.motor_angle[j];
+    to.motor_speed[j] = from.motor_speed[j];
+}
+
 impl Readings {
     /// What each node of the robot's bus reads.
     pub(crate) fn of(robot: &Robot) -> Vec<Self> {
@@ -61,10 +69,7 @@ impl Readings {
     /// Copies what the node reads.
     pub(crate) fn copy(&self, from: &Sensors, to: &mut Sensors) {
         for &j in &self.joints {
-            to.joint_angle[j] = from.joint_angle[j];
-            to.joint_speed[j] = from.joint_speed[j];
-            to.motor_angle[j] = from.motor_angle[j];
-            to.motor_speed[j] = from.motor_speed[j];
+            copy_joint(j, from, to);
         }
         for &foot in &self.feet {
             to.foot_wrench[foot] = from.foot_wrench[foot];
@@ -104,8 +109,16 @@ impl Bounds {
         }
     }
 
-    /// Whether what a node reads can be, `cycles` after what was believed `before`.
-    pub(crate) fn believes(&self, reads: &Readings, before: &Sensors, now: &Sensors, cycles: u32) -> bool {
+    /// Whether what a node reads can be, `cycles` after what was believed `before`; the angle of a joint that has just
+    /// `found` out where it is can be any.
+    pub(crate) fn believes(
+        &self,
+        reads: &Readings,
+        before: &Sensors,
+        now: &Sensors,
+        cycles: u32,
+        found: &[bool; MAX_JOINTS],
+    ) -> bool {
         let cycles = f64::from(cycles);
         let near = |a: f64, b: f64, most: f64| (a - b).abs() <= most;
         let joint = |&j: &usize| {
@@ -128,6 +141,6 @@ impl Bounds {
                 && (0..3).all(|k| near(a.angular_velocity[k], b.angular_velocity[k], JERK * cycles))
                 && (0..3).all(|k| near(a.acceleration[k], b.acceleration[k], SHOCK * cycles))
         };
-        reads.joints.iter().all(joint) && reads.feet.iter().all(foot) && (!reads.imu || imu())
+        reads.joints.iter().all(|j| found[*j] || joint(j)) && reads.feet.iter().all(foot) && (!reads.imu || imu())
     }
 }

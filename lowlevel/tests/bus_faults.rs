@@ -270,13 +270,39 @@ fn a_drive_that_says_once_that_it_is_not_enabled_is_not_believed() {
     let mut rig = Rig::moving();
     let j = rig.joint(KNEE);
     let mut says = |status: u32| {
-        rig.drives.drive_status[j] = status;
+        rig.drives.drive_status[j] = status | u32::from(REFERENCED);
         let answer = rig.answer();
         rig.cycle(Some(&answer));
-        rig.seen.drive_status[j]
+        rig.seen.drive_status[j] & !u32::from(REFERENCED)
     };
     let seen = [0x237, 0x237, 0x233, 0x237, 0x208, 0x208, 0x208, 0x237].map(&mut says);
     assert_eq!(seen, [0x237, 0x237, 0x237, 0x237, 0x237, 0x208, 0x208, 0x237]);
+}
+
+/// A joint that finds out where it is reads another angle at once. A bent bit that says so opens no door to its neighbours.
+#[test]
+fn a_joint_that_finds_its_reference_is_believed_the_second_time() {
+    let mut rig = Rig::moving();
+    let (j, neighbour) = (rig.joint(KNEE), rig.joint("left_ankle_adduction"));
+    assert_eq!(rig.line(KNEE), rig.line("left_ankle_adduction"));
+    let mut says = |referenced: bool, off: [f64; 2]| {
+        rig.drives.drive_status[j] &= !u32::from(REFERENCED);
+        rig.drives.drive_status[j] |= u32::from(if referenced { REFERENCED } else { 0 });
+        let place = [rig.drives.joint_angle[j], rig.drives.joint_angle[neighbour]];
+        rig.drives.joint_angle[j] += off[0];
+        rig.drives.joint_angle[neighbour] += off[1];
+        let answer = rig.answer();
+        rig.cycle(Some(&answer));
+        [rig.seen.joint_angle[j] - place[0], rig.seen.joint_angle[neighbour] - place[1]]
+            .map(|x| (x * 10.0).round() / 10.0)
+    };
+    assert_eq!(says(false, [0.0, 0.0]), [0.0, 0.0], "bent for one cycle");
+    assert_eq!(says(true, [0.0, 1.0]), [0.0, 0.0], "and back, while the neighbour lies");
+    assert_eq!(says(false, [0.7, 0.0]), [0.0, 0.0]);
+    assert_eq!(says(false, [0.7, 1.0]), [0.0, 0.0], "the neighbour's lie holds the whole node");
+    assert_eq!(says(true, [0.0, 0.0]), [0.0, 0.0]);
+    assert_eq!(says(false, [0.7, 0.0]), [0.0, 0.0]);
+    assert_eq!(says(false, [0.7, 0.0]), [0.7, 0.0], "said twice");
 }
 
 #[test]
