@@ -48,11 +48,11 @@ pub fn admit(
     // Nothing that was sent before an emergency stop comes after it.
     let last = sender.last[class as usize].max(sender.last[Priority::High as usize]);
     sender.last[class as usize] = last.max(stamp.sequence);
+    // Whatever its holder sends is a sign of life; only what moves the robot takes a lease that is free.
+    lease.renew(sender.token, stamp.sent_ns, now_ns);
     // Ending all processes is no matter of old or new, but of who may.
     let ends = *command == Command::End && !sender.may_command(command);
     if command.always_passes() && !ends {
-        // A stop is also a sign of life, but takes no lease.
-        lease.renew(sender.token, stamp.sent_ns, now_ns);
         return Ok(0);
     }
     if stamp.sequence <= last {
@@ -62,11 +62,9 @@ pub fn admit(
     if !sender.may_command(command) {
         return Err(Denied::NoAccess);
     }
-    if command.needs_lease() {
-        lease.admit(sender.token, stamp.sent_ns, now_ns).map_err(Denied::LeaseHeld)
-    } else {
-        lease.renew(sender.token, stamp.sent_ns, now_ns);
-        Ok(0)
+    match command.needs_lease() {
+        true => lease.admit(sender.token, stamp.sent_ns, now_ns).map_err(Denied::LeaseHeld),
+        false => Ok(0),
     }
 }
 
@@ -74,7 +72,7 @@ pub fn admit(
 mod tests {
     use super::*;
     use messages::command::{Domain, VelocityCommand};
-    use messages::command_stamp::MAX_AGE;
+    use messages::command_stamp::{LEASE, MAX_AGE};
     use messages::command_text::COMMANDS;
 
     const WALK: Command = Command::Velocity(VelocityCommand { forward: 0.4, left: 0.0, turn: 0.0 });
@@ -104,6 +102,18 @@ mod tests {
         assert!(matches!(admit(6, NOW + MAX_AGE, &walk), Err(Denied::Reason(Reason::FromTheFuture { .. }))));
         assert_eq!(admit(6, NOW, &[Domain::System, Domain::Head]), Err(Denied::NoAccess));
         assert_eq!(lease.holder(NOW), None, "what is denied takes no lease");
+    }
+
+    #[test]
+    fn whatever_its_holder_sends_renews_the_lease() {
+        let (mut sender, mut lease) = (sender(&Domain::ALL), LeaseKeeper::new(0));
+        let mut admit = |n, sent, now| {
+            super::admit(&mut sender, &mut lease, &WALK, Priority::Normal, &stamp(n, sent), now)
+        };
+        assert_eq!(admit(6, NOW, NOW), Ok(1));
+        let sent = NOW + 3 * MAX_AGE;
+        assert!(admit(7, sent, sent + 2 * MAX_AGE).is_err(), "too old");
+        assert_eq!(lease.state(sent + 2 * MAX_AGE).until_ns, sent + LEASE);
     }
 
     #[test]

@@ -141,6 +141,8 @@ impl Bounds {
                 && (0..3).all(|k| near(a.angular_velocity[k], b.angular_velocity[k], JERK * cycles))
                 && (0..3).all(|k| near(a.acceleration[k], b.acceleration[k], SHOCK * cycles))
         };
-        reads.joints.iter().all(|j| found[*j] || joint(j)) && reads.feet.iter().all(foot) && (!reads.imu || imu())
+        reads.joints.iter().all(|j| found[*j] || joint(j))
+            && reads.feet.iter().all(foot)
+            && (!reads.imu || imu())
     }
 }
