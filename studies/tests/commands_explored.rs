@@ -547,7 +547,7 @@ fn the_search_finds_what_is_broken_on_purpose() {
     for (broken, found) in [
         (Broken::Age, "an old command took effect"),
         (Broken::Lease, "it walks for somebody who is gone"),
-        (Broken::Stop, "a stop was lost"),
+        (Broken::Stop, "an emergency stop was lost"),
     ] {
         let search = Search::explore(broken, (6, 1));
         println!("{broken:?}: {:?} among {} states", search.fault, search.seen.len());
