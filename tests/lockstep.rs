@@ -3,10 +3,14 @@
 //! Compared are the hashes of all payloads of every channel, but for those that speak of wall time (cycle statistics)
 //! or of what a single process does not have: broker and logger, and what passes between processes.
 
-use harness::Site;
+use harness::{Site, doze};
+use ipc::Reader;
+use messages::topics::SIM_STATE;
+use messages::{Process, SimState};
 use recording::{Log, payload_hashes};
+use rustix::process::Signal;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const EXE: &str = harness::executable!();
 
@@ -117,6 +121,55 @@ fn a_scene_that_leaves_the_model_open_is_the_same_in_one_process_and_in_all() {
     let text = text.replace("depth = 1\nintegrator = \"euler\"\nsubsteps = 4", auto);
     std::fs::write(site.config("scenes/walk.toml"), text).unwrap();
     assert_eq!(different(&sim(&site), &run(&site, &[0, 1])), [""; 0]);
+}
+
+/// What the robot does never waits for who only passes on, looks or writes down: killed at three instants each, nobody acts
+/// otherwise by a bit.
+#[test]
+fn without_broker_observer_or_logger_the_robot_does_the_same_bit_by_bit() {
+    let site = site();
+    let alone = sim(&site);
+    let wanted = acts(&[site.path("sim.mcap")]);
+    for (victim, time) in [Some(Process::Broker), None, Some(Process::Logger)].iter().zip([0.9, 3.1, 4.6]) {
+        let mut run = site.run("walk", &["--lockstep"]);
+        let space = run.space();
+        let mut state: Reader<SimState> = space.reader(&SIM_STATE).unwrap();
+        let observer = site.start(&["topic", "echo", "sensors", "--dir", &site.run_dir().display().to_string()]);
+        while state.latest().is_none_or(|s| s.time < time) {
+            assert!(run.is_alive(), "{}", run.err());
+            doze(0.001);
+        }
+        match victim {
+            Some(process) => run.kill(*process),
+            None => observer.signal_supervisor(Signal::KILL),
+        }
+        let said = run.end();
+        assert_eq!(said.code, Some(i32::from(victim.is_some())), "a death is no success: {said:#?}");
+        let parts = [site.path("walk.mcap"), site.path("walk.2.mcap")];
+        if *victim == Some(Process::Logger) {
+            // What was written before it died, and by the one after it.
+            let found = acts(&parts);
+            assert!(found.len() > wanted.len() / 2, "{} of {} records", found.len(), wanted.len());
+            assert!(found.iter().all(|(at, payload)| wanted.get(at) == Some(payload)));
+            assert!(found.keys().last() == wanted.keys().last(), "to the end");
+        } else {
+            assert_eq!(different(&alone, &hashes(&parts[0])), [""; 0], "{victim:?}");
+        }
+    }
+}
+
+/// What the chain did, by channel and time \[ns\].
+fn acts(parts: &[PathBuf]) -> BTreeMap<(u64, String), Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for part in parts {
+        let end = Log::open(part).unwrap().each(|m| {
+            if ["/gangwerk/joint_targets", "/gangwerk/sim_state"].contains(&m.channel) {
+                found.insert((m.log_time_ns, m.channel.into()), m.payload.to_vec());
+            }
+        });
+        end.unwrap();
+    }
+    found
 }
 
 /// What the comparison is worth: the whole chain is in it, and every cycle.
