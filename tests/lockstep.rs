@@ -134,7 +134,8 @@ fn without_broker_observer_or_logger_the_robot_does_the_same_bit_by_bit() {
         let mut run = site.run("walk", &["--lockstep"]);
         let space = run.space();
         let mut state: Reader<SimState> = space.reader(&SIM_STATE).unwrap();
-        let observer = site.start(&["topic", "echo", "sensors", "--dir", &site.run_dir().display().to_string()]);
+        let observer =
+            site.start(&["topic", "echo", "sensors", "--dir", &site.run_dir().display().to_string()]);
         while state.latest().is_none_or(|s| s.time < time) {
             assert!(run.is_alive(), "{}", run.err());
             doze(0.001);
