@@ -159,6 +159,29 @@ fn without_broker_observer_or_logger_the_robot_does_the_same_bit_by_bit() {
     }
 }
 
+/// In whatever order the processes come, they wait for each other, and what they do is the same.
+#[test]
+fn any_order_of_starting_gives_the_same_walk() {
+    let site = site();
+    let alone = sim(&site);
+    let mut order = Process::ALL.map(Process::name);
+    let shipped = order.map(|name| format!("\"{name}\"")).join(", ");
+    let mut before = shipped;
+    for seed in 1..=4_u64 {
+        // Fisher and Yates, by a linear congruential generator.
+        let mut state = seed;
+        for i in (1..order.len()).rev() {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            order.swap(i, (state >> 33) as usize % (i + 1));
+        }
+        let now = order.map(|name| format!("\"{name}\"")).join(", ");
+        site.edit("system.toml", &before, &now);
+        before = now;
+        println!("{before}");
+        assert_eq!(different(&alone, &run(&site, &[0, 1])), [""; 0], "{before}");
+    }
+}
+
 /// What the chain did, by channel and time \[ns\].
 fn acts(parts: &[PathBuf]) -> BTreeMap<(u64, String), Vec<u8>> {
     let mut found = BTreeMap::new();

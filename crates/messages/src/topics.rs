@@ -28,8 +28,7 @@ pub enum Process {
 }
 
 impl Process {
-    /// All processes that `gangwerk run` starts, in order: the logger before those whose first cycle it is to have, the joint
-    /// loop, which is the clock, last.
+    /// All processes that `gangwerk run` starts.
     pub const ALL: [Self; 7] = [
         Self::Broker,
         Self::Logger,
