@@ -7,12 +7,13 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use config::System;
+use config::{Setup, System};
 use ipc::{Reader, Run, Space, Writer};
 use messages::{Event, EventCode, Process, Sensors, topics};
 use realtime::{Schedule, Stop, clock, prepare_thread};
 
 use crate::exchange::{Exchange, Report};
+use crate::observation::Observation;
 use crate::{doors, inlet, keys};
 
 /// Between two looks whether to end, and at what is a matter of time.
@@ -58,7 +59,12 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
 pub fn serve(run: &Run, tcp: &Tcp, stop: &Stop) -> Result<(), String> {
     let space = run.enter(Process::Broker).map_err(|e| e.to_string())?;
     let (gate, inlet) = inlet::gate();
-    let mut exchange = Exchange::new(&space, inlet, clock::now()).map_err(|e| e.to_string())?;
+    // A bare run, of nothing but a broker, has no configuration.
+    let setup = run.config.exists().then(|| Setup::load(&run.config, &run.scene)).transpose();
+    let setup = setup.inspect_err(|e| tracing::warn!("no parameters can be listed: {e}")).unwrap_or(None);
+    let robot = Observation::open(&space, setup.as_ref()).map_err(|e| e.to_string())?;
+    let exchange = Exchange::new(&space, inlet, clock::now()).map_err(|e| e.to_string())?;
+    let mut exchange = exchange.showing(robot);
     let mut events = Events::open(&space).map_err(|e| e.to_string())?;
     let gate = gate.ringing(exchange.doorbell());
     if let Some(address) = tcp.address {

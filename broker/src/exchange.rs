@@ -4,6 +4,7 @@
 //! message of High waits for one message of a lower class at most, however many there are of those.
 
 mod clients;
+mod watchers;
 
 use std::time::Duration;
 
@@ -20,6 +21,7 @@ use crate::members::Member;
 use crate::message::{
     BROKER_BELL, Message, PUBLISH, REGISTRATION, service, service_message, split_u32, write_stamp,
 };
+use crate::observation::Observation;
 use crate::pending::{Pending, Queued};
 use crate::refusal::Refusal;
 
@@ -57,6 +59,8 @@ pub struct Exchange<'a> {
     members: Vec<Member>,
     lease: LeaseKeeper,
     pending: Pending,
+    /// What clients that watch are shown; none: nothing of this run is known.
+    robot: Option<Observation>,
     forwarded: [u64; 3],
     refused: u64,
     reported_lost: u64,
@@ -82,6 +86,7 @@ impl<'a> Exchange<'a> {
             members: Vec::new(),
             lease: LeaseKeeper::new(now_ns >> 20),
             pending: Pending::default(),
+            robot: None,
             forwarded: [0; 3],
             refused: 0,
             reported_lost: 0,
@@ -90,6 +95,11 @@ impl<'a> Exchange<'a> {
             log: LogGate::default(),
             now: now_ns,
         })
+    }
+
+    /// Shows the robot to clients that want to watch it.
+    pub fn showing(self, robot: Observation) -> Self {
+        Self { robot: Some(robot), ..self }
     }
 
     /// Sleeps until a queue or a stream has something, at most `limit`.
@@ -114,7 +124,7 @@ impl<'a> Exchange<'a> {
             busy = true;
         }
         for _ in 0..AT_ONCE {
-            let (registered, asked) = (self.serve_queue(report), self.serve_stream());
+            let (registered, asked) = (self.serve_queue(report), self.serve_stream(report));
             if !(registered || asked) {
                 break;
             }
@@ -126,6 +136,7 @@ impl<'a> Exchange<'a> {
             self.resume(queued, report);
         }
         self.look_around(report);
+        self.show();
         busy
     }
 

@@ -123,8 +123,11 @@ topics! {
     /// What the stabilizer sees and does.
     CONTROLLER_STATE: ControllerState = "controller_state", Controller -> [Planner], wakes [],
         1000 Hz, stale 100, depth 256, logged true;
+    /// Parameters of the planner.
+    PARAMETERS_PLANNER: Parameters = "parameters/planner", Planner -> [], wakes [],
+        0 Hz, stale 0, depth 8, logged true;
     /// Parameters of the stabilizer.
-    PARAMETERS: Parameters = "parameters", Controller -> [], wakes [],
+    PARAMETERS_CONTROLLER: Parameters = "parameters/controller", Controller -> [], wakes [],
         0 Hz, stale 0, depth 8, logged true;
     /// Sign of life of the joint loop.
     WATCHDOG_RESET: WatchdogReset = "watchdog_reset", Lowlevel -> [Watchdog], wakes [Watchdog],

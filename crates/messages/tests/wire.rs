@@ -29,6 +29,7 @@ enum Peer {
     Home,
     ZeroForce,
     Lower { distance: f64 },
+    WalkParameter { number: u32, value: f64 },
 }
 
 impl From<Command> for Peer {
@@ -59,6 +60,9 @@ impl From<Command> for Peer {
             Command::Home => Self::Home,
             Command::ZeroForce => Self::ZeroForce,
             Command::Lower(LowerCommand { distance }) => Self::Lower { distance },
+            Command::WalkParameter(ParameterCommand { number, value }) => {
+                Self::WalkParameter { number, value }
+            }
         }
     }
 }
@@ -81,6 +85,8 @@ fn any_command() -> impl Strategy<Value = Command> {
         f().prop_map(|distance| Command::Lower(LowerCommand { distance })),
         (any::<u32>(), f())
             .prop_map(|(number, value)| Command::Parameter(ParameterCommand { number, value })),
+        (any::<u32>(), f())
+            .prop_map(|(number, value)| Command::WalkParameter(ParameterCommand { number, value })),
         prop::array::uniform3(f()).prop_map(|point| Command::Fixate(FixateCommand { point })),
         (f(), f()).prop_map(|(pan, tilt)| Command::HeadJoints(HeadJointsCommand { pan, tilt })),
         (f(), f()).prop_map(|(distance, height)| Command::Platform(PlatformCommand { distance, height })),
