@@ -207,7 +207,7 @@ impl<'a> Exchange<'a> {
             let refusal = Refusal::NobodyListens(name);
             return self.refuse(from, stamp.sequence, address(&command), &refusal, report);
         };
-        if command == Command::EmergencyStop || self.pending.has_room(decider) {
+        if command == Command::EmergencyStop || self.pending.has_room(decider, class) {
             self.pending.ask(from, stamp.sequence, command, decider, self.now);
             self.deliver(from, class, &command, bytes);
         } else {

@@ -110,6 +110,37 @@ fn a_higher_class_passes_a_lower_one() {
     assert_eq!(last, Some(velocity(199)));
 }
 
+/// A client that floods in class Low has filled the process that decides, and a line behind it. What the process holds
+/// already is answered first; what waits in the line is passed.
+#[test]
+fn a_flood_of_low_priority_delays_a_normal_command_by_no_more_than_the_process_holds() {
+    const HELD: usize = 96;
+    let system = System::without_broker("flood");
+    let mut exchange = exchange(&system.space);
+    let mut hand = ByHand::new(&system.space);
+    hand.register();
+    exchange.turn(now(), &mut |_| {});
+    for n in 0..250 {
+        hand.publish(2, &velocity(n), Priority::Low);
+    }
+    for _ in 0..8 {
+        exchange.turn(now(), &mut |_| {});
+    }
+    hand.publish(3, &Command::Stop, Priority::Normal);
+    hand.publish(3, &Command::EmergencyStop, Priority::High);
+    exchange.turn(now(), &mut |_| {});
+    let mut heard = hand.heard();
+    assert_eq!(heard.len(), HELD + 1, "the process holds no more, and the emergency stop waits for no room");
+    assert_eq!(heard[HELD], Command::EmergencyStop);
+    while exchange.turn(now(), &mut |_| {}) {
+        heard.extend(hand.heard());
+    }
+    let lower =
+        heard.iter().take_while(|c| **c != Command::Stop).filter(|c| matches!(c, Command::Velocity(_)));
+    assert_eq!(lower.count(), HELD, "commands of class Low that came before the normal one");
+    assert_eq!(heard.len(), 252, "and none is lost");
+}
+
 #[test]
 fn a_class_is_not_a_matter_of_taste() {
     let system = System::without_broker("class");

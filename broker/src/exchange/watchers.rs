@@ -89,3 +89,7 @@ impl Exchange<'_> {
 fn parameter(name: &str, value: f64, now: u64) -> Vec<u8> {
     service_message(service::PARAMETER, 0, now, &[&value.to_le_bytes()[..], name.as_bytes()].concat())
 }
+
+#[cfg(test)]
+#[path = "watchers_tests.rs"]
+mod tests;
