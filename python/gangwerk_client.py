@@ -168,7 +168,7 @@ class Client:
         return None
 
     def list_parameters(self):
-        """The parameters of all processes, by name `process.name`; `change`: live, fixed (in the configuration), constant."""
+        """Parameters of all processes by `process.name`; `change`: live, fixed (in the configuration) or constant."""
         return {p.name: p for p in map(_parameter, self._ask_lines(PARAMETERS))}
 
     def set_parameter(self, name, value):
@@ -176,15 +176,15 @@ class Client:
         return self.wait(self._send(SERVICE, SET, struct.pack("<d", value) + name.encode()))
 
     def watch(self, rate=0, events=False):
-        """The present state and parameters at once; from now on `state` gives states at `rate` per second (at most 50), and
-        `event` what the processes report. Lines that say what a state holds: name, count, unit, meaning."""
+        """The present state and parameters at once; from now on `state` gives states at `rate` per second (at most 50),
+        and `event` what the processes report. Lines that say what a state holds: name, count, unit, meaning."""
         lines = self._ask_lines(WATCH, struct.pack("<HB", rate, events))
         with self._changed:
             self._layout = [(name, int(count)) for name, count, *_ in (line.split(" ", 3) for line in lines)]
         return lines
 
     def state(self, timeout=0.0):
-        """The newest state that was not given yet: its tick, and a number or tuple by name; None if none comes in this time."""
+        """The newest state that was not given yet: tick, and numbers or tuples by name; None if none comes in time."""
         try:
             payload = self._wait(self._take_state, timeout)
         except TimeoutError:

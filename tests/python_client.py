@@ -57,7 +57,8 @@ def until(what, look, seconds=20.0):
 
 with Client.local(run, "operator") as robot:
     table = robot.list_parameters()
-    assert {name.split(".")[0] for name in table} >= {"planner", "controller", "lowlevel", "watchdog", "sim-backend", "logger", "broker"}
+    processes = {name.split(".")[0] for name in table}
+    assert processes == {"planner", "controller", "lowlevel", "watchdog", "sim-backend", "logger", "broker"}, processes
     height = table["planner.swing_height"]
     assert (height.unit, height.change, height.value) == ("m", "live", height.default), height
     assert height.low <= height.default <= height.high and height.about

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use ipc::{Doorbell, IpcError, QueueReceiver, QueueWaiter, Space};
 use messages::command::Priority;
-use messages::{Command, Stamp};
+use messages::{Command, Live, Stamp};
 use realtime::clock::SECOND;
 
 use crate::admission::{Denied, Sender, admit};
@@ -41,8 +41,10 @@ const ROUND: u64 = SECOND / 4;
 const LEASE_ROUND: u64 = SECOND / 20;
 
 /// What the broker has to report, for the log.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Report {
+    /// A command was refused by the broker itself; number of the reason.
+    Denied(Live, u8),
     /// A message was refused; its (domain, id) as one number, domain first.
     Refused(u32),
     /// Clients have lost this many messages more.
@@ -144,6 +146,8 @@ impl<'a> Exchange<'a> {
     fn look_around(&mut self, report: &mut dyn FnMut(Report)) {
         while let Some(asked) = self.pending.overdue(self.now) {
             let refusal = Refusal::NoAnswer(asked.command.decided_by());
+            let stamp = Stamp { origin: asked.origin, sequence: asked.sequence, ..Stamp::default() };
+            report(Report::Denied(Live { command: asked.command, stamp }, refusal.code()));
             self.refuse(asked.origin, asked.sequence, address(&asked.command), &refusal, report);
         }
         if let Some(former) = self.lease.expire(self.now) {
@@ -184,8 +188,11 @@ impl<'a> Exchange<'a> {
             Message::parse(bytes).and_then(|m| m.command_of_class(class).map(|command| (command, m.stamp)));
         let sequence = Message::parse(bytes).map_or(0, |m| m.stamp.sequence);
         let admitted = checked.and_then(|(command, stamp)| {
-            let grant = self.admit(from, &command, Priority::ALL[class], &stamp)?;
-            Ok((command, Stamp { origin: from, grant, ..stamp }))
+            let stamp = Stamp { origin: from, ..stamp };
+            let admitted = self.admit(from, &command, Priority::ALL[class], &stamp);
+            let admitted = admitted
+                .inspect_err(|refusal| report(Report::Denied(Live { command, stamp }, refusal.code())));
+            Ok((command, Stamp { grant: admitted?, ..stamp }))
         });
         let (command, stamp) = match admitted {
             Ok(admitted) => admitted,
@@ -205,6 +212,7 @@ impl<'a> Exchange<'a> {
                 self.deliver(from, class, &command, bytes);
             }
             let refusal = Refusal::NobodyListens(name);
+            report(Report::Denied(Live { command, stamp }, refusal.code()));
             return self.refuse(from, stamp.sequence, address(&command), &refusal, report);
         };
         if command == Command::EmergencyStop || self.pending.has_room(decider, class) {
@@ -224,6 +232,7 @@ impl<'a> Exchange<'a> {
             && let Err(reason) = stamp.check_age(self.now)
         {
             let refusal = Refusal::because(reason, &command);
+            report(Report::Denied(Live { command, stamp }, refusal.code()));
             return self.refuse(origin, sequence, address(&command), &refusal, report);
         }
         self.pending.ask(origin, sequence, command, decider, self.now);

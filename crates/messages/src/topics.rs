@@ -168,6 +168,9 @@ topics! {
     /// What each cycle of the stabilizer began with.
     INPUTS_CONTROLLER: CycleInputs = "cycle_inputs/controller", Controller -> [], wakes [],
         1000 Hz, stale 0, depth 256, logged true;
+    /// Commands that the broker refused.
+    COMMANDS_BROKER: CommandTaken = "commands/broker", Broker -> [], wakes [],
+        0 Hz, stale 0, depth 512, logged true;
     /// Commands that the watchdog took or left out.
     COMMANDS_WATCHDOG: CommandTaken = "commands/watchdog", Watchdog -> [], wakes [],
         0 Hz, stale 0, depth 64, logged true;
