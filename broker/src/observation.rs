@@ -225,7 +225,7 @@ impl Observation {
 
 /// Limits of the broker itself.
 fn own() -> [Entry; 5] {
-    let seconds = |ns: u64| ns as f64 * 1e-9;
+    let seconds = |ns: u64| ns as f64 / 1e9;
     [
         ("lease", "s", seconds(LEASE), "command lease after the last sign of life of its holder"),
         ("max_age", "s", seconds(MAX_AGE), "age from which a command is dropped"),

@@ -158,7 +158,7 @@ pub fn entries(setup: &Setup) -> Vec<Entry> {
             "deadline",
             "s",
             [0.0, 1.0],
-            row.deadline_ns as f64 * 1e-9,
+            row.deadline_ns as f64 / 1e9,
             "end of its answer in a cycle; 0: none",
         );
         if let Some(core) = row.core {
