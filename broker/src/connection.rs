@@ -38,7 +38,7 @@ pub const IDLE_TIME: Duration = Duration::from_secs(60);
 pub const RATE: f64 = 2000.0;
 /// Frames of one connection that are not answered yet.
 pub const UNANSWERED: usize = 64;
-/// Most states of the robot per second that a client gets.
+/// Most states of the robot per second that a client gets; the broker looks a hundred times a second.
 pub const MAX_RATE: u16 = 50;
 /// Frames that wait for one client, answers not counted.
 const WAITING: usize = 128;
