@@ -1,10 +1,13 @@
-"""Client of Gangwerk's broker: commands, answers, the command lease, commands of others. Standard library only.
+"""Client of Gangwerk's broker: commands, answers, lease, parameters, events, state. Standard library only.
 
     with Client.local("/dev/shm/gangwerk") as robot:
         robot.command("walk/stand")
         robot.command("walk/velocity", forward=0.3)   # raises Refused with reason and limit
         time.sleep(5)
         robot.command("walk/stop")
+        robot.set_parameter("planner.swing_height", 0.06)
+        robot.watch(rate=10, events=True)
+        print(robot.state(timeout=1.0).com, robot.event())
 
 While the client is open, a thread gives signs of life; so the command lease, taken with the first command that needs it,
 stays with it. When the program ends, is killed or hangs, the lease runs out within half a second and the robot stops.
@@ -20,11 +23,13 @@ import socket
 import struct
 import threading
 import time
+import types
 
-VERSION = 2
+VERSION = 3
 SERVICE = 0xFFFF
 SUBSCRIBE, STATISTICS, PING, HELLO, PROVE, TAKE_LEASE, GIVE_LEASE, DESCRIBE = 3, 4, 5, 7, 8, 9, 10, 11
-ACCEPTED, REFUSED, LINE, WELCOME, LEASE = 16, 17, 18, 19, 20
+WATCH, PARAMETERS, SET = 12, 13, 14
+ACCEPTED, REFUSED, LINE, WELCOME, LEASE, STATE, EVENT, PARAMETER = 16, 17, 18, 19, 20, 21, 22, 23
 HEAD = struct.Struct("<HHB3xIIQQ")
 TAG = 16
 MAX_MESSAGE = 512
@@ -34,6 +39,8 @@ DOMAINS = ("system", "walk", "stabilize", "joint", "head", "log", "sim", "vision
 Field = collections.namedtuple("Field", "name kind unit low high default")
 Command = collections.namedtuple("Command", "name domain id number needs_lease fields")
 Message = collections.namedtuple("Message", "domain id sequence time payload")
+Parameter = collections.namedtuple("Parameter", "name unit low high default value change about")
+Event = collections.namedtuple("Event", "tick process name code detail")
 
 
 class Refused(Exception):
@@ -59,6 +66,10 @@ class Client:
         self._answers = {}
         self._lines = collections.defaultdict(list)
         self._heard = collections.deque(maxlen=10_000)
+        self._events = collections.deque(maxlen=10_000)
+        self._state, self._layout = None, []
+        self.lost = 0  # frames of `watch` and `subscribe` that the broker dropped, because they were not read in time
+        self.parameters = {}  # present values of those that can be changed, by name; kept up to date after `watch`
         self._end = None
         self._seal = self._open = None
         self._out = self._in = 0
@@ -156,6 +167,41 @@ class Client:
                 return entry.name, dict(zip((f.name for f in entry.fields), values))
         return None
 
+    def list_parameters(self):
+        """Parameters of all processes by `process.name`; `change`: live, fixed (in the configuration) or constant."""
+        return {p.name: p for p in map(_parameter, self._ask_lines(PARAMETERS))}
+
+    def set_parameter(self, name, value):
+        """Gives a parameter another value; the name of the process that took it. Raises Refused."""
+        return self.wait(self._send(SERVICE, SET, struct.pack("<d", value) + name.encode()))
+
+    def watch(self, rate=0, events=False):
+        """The present state and parameters at once; from now on `state` gives states at `rate` per second (at most 50),
+        and `event` what the processes report. Lines that say what a state holds: name, count, unit, meaning."""
+        lines = self._ask_lines(WATCH, struct.pack("<HB", rate, events))
+        with self._changed:
+            self._layout = [(name, int(count)) for name, count, *_ in (line.split(" ", 3) for line in lines)]
+        return lines
+
+    def state(self, timeout=0.0):
+        """The newest state that was not given yet: tick, and numbers or tuples by name; None if none comes in time."""
+        try:
+            payload = self._wait(self._take_state, timeout)
+        except TimeoutError:
+            return None
+        fields, at = {"tick": struct.unpack_from("<Q", payload)[0]}, 12
+        for name, count in self._layout:
+            numbers = struct.unpack_from(f"<{count}f", payload, at)
+            fields[name], at = numbers if count > 1 else numbers[0], at + 4 * count
+        return types.SimpleNamespace(**fields)
+
+    def event(self, timeout=0.0):
+        """The next thing that a process reported; None if nothing is reported in this time."""
+        try:
+            return self._wait(lambda: self._events.popleft() if self._events else None, timeout)
+        except TimeoutError:
+            return None
+
     def statistics(self):
         """One line about the broker and one about each of its clients."""
         return self._ask_lines(STATISTICS)
@@ -224,8 +270,14 @@ class Client:
                     raise TimeoutError("the broker has not answered")
                 self._changed.wait(left)
 
-    def _ask_lines(self, service):
-        number = self._send(SERVICE, service, b"")
+    def _take_state(self):
+        if not self._layout:
+            return None
+        state, self._state = self._state, None
+        return state
+
+    def _ask_lines(self, service, payload=b""):
+        number = self._send(SERVICE, service, payload)
         self.wait(number)
         with self._changed:
             return self._lines.pop(number, [])
@@ -288,6 +340,15 @@ class Client:
                 raise Lost(message.payload[1:].decode(errors="replace"))
             elif message.id == LEASE:
                 self.lease_holder = message.payload[12:].decode(errors="replace")
+            elif message.id == STATE:
+                self._state, (self.lost,) = message.payload, struct.unpack_from("<I", message.payload, 8)
+            elif message.id == EVENT:
+                tick, code, detail = struct.unpack_from("<QIQ", message.payload)
+                process, name = message.payload[20:].decode(errors="replace").split(" ", 1)
+                self._events.append(Event(tick, process, name, code, detail))
+            elif message.id == PARAMETER:
+                (value,) = struct.unpack_from("<d", message.payload)
+                self.parameters[message.payload[8:].decode(errors="replace")] = value
             self._changed.notify_all()
 
     @staticmethod
@@ -309,6 +370,12 @@ class Client:
 def _command(line):
     name, domain, ident, number, lease, *fields = line.split(" ")
     return Command(name, int(domain), int(ident), int(number), lease == "1", [_field(f) for f in fields])
+
+
+def _parameter(line):
+    name, unit, low, high, default, value, change, about = line.split(" ", 7)
+    unit = "" if unit == "-" else unit.replace("*", " ")
+    return Parameter(name, unit, float(low), float(high), float(default), float(value), change, about)
 
 
 def _field(text):

@@ -142,7 +142,8 @@ fn an_emergency_stop_cuts_the_supply_in_the_cycle_that_hears_it() {
     let event = until(&mut run, &mut events, |e| e.code == EventCode::PowerOff as u64);
     assert_eq!((event.header.tick, event.detail), (off.header.tick, EventCode::EmergencyStop as u64));
     // Latched: to enable without a reset is not enough.
-    site.topic(&["pub", "system/enable"]).well();
+    let said = site.topic(&["pub", "system/enable"]);
+    assert!(said.code == Some(1) && said.err.contains("system/reset comes first"), "{said:#?}");
     let later = until(&mut run, &mut power, |p| p.header.tick > off.header.tick + 2000);
     assert_eq!(later.on, 0);
 }

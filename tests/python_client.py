@@ -43,6 +43,48 @@ with Client.local(run, "first") as robot:
     assert {robot.wait(number) for number in numbers} == {"planner"}
     assert any(line.startswith("broker: ") for line in robot.statistics())
 
+
+def until(what, look, seconds=20.0):
+    """What `look` gives as soon as it is something."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        found = look()
+        if found:
+            return found
+        time.sleep(0.005)
+    raise AssertionError(f"no {what} within {seconds} s")
+
+
+with Client.local(run, "operator") as robot:
+    table = robot.list_parameters()
+    processes = {name.split(".")[0] for name in table}
+    assert processes == {"planner", "controller", "lowlevel", "watchdog", "sim-backend", "logger", "broker"}, processes
+    height = table["planner.swing_height"]
+    assert (height.unit, height.change, height.value) == ("m", "live", height.default), height
+    assert height.low <= height.default <= height.high and height.about
+    refused(lambda: robot.set_parameter("lowlevel.bus.missed", 10), "fixed at start", "config/system.toml")
+    refused(lambda: robot.set_parameter("planner.swing_height", 0.5), "outside of [0, 0.15] m")
+    robot.command("walk/velocity", forward=0.2)
+    with Client.local(run, "late") as late:
+        # In the middle of a walk: what is the case is known without waiting for a change.
+        layout = late.watch(rate=20, events=True)
+        assert any(line.startswith("joint_angle 32 rad") for line in layout), layout
+        first = late.state(2.0)
+        assert (first.supply, first.start_up, first.not_standing) == (1.0, 6.0, 0.0), first
+        assert late.lease_holder.startswith("operator"), late.lease_holder
+        assert late.parameters["planner.swing_height"] == height.value
+        assert until("walk", lambda: (late.state() or first).gait == 3.0)
+        print("accepted by", robot.set_parameter("planner.swing_height", 0.07))
+        set_ = until("event", lambda: next((e for e in iter(late.event, None) if e.name == "ParameterSet"), None))
+        assert (set_.process, set_.detail) == ("planner", 0), set_
+        until("new value", lambda: late.parameters["planner.swing_height"] == 0.07)
+        assert robot.list_parameters()["planner.swing_height"].value == 0.07
+        robot.set_parameter("planner.swing_height", height.value)
+        one = until("state", late.state)
+        two = until("state", late.state)
+        assert two.tick > one.tick and len(two.joint_angle) == 32 and late.lost == 0
+    robot.command("walk/stop")
+
 with Client.network(host, int(port), (key_name, key)) as console:
     print("accepted by", console.command("walk/velocity", forward=0.1))
     refused(lambda: console.command("system/enable"), "may not command `system`")

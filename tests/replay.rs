@@ -25,7 +25,7 @@ fn seconds() -> f64 {
     std::env::var("GANGWERK_REPLAY_SECONDS").ok().and_then(|s| s.parse().ok()).unwrap_or(10.0)
 }
 
-/// A run in real time with a walking command, a parameter, and a push from outside, all of them live.
+/// A run in real time with a walking command, a parameter of planner and stabilizer, and a push from outside, all of them live.
 fn recorded(site: &Site) -> PathBuf {
     let duration = seconds();
     site.scene("walk", duration, SCENE);
@@ -48,7 +48,9 @@ fn recorded(site: &Site) -> PathBuf {
     // The lease is the walker's: this is refused, and that is in the log.
     assert_eq!(site.topic(&["pub", "walk/velocity", "forward=0.1", "--for", "0.1"]).code, Some(1));
     until(&mut run, 5.5);
-    site.gangwerk(&["param", "set", "force_gain.x", "21.5", "--take-over", "--dir", &dir]).well();
+    for (name, value) in [("force_gain.x", "21.5"), ("planner.swing_height", "0.06")] {
+        site.gangwerk(&["param", "set", name, value, "--take-over", "--dir", &dir]).well();
+    }
     drop(space);
     let _ = walk.end();
     let said = run.end().well();
@@ -108,13 +110,19 @@ fn a_run_in_real_time_is_replayed_bit_for_bit_and_one_bit_is_named() {
     let _turn = turn();
     let site = Site::patient(EXE);
     let log = complete(&site);
+    let denied = recording::Log::open(&log).unwrap();
+    let denied = denied.records::<messages::CommandTaken>(&messages::topics::COMMANDS_BROKER).unwrap();
+    assert!(
+        denied.iter().any(|taken| taken.refused == 9 && taken.command().is_some()),
+        "the lease was the walker's"
+    );
     for process in cli::replay::PROCESSES {
         let done = cli::replay::replay(&log, process).unwrap_or_else(|e| panic!("{}: {e}", process.name()));
         println!("{}: {done}", process.name());
         assert!(!done.cut);
         assert!(done.cycles as f64 > 0.8e3 * seconds(), "{}: {done}", process.name());
         let commands = match process {
-            Process::Planner => 2,                      // stand, and the velocity
+            Process::Planner => 3,                      // stand, the velocity, the parameter
             Process::Controller => 1,                   // the parameter
             Process::Lowlevel | Process::Watchdog => 2, // reset, enable
             _ => 0,

@@ -21,7 +21,7 @@ use tokio::sync::{Semaphore, mpsc, oneshot};
 use tokio::time::timeout;
 
 use crate::exchange::FIRST_STREAM;
-use crate::inlet::{Gate, Request};
+use crate::inlet::{Gate, Request, Table};
 use crate::keys::{self, Half, Key, NONCE, TAG};
 use crate::log_gate::LogGate;
 use crate::members::Outgoing;
@@ -38,6 +38,8 @@ pub const IDLE_TIME: Duration = Duration::from_secs(60);
 pub const RATE: f64 = 2000.0;
 /// Frames of one connection that are not answered yet.
 pub const UNANSWERED: usize = 64;
+/// Most states of the robot per second that a client gets; the broker looks a hundred times a second.
+pub const MAX_RATE: u16 = 50;
 /// Frames that wait for one client, answers not counted.
 const WAITING: usize = 128;
 /// Time for which the rest of a closed connection is read.
@@ -345,8 +347,27 @@ impl Session {
                 };
                 Request::Subscribe { token, sequence, domains }
             }
-            service::STATISTICS => Request::Lines { token, sequence, describe: false },
-            service::DESCRIBE => Request::Lines { token, sequence, describe: true },
+            service::STATISTICS => Request::Lines { token, sequence, table: Table::Statistics },
+            service::DESCRIBE => Request::Lines { token, sequence, table: Table::Commands },
+            service::PARAMETERS => Request::Lines { token, sequence, table: Table::Parameters },
+            service::WATCH => {
+                let &[low, high, events @ (0 | 1)] = message.payload else {
+                    return Err(Refusal::Malformed("a WATCH without rate and events".into()));
+                };
+                let rate = u16::from_le_bytes([low, high]);
+                if rate > MAX_RATE {
+                    return Err(Refusal::OutOfRange(format!("rate = {rate} /s: at most {MAX_RATE}")));
+                }
+                Request::Watch { token, sequence, rate, events: events == 1 }
+            }
+            service::SET => {
+                let Some((value, name)) = message.payload.split_first_chunk() else {
+                    return Err(Refusal::Malformed("a SET without a value".into()));
+                };
+                let text = String::from_utf8_lossy(name);
+                let name = text.chars().filter(|c| !c.is_control()).take(NAME).collect();
+                Request::Set { token, sequence, sent_ns, value: f64::from_le_bytes(*value), name }
+            }
             service::TAKE_LEASE => {
                 let over = message.payload == [1];
                 Request::TakeLease { token, sequence, sent_ns, over }

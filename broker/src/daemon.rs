@@ -7,12 +7,13 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use config::System;
+use config::{Setup, System};
 use ipc::{Reader, Run, Space, Writer};
-use messages::{Event, EventCode, Process, Sensors, topics};
+use messages::{CommandTaken, Event, EventCode, Header, Live, Process, Sensors, topics};
 use realtime::{Schedule, Stop, clock, prepare_thread};
 
 use crate::exchange::{Exchange, Report};
+use crate::observation::Observation;
 use crate::{doors, inlet, keys};
 
 /// Between two looks whether to end, and at what is a matter of time.
@@ -58,7 +59,12 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
 pub fn serve(run: &Run, tcp: &Tcp, stop: &Stop) -> Result<(), String> {
     let space = run.enter(Process::Broker).map_err(|e| e.to_string())?;
     let (gate, inlet) = inlet::gate();
-    let mut exchange = Exchange::new(&space, inlet, clock::now()).map_err(|e| e.to_string())?;
+    // A bare run, of nothing but a broker, has no configuration.
+    let setup = run.config.exists().then(|| Setup::load(&run.config, &run.scene)).transpose();
+    let setup = setup.inspect_err(|e| tracing::warn!("no parameters can be listed: {e}")).unwrap_or(None);
+    let robot = Observation::open(&space, setup.as_ref()).map_err(|e| e.to_string())?;
+    let exchange = Exchange::new(&space, inlet, clock::now()).map_err(|e| e.to_string())?;
+    let mut exchange = exchange.showing(robot);
     let mut events = Events::open(&space).map_err(|e| e.to_string())?;
     let gate = gate.ringing(exchange.doorbell());
     if let Some(address) = tcp.address {
@@ -73,6 +79,7 @@ pub fn serve(run: &Run, tcp: &Tcp, stop: &Stop) -> Result<(), String> {
     while !stop.asked() {
         let busy = exchange.turn(clock::now(), &mut |report| match report {
             Report::Refused(address) => events.write(EventCode::CommandRefused, address.into()),
+            Report::Denied(live, code) => events.denied(&live, code),
             Report::Lost(messages) => events.write(EventCode::MessagesLost, messages),
         });
         if !busy {
@@ -83,19 +90,34 @@ pub fn serve(run: &Run, tcp: &Tcp, stop: &Stop) -> Result<(), String> {
     Ok(())
 }
 
-/// Writes `events/broker`, stamped with the newest tick.
+/// Writes `events/broker` and `commands/broker`, stamped with the newest tick.
 struct Events {
     writer: Writer<Event>,
+    commands: Writer<CommandTaken>,
     sensors: Reader<Sensors>,
 }
 
 impl Events {
     fn open(space: &Space) -> Result<Self, ipc::IpcError> {
-        Ok(Self { writer: space.writer(&topics::EVENTS_BROKER)?, sensors: space.reader(&topics::SENSORS)? })
+        Ok(Self {
+            writer: space.writer(&topics::EVENTS_BROKER)?,
+            commands: space.writer(&topics::COMMANDS_BROKER)?,
+            sensors: space.reader(&topics::SENSORS)?,
+        })
     }
 
     fn write(&mut self, code: EventCode, detail: u64) {
-        let header = self.sensors.latest().map_or(Event::default().header, |s| s.header);
+        let header = self.now();
         self.writer.write(&Event { header, code: code as u64, detail });
+    }
+
+    /// A command that went no further than here.
+    fn denied(&mut self, live: &Live, code: u8) {
+        let taken = CommandTaken::new(self.now(), 0, live, &Ok(()), false);
+        self.commands.write(&CommandTaken { refused: code.into(), ..taken });
+    }
+
+    fn now(&mut self) -> Header {
+        self.sensors.latest().map_or(Header::default(), |s| s.header)
     }
 }

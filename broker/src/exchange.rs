@@ -4,12 +4,13 @@
 //! message of High waits for one message of a lower class at most, however many there are of those.
 
 mod clients;
+mod watchers;
 
 use std::time::Duration;
 
 use ipc::{Doorbell, IpcError, QueueReceiver, QueueWaiter, Space};
 use messages::command::Priority;
-use messages::{Command, Stamp};
+use messages::{Command, Live, Stamp};
 use realtime::clock::SECOND;
 
 use crate::admission::{Denied, Sender, admit};
@@ -20,6 +21,7 @@ use crate::members::Member;
 use crate::message::{
     BROKER_BELL, Message, PUBLISH, REGISTRATION, service, service_message, split_u32, write_stamp,
 };
+use crate::observation::Observation;
 use crate::pending::{Pending, Queued};
 use crate::refusal::Refusal;
 
@@ -39,8 +41,10 @@ const ROUND: u64 = SECOND / 4;
 const LEASE_ROUND: u64 = SECOND / 20;
 
 /// What the broker has to report, for the log.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Report {
+    /// A command was refused by the broker itself; number of the reason.
+    Denied(Live, u8),
     /// A message was refused; its (domain, id) as one number, domain first.
     Refused(u32),
     /// Clients have lost this many messages more.
@@ -57,6 +61,8 @@ pub struct Exchange<'a> {
     members: Vec<Member>,
     lease: LeaseKeeper,
     pending: Pending,
+    /// What clients that watch are shown; none: nothing of this run is known.
+    robot: Option<Observation>,
     forwarded: [u64; 3],
     refused: u64,
     reported_lost: u64,
@@ -82,6 +88,7 @@ impl<'a> Exchange<'a> {
             members: Vec::new(),
             lease: LeaseKeeper::new(now_ns >> 20),
             pending: Pending::default(),
+            robot: None,
             forwarded: [0; 3],
             refused: 0,
             reported_lost: 0,
@@ -90,6 +97,11 @@ impl<'a> Exchange<'a> {
             log: LogGate::default(),
             now: now_ns,
         })
+    }
+
+    /// Shows the robot to clients that want to watch it.
+    pub fn showing(self, robot: Observation) -> Self {
+        Self { robot: Some(robot), ..self }
     }
 
     /// Sleeps until a queue or a stream has something, at most `limit`.
@@ -114,7 +126,7 @@ impl<'a> Exchange<'a> {
             busy = true;
         }
         for _ in 0..AT_ONCE {
-            let (registered, asked) = (self.serve_queue(report), self.serve_stream());
+            let (registered, asked) = (self.serve_queue(report), self.serve_stream(report));
             if !(registered || asked) {
                 break;
             }
@@ -126,6 +138,7 @@ impl<'a> Exchange<'a> {
             self.resume(queued, report);
         }
         self.look_around(report);
+        self.show();
         busy
     }
 
@@ -133,6 +146,8 @@ impl<'a> Exchange<'a> {
     fn look_around(&mut self, report: &mut dyn FnMut(Report)) {
         while let Some(asked) = self.pending.overdue(self.now) {
             let refusal = Refusal::NoAnswer(asked.command.decided_by());
+            let stamp = Stamp { origin: asked.origin, sequence: asked.sequence, ..Stamp::default() };
+            report(Report::Denied(Live { command: asked.command, stamp }, refusal.code()));
             self.refuse(asked.origin, asked.sequence, address(&asked.command), &refusal, report);
         }
         if let Some(former) = self.lease.expire(self.now) {
@@ -173,8 +188,11 @@ impl<'a> Exchange<'a> {
             Message::parse(bytes).and_then(|m| m.command_of_class(class).map(|command| (command, m.stamp)));
         let sequence = Message::parse(bytes).map_or(0, |m| m.stamp.sequence);
         let admitted = checked.and_then(|(command, stamp)| {
-            let grant = self.admit(from, &command, Priority::ALL[class], &stamp)?;
-            Ok((command, Stamp { origin: from, grant, ..stamp }))
+            let stamp = Stamp { origin: from, ..stamp };
+            let admitted = self.admit(from, &command, Priority::ALL[class], &stamp);
+            let admitted = admitted
+                .inspect_err(|refusal| report(Report::Denied(Live { command, stamp }, refusal.code())));
+            Ok((command, Stamp { grant: admitted?, ..stamp }))
         });
         let (command, stamp) = match admitted {
             Ok(admitted) => admitted,
@@ -194,9 +212,10 @@ impl<'a> Exchange<'a> {
                 self.deliver(from, class, &command, bytes);
             }
             let refusal = Refusal::NobodyListens(name);
+            report(Report::Denied(Live { command, stamp }, refusal.code()));
             return self.refuse(from, stamp.sequence, address(&command), &refusal, report);
         };
-        if command == Command::EmergencyStop || self.pending.has_room(decider) {
+        if command == Command::EmergencyStop || self.pending.has_room(decider, class) {
             self.pending.ask(from, stamp.sequence, command, decider, self.now);
             self.deliver(from, class, &command, bytes);
         } else {
@@ -213,6 +232,7 @@ impl<'a> Exchange<'a> {
             && let Err(reason) = stamp.check_age(self.now)
         {
             let refusal = Refusal::because(reason, &command);
+            report(Report::Denied(Live { command, stamp }, refusal.code()));
             return self.refuse(origin, sequence, address(&command), &refusal, report);
         }
         self.pending.ask(origin, sequence, command, decider, self.now);

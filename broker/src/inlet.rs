@@ -18,8 +18,12 @@ pub enum Request {
     Join { token: u32, name: String, may: u32, out: Outgoing, done: oneshot::Sender<()> },
     /// Sets the domains of a client.
     Subscribe { token: u32, sequence: u64, domains: u32 },
-    /// Asks for the table of commands, or for statistics.
-    Lines { token: u32, sequence: u64, describe: bool },
+    /// Asks for a table.
+    Lines { token: u32, sequence: u64, table: Table },
+    /// Wants to see the robot: times per second, and whether events.
+    Watch { token: u32, sequence: u64, rate: u16, events: bool },
+    /// Gives a parameter another value.
+    Set { token: u32, sequence: u64, sent_ns: u64, value: f64, name: String },
     /// The client is there.
     Alive { token: u32, sent_ns: u64 },
     /// Wants the lease; over whoever holds it.
@@ -30,6 +34,17 @@ pub enum Request {
     Closing { token: u32 },
     /// The connection is closed.
     Leave { token: u32 },
+}
+
+/// What a client can ask to be listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Table {
+    /// Commands.
+    Commands,
+    /// Parameters of all processes.
+    Parameters,
+    /// What the broker and its clients have sent and lost.
+    Statistics,
 }
 
 /// Where the broker finds what connections hand in. How much that is, is limited by what each of them may have

@@ -5,6 +5,7 @@
 //! - [`admission`], [`lease`]: whether a command may pass, and who may move the robot: pure, with time as an argument.
 //! - [`daemon`]: the process around it, `gangwerk broker --run DIR`.
 //! - [`doors`], [`connection`], [`stream_client`]: the same messages over a Unix socket in the run directory, or over TCP.
+//! - [`observation`]: parameters, events and state of the running robot, for clients that watch.
 //! - [`message`], [`refusal`]: how a message looks in queues and in frames, and what makes it refused.
 //!
 //! What the robot does never waits for the broker: without it, publishing counts a loss and receiving finds nothing.
@@ -21,6 +22,7 @@ pub mod lease;
 pub mod log_gate;
 mod members;
 pub mod message;
+pub mod observation;
 mod pending;
 pub mod refusal;
 pub mod stream_client;

@@ -32,6 +32,20 @@ pub(crate) struct Member {
     pub(crate) exit: Exit,
     pub(crate) sent: u64,
     pub(crate) lost: u64,
+    pub(crate) watch: Watch,
+}
+
+/// What a client wants to see of the robot.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Watch {
+    /// Whether it ever asked.
+    pub(crate) asked: bool,
+    /// Whether it gets events.
+    pub(crate) events: bool,
+    /// Time from one state to the next \[ns\]; 0: none.
+    pub(crate) period: u64,
+    /// When the next one is due \[ns\].
+    pub(crate) due: u64,
 }
 
 impl Member {

@@ -21,7 +21,7 @@ use messages::{Command, Stamp, wire};
 use crate::refusal::Refusal;
 
 /// Version of the protocol: changes with the layout of messages and with the meaning of services.
-pub const VERSION: u16 = 2;
+pub const VERSION: u16 = 3;
 /// Longest message \[B\].
 pub const MAX_BYTES: usize = ipc::MAX_MESSAGE;
 /// Bytes before the payload.
@@ -53,6 +53,13 @@ pub mod service {
     pub const GIVE_LEASE: u16 = 10;
     /// Ask for the table of commands, by stream.
     pub const DESCRIBE: u16 = 11;
+    /// Watch the robot, by stream: `[rate u16, events u8]`. The present state comes at once; then, with a rate \[1/s\], state
+    /// at that rate, and with `events` = 1 what the processes report.
+    pub const WATCH: u16 = 12;
+    /// Ask for the table of parameters, by stream.
+    pub const PARAMETERS: u16 = 13;
+    /// Give a parameter another value, by stream: `[value f64, name]`; answered like the command of its process.
+    pub const SET: u16 = 14;
     /// Done: `[name of the process that took it]`.
     pub const ACCEPTED: u16 = 16;
     /// Not done: `[code u8, reason]`.
@@ -63,6 +70,12 @@ pub mod service {
     pub const WELCOME: u16 = 19;
     /// State of the command lease: `[grant u32, until u64, holder]`; grant 0: nobody holds it.
     pub const LEASE: u16 = 20;
+    /// State of the robot: `[tick u64, lost u32, numbers f32 ...]`; the LINEs of [`WATCH`] say what they are.
+    pub const STATE: u16 = 21;
+    /// What a process reported: `[tick u64, code u32, detail u64, PROCESS NAME]`.
+    pub const EVENT: u16 = 22;
+    /// Present value of a parameter that can be changed: `[value f64, name]`.
+    pub const PARAMETER: u16 = 23;
 }
 
 /// Hash of everything that the payloads mean: names, addresses, fields and ranges of all commands (FNV-1a, 64 bits).

@@ -1,7 +1,7 @@
 //! Commands on their way to the process that decides, and those that wait behind them.
 //!
-//! A process gets no more commands at once than its rings hold, so that none of them is lost; the others wait here, in
-//! their order, and are held against their age again when their turn comes. What is not answered within
+//! A process gets no more commands at once than its rings hold, so that none of them is lost; the others wait here, those
+//! of a higher class first, else in their order, and are held against their age again when their turn comes. What is not answered within
 //! `ANSWER_TIME` is given up: by then it is too old to take effect.
 
 use std::collections::VecDeque;
@@ -48,9 +48,10 @@ impl Pending {
             + self.queued.iter().filter(|q| q.origin == origin).count()
     }
 
-    /// Whether `decider` has room for one more, and nothing waits before it.
-    pub(crate) fn has_room(&self, decider: u32) -> bool {
-        self.outstanding(decider) < AT_ONCE && self.queued.iter().all(|q| q.decider != decider)
+    /// Whether `decider` has room for one more of this class, and nothing waits before it.
+    pub(crate) fn has_room(&self, decider: u32, class: usize) -> bool {
+        let before = |q: &Queued| q.decider == decider && q.class <= class;
+        self.outstanding(decider) < AT_ONCE && !self.queued.iter().any(before)
     }
 
     fn outstanding(&self, decider: u32) -> usize {
@@ -61,12 +62,13 @@ impl Pending {
         self.queued.push_back(queued);
     }
 
-    /// The next command whose process has room again.
+    /// The next command whose process has room again: what floods one class holds up no higher one.
     pub(crate) fn next_in_line(&mut self) -> Option<Queued> {
         if self.queued.is_empty() {
             return None;
         }
-        let at = self.queued.iter().position(|q| self.outstanding(q.decider) < AT_ONCE)?;
+        let ready = self.queued.iter().enumerate().filter(|(_, q)| self.outstanding(q.decider) < AT_ONCE);
+        let (at, _) = ready.min_by_key(|(_, q)| q.class)?;
         self.queued.remove(at)
     }
 
@@ -110,15 +112,15 @@ mod tests {
     fn who_has_enough_to_do_gets_the_rest_later_and_in_order() {
         let mut pending = Pending::default();
         for n in 0..AT_ONCE as u64 {
-            assert!(pending.has_room(1));
+            assert!(pending.has_room(1, 1));
             pending.ask(9, n, WALK, 1, 0);
         }
-        assert!(!pending.has_room(1) && pending.has_room(2));
+        assert!(!pending.has_room(1, 1) && pending.has_room(2, 1));
         pending.wait_in_line(queued(9, 96, WALK));
         pending.wait_in_line(queued(9, 97, WALK));
         assert!(pending.next_in_line().is_none());
         assert!(pending.answered(1, 9, 0).is_some() && pending.answered(1, 9, 0).is_none(), "once");
-        assert!(!pending.has_room(1), "somebody waits before it");
+        assert!(!pending.has_room(1, 1), "somebody waits before it");
         assert_eq!(pending.next_in_line().map(|q| q.sequence), Some(96));
         assert_eq!(pending.of(9), AT_ONCE - 1 + 1);
     }

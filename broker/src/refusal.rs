@@ -15,6 +15,8 @@ pub enum Refusal {
     TooManyConnections(&'static str),
     /// The payload is no command, or not the one that the address names.
     NotACommand(String),
+    /// A parameter that there is not, or that cannot be changed while the robot runs.
+    NoParameter(String),
     /// A number is not finite or out of range.
     OutOfRange(String),
     /// More messages than the broker takes.
@@ -61,6 +63,7 @@ impl Refusal {
             Self::NobodyListens(_) => 10,
             Self::NoAnswer(_) => 11,
             Self::NotAuthentic => 12,
+            Self::NoParameter(_) => 13,
             Self::Reason(reason, ..) => reason.code(),
         }
     }
@@ -93,7 +96,7 @@ impl std::fmt::Display for Refusal {
             Self::TooManyConnections(whose) => {
                 write!(f, "too many connections {whose}; close one and try again")
             }
-            Self::NotACommand(why) | Self::OutOfRange(why) => write!(f, "{why}"),
+            Self::NotACommand(why) | Self::OutOfRange(why) | Self::NoParameter(why) => write!(f, "{why}"),
             Self::Busy(what) => write!(f, "{what}; send more slowly"),
             Self::Version { client: (version, theirs), schema } => write!(
                 f,

@@ -74,6 +74,12 @@ pub enum News {
     Line(String),
     /// The first answer.
     Welcome(Welcome),
+    /// State of the robot: tick, messages that this client has lost, and the numbers of [`StreamClient::watch`]'s lines.
+    State(u64, u32, Vec<f32>),
+    /// What a process reported: tick, process and name of the event, and its detail.
+    Event(u64, String, u64),
+    /// Present value of a parameter that can be changed.
+    Parameter(String, f64),
 }
 
 /// What the broker says of itself and of the connection.
@@ -243,7 +249,38 @@ impl StreamClient {
     /// # Errors
     /// The connection may not read, or is lost.
     pub fn statistics(&mut self) -> Result<Vec<String>, String> {
-        let sequence = self.request(service::STATISTICS, &[])?;
+        self.lines(service::STATISTICS, &[])
+    }
+
+    /// Parameters of all processes, one per line (docs/protocol.md).
+    ///
+    /// # Errors
+    /// The connection may not read, or is lost.
+    pub fn parameters(&mut self) -> Result<Vec<String>, String> {
+        self.lines(service::PARAMETERS, &[])
+    }
+
+    /// Gives a parameter another value: a command that its process answers.
+    ///
+    /// # Errors
+    /// The connection is lost.
+    pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<Answer, String> {
+        let sequence = self.request(service::SET, &[&value.to_le_bytes()[..], name.as_bytes()].concat())?;
+        self.answer(sequence)
+    }
+
+    /// Watches the robot: its present state at once, and from now on at `rate` \[1/s\] and with `events` what processes
+    /// report. What a STATE holds, one number or array per line.
+    ///
+    /// # Errors
+    /// The rate is too high, the connection may not read, or is lost.
+    pub fn watch(&mut self, rate: u16, events: bool) -> Result<Vec<String>, String> {
+        let [low, high] = rate.to_le_bytes();
+        self.lines(service::WATCH, &[low, high, u8::from(events)])
+    }
+
+    fn lines(&mut self, id: u16, payload: &[u8]) -> Result<Vec<String>, String> {
+        let sequence = self.request(id, payload)?;
         self.answer(sequence)?.accepted()?;
         let (lines, rest) = self.waiting.drain(..).partition(|n| matches!(n, News::Line(_)));
         self.waiting = rest;
@@ -397,6 +434,8 @@ impl StreamClient {
                 let (grant, rest) = split_u32(payload).ok_or("a LEASE without its number came")?;
                 Ok(News::Lease(grant, text(split_u64(rest).map_or(&[][..], |(_, name)| name))))
             }
+            (service::STATE | service::EVENT | service::PARAMETER, payload) => seen(message.id, payload)
+                .ok_or_else(|| format!("a message {} came that is too short", message.id)),
             (service::WELCOME, payload) => {
                 welcome(payload).map(News::Welcome).ok_or_else(|| "a WELCOME came that is none".into())
             }
@@ -405,6 +444,24 @@ impl StreamClient {
             }
         }
     }
+}
+
+/// What a client that watches is shown.
+fn seen(id: u16, payload: &[u8]) -> Option<News> {
+    let (first, rest) = split_u64(payload)?;
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    Some(match id {
+        service::STATE => {
+            let (lost, numbers) = split_u32(rest)?;
+            let numbers = numbers.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+            News::State(first, lost, numbers.collect())
+        }
+        service::EVENT => {
+            let (detail, name) = split_u64(split_u32(rest)?.1)?;
+            News::Event(first, text(name), detail)
+        }
+        _ => News::Parameter(text(rest), f64::from_bits(first)),
+    })
 }
 
 fn welcome(payload: &[u8]) -> Option<Welcome> {

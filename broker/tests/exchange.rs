@@ -110,6 +110,37 @@ fn a_higher_class_passes_a_lower_one() {
     assert_eq!(last, Some(velocity(199)));
 }
 
+/// A client that floods in class Low has filled the process that decides, and a line behind it. What the process holds
+/// already is answered first; what waits in the line is passed.
+#[test]
+fn a_flood_of_low_priority_delays_a_normal_command_by_no_more_than_the_process_holds() {
+    const HELD: usize = 96;
+    let system = System::without_broker("flood");
+    let mut exchange = exchange(&system.space);
+    let mut hand = ByHand::new(&system.space);
+    hand.register();
+    exchange.turn(now(), &mut |_| {});
+    for n in 0..250 {
+        hand.publish(2, &velocity(n), Priority::Low);
+    }
+    for _ in 0..8 {
+        exchange.turn(now(), &mut |_| {});
+    }
+    hand.publish(3, &Command::Stop, Priority::Normal);
+    hand.publish(3, &Command::EmergencyStop, Priority::High);
+    exchange.turn(now(), &mut |_| {});
+    let mut heard = hand.heard();
+    assert_eq!(heard.len(), HELD + 1, "the process holds no more, and the emergency stop waits for no room");
+    assert_eq!(heard[HELD], Command::EmergencyStop);
+    while exchange.turn(now(), &mut |_| {}) {
+        heard.extend(hand.heard());
+    }
+    let lower =
+        heard.iter().take_while(|c| **c != Command::Stop).filter(|c| matches!(c, Command::Velocity(_)));
+    assert_eq!(lower.count(), HELD, "commands of class Low that came before the normal one");
+    assert_eq!(heard.len(), 252, "and none is lost");
+}
+
 #[test]
 fn a_class_is_not_a_matter_of_taste() {
     let system = System::without_broker("class");
@@ -127,12 +158,34 @@ fn a_class_is_not_a_matter_of_taste() {
     assert!(hand.publish[1].send(&[1, 2]), "less than a head");
     exchange.turn(now(), &mut |report| reports.push(report));
     assert_eq!(hand.heard(), []);
+    let denied = reports.iter().filter(|r| matches!(r, Report::Denied(..)));
+    assert_eq!(denied.count(), 0, "none of them is a command that could stand in the log");
     let address = |(d, i): (Domain, u16)| (d as u32) << 16 | u32::from(i);
     let velocity = address(velocity(1).address());
     for expected in [address(Command::Stop.address()), 0, velocity, u32::MAX] {
         assert!(reports.contains(&Report::Refused(expected)), "{expected:#x} is not in {reports:x?}");
     }
     assert!(exchange.statistics()[0].contains("refused 4;"));
+}
+
+#[test]
+fn a_command_that_the_broker_itself_refuses_is_reported_with_its_reason() {
+    let system = System::without_broker("denied");
+    let mut exchange = exchange(&system.space);
+    let mut hand = ByHand::new(&system.space);
+    hand.register();
+    exchange.turn(now(), &mut |_| {});
+    hand.publish(2, &velocity(1), Priority::Normal);
+    hand.publish(3, &velocity(2), Priority::Normal);
+    hand.publish(2, &Command::Reset, Priority::Normal);
+    let mut denied = Vec::new();
+    exchange.turn(now(), &mut |report| {
+        if let Report::Denied(live, code) = report {
+            denied.push((live.stamp.origin, live.stamp.sequence, live.command, code));
+        }
+    });
+    // Somebody else holds the lease; there is no watchdog.
+    assert_eq!(denied, [(3, 2, velocity(2), 9), (2, 3, Command::Reset, 10)]);
 }
 
 /// A control cycle that does not look for a while loses what has no room, and still gets the emergency stop first.

@@ -66,6 +66,10 @@ fn line(taken: &CommandTaken, process: &str) -> String {
     };
     let answer = match (taken.refused, EventCode::from_number(taken.about)) {
         (0, _) => "accepted".into(),
+        (8, _) => "refused: no right to command this".into(),
+        (9, _) => "refused: somebody else holds the command lease".into(),
+        (10 | 11, _) => "refused: the process that decides is not there, or has not answered".into(),
+        (20, _) if taken.about == 0 => "refused: too old".into(),
         (20, _) => format!("refused: {} ms old", taken.about / 1_000_000),
         (23, _) => "refused: its sender has lost the command lease".into(),
         (30, _) => format!("refused: field {} must lie in {:?}", taken.about, taken.limits),

@@ -236,14 +236,14 @@ struct Place {
 
 #[derive(Subcommand)]
 enum ParamTask {
-    /// All parameters with unit, range and meaning; of a running robot also their values.
+    /// The parameters of all processes of a running robot: value, unit, range, meaning, default.
     List,
     /// The value of one.
     Get {
         /// Name of the parameter.
         name: String,
     },
-    /// Another value, from the next cycle on.
+    /// Another value, from the next cycle of its process on; refused if it is fixed at start.
     Set {
         /// Name of the parameter.
         name: String,
@@ -348,7 +348,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         Task::Param { what, dir } => {
             realtime::end_with_reader();
             match what {
-                ParamTask::List => cli::param::list(&dir),
+                ParamTask::List => cli::param::list(&dir)?,
                 ParamTask::Get { name } => cli::param::get(&dir, &name)?,
                 ParamTask::Set { name, value, take_over } => cli::param::set(&dir, &name, value, take_over)?,
             }

@@ -6,7 +6,8 @@ use std::path::Path;
 use config::Setup;
 use messages::topics::{
     CONTROLLER_STATE, EVENTS_CONTROLLER, EVENTS_LOWLEVEL, EVENTS_PLANNER, EVENTS_SIM_BACKEND,
-    EVENTS_WATCHDOG, JOINT_TARGETS, PARAMETERS, PLAN, POWER, SENSORS, SIM_STATE,
+    EVENTS_WATCHDOG, JOINT_TARGETS, PARAMETERS_CONTROLLER, PARAMETERS_PLANNER, PLAN, POWER, SENSORS,
+    SIM_STATE,
 };
 use messages::{Event, EventCode, Header, Process, Record, Topic};
 use recording::Recorder;
@@ -81,7 +82,9 @@ impl LogWriter {
     fn create(path: &Path, setup: &Setup, chain: &Chain) -> Result<Self, Box<dyn Error>> {
         let mut record = Self { recorder: logger::recorder(path, setup)?, last: Header::default() };
         record.all(EventCode::Started)?;
-        record.put(&PARAMETERS, chain.parameters())?;
+        let [planner, stabilizer] = chain.parameters();
+        record.put(&PARAMETERS_PLANNER, planner)?;
+        record.put(&PARAMETERS_CONTROLLER, stabilizer)?;
         Ok(record)
     }
 

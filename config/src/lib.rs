@@ -5,7 +5,7 @@
 //! - [`scene::Scene`]: `scenes/NAME.toml`: what is simulated.
 //! - [`system::System`]: `system.toml`: processes, cores, priorities, deadlines, limits of the run-time system.
 //!
-//! [`parameters::PARAMETERS`] may be changed while the robot runs.
+//! [`registry`] lists the parameters of all processes; those of [`parameters`] may be changed while the robot runs.
 //!
 //! [`Setup`] reads all four for a scene, checks what they say about each other, and hashes them.
 //!
@@ -24,6 +24,7 @@ mod joint_control;
 pub mod limbs;
 pub mod parameters;
 pub mod protection;
+pub mod registry;
 pub mod robot;
 pub mod scene;
 mod section;

@@ -1,11 +1,12 @@
-//! The parameters of the stabilizer that may be changed while the robot runs: name, unit, range, meaning.
+//! Parameters that may be changed while the robot runs: name, unit, range, meaning; [`crate::registry`] has those of all
+//! processes, with those that are fixed at start.
 //!
 //! The default of each is what the gait file says.
 
-use crate::gait::Control;
+use crate::gait::{Control, Step};
 
-/// One parameter.
-pub struct Parameter {
+/// One parameter of `T`.
+pub struct Parameter<T: 'static> {
     /// Name, as in the gait file; of a list of numbers with the component behind a dot.
     pub name: &'static str,
     /// SI unit.
@@ -14,57 +15,64 @@ pub struct Parameter {
     pub range: [f64; 2],
     /// What it is.
     pub about: &'static str,
-    place: fn(&mut Control) -> &mut f64,
+    get: fn(&T) -> f64,
+    put: fn(&mut T, f64),
 }
 
-const fn parameter(
-    name: &'static str,
-    unit: &'static str,
-    range: [f64; 2],
-    about: &'static str,
-    place: fn(&mut Control) -> &mut f64,
-) -> Parameter {
-    Parameter { name, unit, range, about, place }
+/// A row of a table below: name, unit, range, meaning, and where in `T` it stands.
+macro_rules! parameter {
+    ($name:literal, $unit:literal, $range:expr, $about:literal, $($place:tt)+) => {
+        Parameter {
+            name: $name,
+            unit: $unit,
+            range: $range,
+            about: $about,
+            get: |t| t.$($place)+,
+            put: |t, value| t.$($place)+ = value,
+        }
+    };
 }
 
-/// Every parameter; its place in this table is its number on the wire: append only.
+/// Those of the stabilizer; the place in this table is the number in `stabilize/parameter`: append only.
 #[rustfmt::skip]
-pub const PARAMETERS: &[Parameter] = &[
-    parameter("inclination_p.x", "N m/rad", [0.0, 1e4], "K_P of phi_x (5.3)", |c| &mut c.inclination_p[0]),
-    parameter("inclination_p.y", "N m/rad", [0.0, 1e4], "K_P of phi_y (5.2)", |c| &mut c.inclination_p[1]),
-    parameter("inclination_d.x", "N m s/rad", [0.0, 2e3], "K_D of phi_x (5.3)", |c| &mut c.inclination_d[0]),
-    parameter("inclination_d.y", "N m s/rad", [0.0, 2e3], "K_D of phi_y (5.2)", |c| &mut c.inclination_d[1]),
-    parameter("height_p", "N/m", [0.0, 5e4], "K_P of the height of the centre of gravity (5.4)", |c| &mut c.height_p),
-    parameter("height_d", "N s/m", [0.0, 5e3], "K_D of the same", |c| &mut c.height_d),
-    parameter("force_gain.z", "1/s", [0.0, 100.0], "K_lambda of the normal force (5.26)", |c| &mut c.force_gain[0]),
-    parameter("force_gain.x", "1/s", [0.0, 100.0], "K_lambda of the moment about x (5.26)", |c| &mut c.force_gain[1]),
-    parameter("force_gain.y", "1/s", [0.0, 100.0], "K_lambda of the moment about y (5.26)", |c| &mut c.force_gain[2]),
-    parameter("force_feed_forward", "", [0.0, 1.0], "K_lambda,FF (5.31)", |c| &mut c.force_feed_forward),
-    parameter("position_gain", "1/s", [0.0, 100.0], "return of a modification to zero (5.32)", |c| &mut c.position_gain),
-    parameter("drift_gain", "1/s", [0.0, 500.0], "K_x, drift compensation of the inverse kinematics", |c| &mut c.drift_gain),
-    parameter("force_filter", "s", [1e-4, 0.1], "time constant of the force sensor filter", |c| &mut c.force_filter),
-    parameter("force_shift", "", [0.0, 1.0], "share of the shift of normal force (5.14)", |c| &mut c.force_shift),
-    parameter("inclination_compensation", "", [0.0, 1.0], "share of the inclination error the swing foot makes good for (4.9)", |c| &mut c.inclination_compensation),
-    parameter("planned_deformation", "", [0.0, 1.0], "share of the soles' deformation in the foot trajectories (4.9)", |c| &mut c.planned_deformation),
+pub const STABILIZER: &[Parameter<Control>] = &[
+    parameter!("inclination_p.x", "N m/rad", [0.0, 1e4], "K_P of phi_x (5.3)", inclination_p[0]),
+    parameter!("inclination_p.y", "N m/rad", [0.0, 1e4], "K_P of phi_y (5.2)", inclination_p[1]),
+    parameter!("inclination_d.x", "N m s/rad", [0.0, 2e3], "K_D of phi_x (5.3)", inclination_d[0]),
+    parameter!("inclination_d.y", "N m s/rad", [0.0, 2e3], "K_D of phi_y (5.2)", inclination_d[1]),
+    parameter!("height_p", "N/m", [0.0, 5e4], "K_P of the height of the centre of gravity (5.4)", height_p),
+    parameter!("height_d", "N s/m", [0.0, 5e3], "K_D of the same", height_d),
+    parameter!("force_gain.z", "1/s", [0.0, 100.0], "K_lambda of the normal force (5.26)", force_gain[0]),
+    parameter!("force_gain.x", "1/s", [0.0, 100.0], "K_lambda of the moment about x (5.26)", force_gain[1]),
+    parameter!("force_gain.y", "1/s", [0.0, 100.0], "K_lambda of the moment about y (5.26)", force_gain[2]),
+    parameter!("force_feed_forward", "", [0.0, 1.0], "K_lambda,FF (5.31)", force_feed_forward),
+    parameter!("position_gain", "1/s", [0.0, 100.0], "return of a modification to zero (5.32)", position_gain),
+    parameter!("drift_gain", "1/s", [0.0, 500.0], "K_x, drift compensation of the inverse kinematics", drift_gain),
+    parameter!("force_filter", "s", [1e-4, 0.1], "time constant of the force sensor filter", force_filter),
+    parameter!("force_shift", "", [0.0, 1.0], "share of the shift of normal force (5.14)", force_shift),
+    parameter!("inclination_compensation", "", [0.0, 1.0], "share of the inclination error the swing foot makes good for (4.9)", inclination_compensation),
+    parameter!("planned_deformation", "", [0.0, 1.0], "share of the soles' deformation in the foot trajectories (4.9)", planned_deformation),
 ];
 
-impl Parameter {
-    /// The parameter of that name and its number.
-    pub fn find(name: &str) -> Option<(u32, &'static Self)> {
-        PARAMETERS.iter().enumerate().find(|(_, p)| p.name == name).map(|(i, p)| (i as u32, p))
-    }
+/// Those of the planner; the place in this table is the number in `walk/parameter`: append only. A new value holds from
+/// the next step that is planned.
+#[rustfmt::skip]
+pub const PLANNER: &[Parameter<Step>] = &[
+    parameter!("swing_height", "m", [0.0, 0.15], "height of the swing foot z_swing, from the next step on", swing_height),
+];
 
+impl<T> Parameter<T> {
     /// Its value.
-    pub fn get(&self, control: &Control) -> f64 {
-        *(self.place)(&mut control.clone())
+    pub fn get(&self, of: &T) -> f64 {
+        (self.get)(of)
     }
 
     /// Gives it another value; `false` if that is not a number in its range.
-    pub fn set(&self, control: &mut Control, value: f64) -> bool {
+    pub fn set(&self, of: &mut T, value: f64) -> bool {
         let [low, high] = self.range;
         let good = value >= low && value <= high;
         if good {
-            *(self.place)(control) = value;
+            (self.put)(of, value);
         }
         good
     }
@@ -77,16 +85,20 @@ mod tests {
     #[test]
     fn each_parameter_has_a_place_of_its_own_and_the_shipped_values_are_in_range() {
         let gait = crate::Gait::load(&crate::root(None).join("gaits/lola.toml")).unwrap();
-        for (i, p) in PARAMETERS.iter().enumerate() {
+        for (i, p) in STABILIZER.iter().enumerate() {
             let shipped = p.get(&gait.control);
             assert!(shipped >= p.range[0] && shipped <= p.range[1], "{} = {shipped}", p.name);
             let mut control = gait.control;
             let other = if shipped == p.range[1] { p.range[0] } else { p.range[1] };
             assert!(p.set(&mut control, other));
-            for (j, q) in PARAMETERS.iter().enumerate() {
+            for (j, q) in STABILIZER.iter().enumerate() {
                 let expected = if i == j { other } else { q.get(&gait.control) };
                 assert_eq!(q.get(&control), expected, "{} after setting {}", q.name, p.name);
             }
+        }
+        for p in PLANNER {
+            let shipped = p.get(&gait.step);
+            assert!(shipped >= p.range[0] && shipped <= p.range[1], "{} = {shipped}", p.name);
         }
     }
 
@@ -94,7 +106,7 @@ mod tests {
     fn what_is_no_number_in_range_changes_nothing() {
         let gait = crate::Gait::load(&crate::root(None).join("gaits/lola.toml")).unwrap();
         let mut control = gait.control;
-        let (_, p) = Parameter::find("height_p").unwrap();
+        let p = STABILIZER.iter().find(|p| p.name == "height_p").unwrap();
         for bad in [f64::NAN, f64::INFINITY, -1.0, 5.1e4] {
             assert!(!p.set(&mut control, bad));
             assert_eq!(p.get(&control), gait.control.height_p);

@@ -241,7 +241,11 @@ fn command(row: &Section<'_, '_>) -> (f64, Command) {
 /// Whether a scene can give a command; pushes have a table of their own, and parameters are set by name.
 fn is_scripted(command: &Command) -> bool {
     use Domain::{Head, Joint, System, Walk};
-    matches!(command, Command::Lower(_)) || matches!(command.address().0, System | Walk | Head | Joint)
+    match command {
+        Command::WalkParameter(_) => false,
+        Command::Lower(_) => true,
+        other => matches!(other.address().0, System | Walk | Head | Joint),
+    }
 }
 
 fn push(row: &Section<'_, '_>) -> (f64, PushCommand) {

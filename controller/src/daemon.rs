@@ -5,7 +5,7 @@ use config::Timeline;
 use daemon::{Connect, Daemon};
 use ipc::Mode;
 use messages::command::Domain;
-use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, PARAMETERS, PLAN, PLANNER_TICK, SENSORS};
+use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, PARAMETERS_CONTROLLER, PLAN, PLANNER_TICK, SENSORS};
 use messages::{
     Command, ControllerState, Event, EventCode, Header, JointTargets, Live, Parameters, Plan, Process,
     Reason, Sensors, Verdict,
@@ -33,7 +33,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     if state.epoch() > 1 {
         timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
     }
-    let mut set = d.space.writer::<Parameters>(&PARAMETERS)?;
+    let mut set = d.space.writer::<Parameters>(&PARAMETERS_CONTROLLER)?;
     let mut parameters = Parameters::default();
     controller.report_parameters(&mut parameters);
     set.write(&parameters);

@@ -4,7 +4,7 @@ mod forces;
 mod task;
 
 use config::gait::Control;
-use config::parameters::PARAMETERS;
+use config::parameters::STABILIZER;
 use config::{Gait, Robot};
 use messages::{
     Command, ControllerState, EventCode, JointMode, JointTargets, MAX_JOINTS, Parameters, Plan, Sensors,
@@ -143,7 +143,7 @@ impl Controller {
     pub fn command(&mut self, command: &Command) -> Option<(EventCode, u64)> {
         let id = command.address().1.into();
         if let Command::Parameter(change) = command {
-            let parameter = PARAMETERS.get(change.number as usize);
+            let parameter = STABILIZER.get(change.number as usize);
             let set = parameter.is_some_and(|p| p.set(&mut self.control, change.value));
             let refused = (EventCode::CommandRefused, id);
             return Some(if set { (EventCode::ParameterSet, change.number.into()) } else { refused });
@@ -154,8 +154,8 @@ impl Controller {
 
     /// Writes the present values of all parameters.
     pub fn report_parameters(&self, record: &mut Parameters) {
-        record.count = PARAMETERS.len() as u64;
-        for (value, p) in record.values.iter_mut().zip(PARAMETERS) {
+        record.count = STABILIZER.len() as u64;
+        for (value, p) in record.values.iter_mut().zip(STABILIZER) {
             *value = p.get(&self.control);
         }
     }

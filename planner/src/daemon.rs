@@ -7,8 +7,10 @@ use config::Timeline;
 use daemon::{Connect, Daemon};
 use ipc::Mode;
 use messages::command::Domain;
-use messages::topics::{CONTROLLER_STATE, PLAN, PLANNER_TICK, SENSORS};
-use messages::{Command, ControllerState, Event, EventCode, Header, Live, Plan, Process, Sensors};
+use messages::topics::{CONTROLLER_STATE, PARAMETERS_PLANNER, PLAN, PLANNER_TICK, SENSORS};
+use messages::{
+    Command, ControllerState, Event, EventCode, Header, Live, Parameters, Plan, Process, Sensors,
+};
 use realtime::clock;
 use std::error::Error;
 use std::path::Path;
@@ -67,6 +69,10 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     if plan.epoch() > 1 {
         timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
     }
+    let mut set = d.space.writer::<Parameters>(&PARAMETERS_PLANNER)?;
+    let mut parameters = Parameters::default();
+    planner.report_parameters(&mut parameters);
+    set.write(&parameters);
     d.report(Header::default(), EventCode::Started, 0);
 
     let mut header = Header::default();
@@ -100,6 +106,11 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         }
         for &(code, detail) in output.events {
             d.report(header, code, detail);
+        }
+        if inbox.commands().iter().any(|command| matches!(command, Command::WalkParameter(_))) {
+            parameters.header = header;
+            planner.report_parameters(&mut parameters);
+            set.write(&parameters);
         }
         planner_tick.write(&Event { header, ..Event::default() });
         if d.mode == Mode::Lockstep {

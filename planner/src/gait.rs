@@ -218,6 +218,7 @@ impl Planner {
             Command::Stand | Command::Start => Err(Reason::NotNow),
             Command::Distance(c) => self.give(Task::Distance(*c), gait),
             Command::Platform(c) => self.give(Task::Platform(*c), gait),
+            Command::WalkParameter(change) => self.set(change).map(|()| (self.wish, None)),
             Command::EmergencyStop
             | Command::Reset
             | Command::Enable
@@ -432,7 +433,7 @@ impl Planner {
         }
     }
 
-    fn event(&mut self, code: EventCode, detail: u64) {
+    pub(crate) fn event(&mut self, code: EventCode, detail: u64) {
         if self.events.len() < MAX_EVENTS {
             self.events.push((code, detail));
         }

@@ -30,6 +30,7 @@ pub mod lease;
 pub mod load;
 mod marks;
 pub mod obstacles;
+mod parameters;
 pub mod pose;
 mod reactive;
 pub mod roll;

@@ -106,10 +106,11 @@ impl Chain {
         })
     }
 
-    /// What the stabilizer is set to.
-    pub fn parameters(&self) -> Parameters {
-        let mut parameters = Parameters::default();
-        self.controller.report_parameters(&mut parameters);
+    /// What planner and stabilizer are set to.
+    pub fn parameters(&self) -> [Parameters; 2] {
+        let mut parameters = [Parameters::default(); 2];
+        self.planner.report_parameters(&mut parameters[0]);
+        self.controller.report_parameters(&mut parameters[1]);
         parameters
     }
 

@@ -11,7 +11,7 @@ use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, StopLine, Writer};
 use messages::command::Domain;
 use messages::topics::{POWER, WATCHDOG_RESET};
-use messages::{Command, EventCode, Header, Live, Power, Process, WatchdogReset};
+use messages::{Command, EventCode, Header, Live, Power, Process, Reason, Verdict, WatchdogReset};
 use realtime::{Period, Schedule, clock};
 use std::error::Error;
 use std::path::Path;
@@ -101,6 +101,16 @@ fn real_time(d: &mut Daemon, guard: &mut Guard) {
     }
 }
 
+/// What the operator is answered: a reset or an enable that has had no effect is refused.
+fn verdict(command: &Command, before: Supply, after: Supply) -> Verdict {
+    let done = match command {
+        Command::Reset => after == Supply::Ready || after == Supply::On && before != Supply::On,
+        Command::Enable => after == Supply::On,
+        _ => true,
+    };
+    if done { Ok(()) } else { Err(Reason::NotNow) }
+}
+
 struct Guard {
     stop: EmergencyStop,
     reset: Reader<WatchdogReset>,
@@ -115,24 +125,24 @@ impl Guard {
     /// One step with the newest sign of life and the commands of this cycle: the scene's that are due, then live ones.
     /// `skipped` own cycles were missed before it; `late` in its cycle is one after a quarter of it.
     fn cycle(&mut self, d: &mut Daemon, skipped: u64, late: bool) {
+        let mut lives = [Live::of_scene(Command::End); MAX_COMMANDS];
         let mut waiting = [Command::End; MAX_COMMANDS + 1];
         let mut count = 0;
         let now = self.now();
         while count < MAX_COMMANDS
             && let Some(live) =
-                self.timeline.due(now.tick).map(Live::of_scene).or_else(|| self.commands.accept())
+                self.timeline.due(now.tick).map(Live::of_scene).or_else(|| self.commands.next())
         {
-            waiting[count] = live.command;
+            (lives[count], waiting[count]) = (live, live.command);
             count += 1;
-            d.log.took(now, &live, &Ok(()));
         }
-        d.log.left_out(now, self.commands.as_mut());
+        let lives = &lives[..count];
         let before = self.watchdog.supply();
-        if let Some(asker) = self.stop.asked() {
+        let asker = self.stop.asked();
+        if let Some(asker) = asker {
             // Last, so that no reset and enable of the same cycle undo it; in front there may be no room.
             waiting[count] = Command::EmergencyStop;
             count += 1;
-            d.log.took(now, &Live::of_scene(Command::EmergencyStop), &Ok(()));
             if before != Supply::Off(EventCode::EmergencyStop) {
                 let detail = u64::from(asker.uid) << 32 | u64::from(asker.pid);
                 d.report(self.now(), EventCode::EmergencyStop, detail);
@@ -146,7 +156,17 @@ impl Guard {
         self.stop.written(power);
         d.log.keep(&POWER, power);
         d.ring(self.bell);
-        if let Some((code, detail)) = supply_event(before, self.watchdog.supply()) {
+        let after = self.watchdog.supply();
+        for live in lives {
+            let verdict = verdict(&live.command, before, after);
+            self.commands.answer(live, verdict);
+            d.log.took(now, live, &verdict);
+        }
+        if asker.is_some() {
+            d.log.took(now, &Live::of_scene(Command::EmergencyStop), &Ok(()));
+        }
+        d.log.left_out(now, self.commands.as_mut());
+        if let Some((code, detail)) = supply_event(before, after) {
             d.report(self.now(), code, detail);
         }
     }

@@ -1,25 +1,34 @@
 //! Clients that come, ask, hold the lease and go.
 
-use messages::Reason;
 use messages::command::Domain;
+use messages::{Reason, Stamp};
 
-use super::{Exchange, FIRST_STREAM, LEASE_ROUND, MAX_PROCESSES, SILENCE};
+use super::{Exchange, FIRST_STREAM, LEASE_ROUND, MAX_PROCESSES, Report, SILENCE};
 use crate::admission::Sender;
-use crate::inlet::Request;
-use crate::members::{Exit, Member};
+use crate::inlet::{Request, Table};
+use crate::members::{Exit, Member, Watch};
 use crate::message::{Message, client_queue, describe, domain_mask, service, service_message, split_u32};
+use crate::observation::Observation;
 use crate::refusal::Refusal;
 
 impl Exchange<'_> {
     /// Serves one request of a stream; false if none waits.
-    pub(super) fn serve_stream(&mut self) -> bool {
+    pub(super) fn serve_stream(&mut self, report: &mut dyn FnMut(Report)) -> bool {
         let Ok(request) = self.inlet.requests.try_recv() else { return false };
         match request {
             Request::Join { token, name, may, out, done } => {
                 self.members.retain(|m| m.sender.token != token);
                 let sender = Sender { token, may, last: [0; 3] };
                 let exit = Exit::Stream(out);
-                self.members.push(Member { name, sender, domains: 0, exit, sent: 0, lost: 0 });
+                self.members.push(Member {
+                    name,
+                    sender,
+                    domains: 0,
+                    exit,
+                    sent: 0,
+                    lost: 0,
+                    watch: Watch::default(),
+                });
                 let _ = done.send(());
             }
             Request::Subscribe { token, sequence, domains } => {
@@ -27,14 +36,21 @@ impl Exchange<'_> {
                 if let Some(member) = known {
                     member.domains = domains;
                 }
+                self.show_lease(token);
                 self.accept(token, sequence, "");
             }
-            Request::Lines { token, sequence, describe: table } => {
-                for line in if table { describe() } else { self.statistics() } {
-                    let line = service_message(service::LINE, sequence, self.now, line.as_bytes());
-                    self.answer(token, line);
-                }
-                self.accept(token, sequence, "");
+            Request::Lines { token, sequence, table } => {
+                let lines = match table {
+                    Table::Commands => describe(),
+                    Table::Parameters => self.robot.as_mut().map_or(Vec::new(), Observation::parameters),
+                    Table::Statistics => self.statistics(),
+                };
+                self.answer_lines(token, sequence, lines);
+            }
+            Request::Watch { token, sequence, rate, events } => self.watch(token, sequence, rate, events),
+            Request::Set { token, sequence, sent_ns, value, name } => {
+                let stamp = Stamp { origin: token, sequence, sent_ns, grant: 0 };
+                self.set_parameter(&stamp, &name, value, report);
             }
             Request::Alive { token, sent_ns } => self.lease.renew(token, sent_ns, self.now),
             Request::TakeLease { token, sequence, sent_ns, over } => {
@@ -140,6 +156,7 @@ impl Exchange<'_> {
             exit: Exit::Queue { sender: Box::new(sender), renewed: self.now },
             sent: 0,
             lost: 0,
+            watch: Watch::default(),
         });
         Some(self.members.len() - 1)
     }
@@ -177,7 +194,7 @@ impl Exchange<'_> {
         }
     }
 
-    fn lease_message(&self) -> Vec<u8> {
+    pub(super) fn lease_message(&self) -> Vec<u8> {
         let lease = self.lease.state(self.now);
         let holder = self.lease.holder(self.now).map_or(String::new(), |token| self.name(token));
         let mut payload = lease.grant.to_le_bytes().to_vec();

@@ -7,7 +7,8 @@ use controller::Controller;
 use fieldbus::Address;
 use lowlevel::JointLoop;
 use messages::topics::{
-    CONTROLLER_STATE, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, PARAMETERS, PLAN, POWER, SENSORS, WATCHDOG_RESET,
+    CONTROLLER_STATE, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, PARAMETERS_CONTROLLER, PARAMETERS_PLANNER, PLAN,
+    POWER, SENSORS, WATCHDOG_RESET,
 };
 use messages::{
     BusFrames, Command, CommandTaken, ControllerState, CycleInputs, EventCode, JointTargets, Parameters,
@@ -42,7 +43,13 @@ pub(super) fn of(process: Process, setup: &Setup, bus: &Address) -> Result<Box<d
         Process::Planner => {
             let mut planner = Planner::of(gait, robot);
             planner.see(planner::vision::known(setup)?);
-            Box::new(Planning { planner, dt: scene.cycle, state: None, made: Box::default() })
+            Box::new(Planning {
+                planner,
+                parameters: Parameters::default(),
+                dt: scene.cycle,
+                state: None,
+                made: Box::default(),
+            })
         }
         Process::Controller => Box::new(Stabilizing {
             controller: Controller::new(robot, gait, scene.cycle)?,
@@ -78,12 +85,18 @@ fn command(taken: &CommandTaken) -> Result<Command, Problem> {
 
 struct Planning {
     planner: Planner,
+    parameters: Parameters,
     dt: f64,
     state: Option<Box<ControllerState>>,
     made: Box<Plan>,
 }
 
 impl Part for Planning {
+    fn begin(&mut self, tape: &mut Tape) -> Result<(), Problem> {
+        self.planner.report_parameters(&mut self.parameters);
+        tape.compare(&PARAMETERS_PLANNER, &self.parameters)
+    }
+
     fn cycle(
         &mut self,
         tape: &mut Tape,
@@ -98,7 +111,13 @@ impl Part for Planning {
             self.made.header = inputs.header;
             tape.compare(&PLAN, &*self.made)?;
         }
-        output.events.iter().try_for_each(|&(code, detail)| tape.event(inputs.header, code, detail))
+        output.events.iter().try_for_each(|&(code, detail)| tape.event(inputs.header, code, detail))?;
+        if commands.iter().any(|command| matches!(command, Command::WalkParameter(_))) {
+            self.parameters.header = inputs.header;
+            self.planner.report_parameters(&mut self.parameters);
+            tape.compare(&PARAMETERS_PLANNER, &self.parameters)?;
+        }
+        Ok(())
     }
 }
 
@@ -112,7 +131,7 @@ struct Stabilizing {
 impl Part for Stabilizing {
     fn begin(&mut self, tape: &mut Tape) -> Result<(), Problem> {
         self.controller.report_parameters(&mut self.parameters);
-        tape.compare(&PARAMETERS, &self.parameters)
+        tape.compare(&PARAMETERS_CONTROLLER, &self.parameters)
     }
 
     fn cycle(
@@ -132,7 +151,7 @@ impl Part for Stabilizing {
             if matches!(command, Command::Parameter(_)) {
                 self.parameters.header = header;
                 self.controller.report_parameters(&mut self.parameters);
-                tape.compare(&PARAMETERS, &self.parameters)?;
+                tape.compare(&PARAMETERS_CONTROLLER, &self.parameters)?;
             }
         }
         let measured = self

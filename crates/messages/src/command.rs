@@ -1,7 +1,7 @@
 //! What an operator may ask for: messages of the command plane (design: thesis 7.4).
 //!
-//! A message is (domain, id, priority, payload). Local brokers deliver by (domain, id); the global broker forwards
-//! whole domains to the processes that subscribed to them. [`COMMANDS`](crate::command_text::COMMANDS) lists all
+//! A message is (domain, id, priority, payload). The broker forwards whole domains to the processes that
+//! subscribed to them. [`COMMANDS`](crate::command_text::COMMANDS) lists all
 //! commands with their fields and ranges; [`Command::check`] holds a command against it.
 
 use serde::{Deserialize, Serialize};
@@ -131,6 +131,8 @@ pub enum Command {
     ZeroForce,
     /// `sim/lower`: lower the simulated robot on its crane.
     Lower(LowerCommand),
+    /// `walk/parameter`: give a parameter of the planner another value, from the next step that is planned.
+    WalkParameter(ParameterCommand),
 }
 
 /// Step parameters (thesis table 4.1).
@@ -249,6 +251,7 @@ impl Command {
             Self::Velocity(_) => (Domain::Walk, 4),
             Self::Distance(_) => (Domain::Walk, 5),
             Self::Platform(_) => (Domain::Walk, 6),
+            Self::WalkParameter(_) => (Domain::Walk, 7),
             Self::Home => (Domain::Joint, 0),
             Self::ZeroForce => (Domain::Joint, 1),
             Self::Push(_) => (Domain::Sim, 0),
@@ -299,7 +302,8 @@ impl Command {
             | Self::Step(_)
             | Self::Velocity(_)
             | Self::Distance(_)
-            | Self::Platform(_) => "planner",
+            | Self::Platform(_)
+            | Self::WalkParameter(_) => "planner",
             Self::Parameter(_) | Self::Fixate(_) | Self::HeadJoints(_) | Self::HeadRest => "controller",
             Self::Home | Self::ZeroForce => "lowlevel",
             Self::Push(_) | Self::Lower(_) => "sim-backend",
@@ -320,6 +324,7 @@ impl Command {
             Self::Velocity(_) => "walk/velocity",
             Self::Distance(_) => "walk/distance",
             Self::Platform(_) => "walk/platform",
+            Self::WalkParameter(_) => "walk/parameter",
             Self::Home => "joint/home",
             Self::ZeroForce => "joint/zero_force",
             Self::Push(_) => "sim/push",

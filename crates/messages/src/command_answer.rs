@@ -84,9 +84,20 @@ impl Reason {
             Self::LeaseLost => "its sender no longer holds the command lease".into(),
             Self::Limit { field, low, high } => limit(command, usize::from(field), low, high),
             Self::NotStanding => "the robot does not stand on its feet yet; walk/stand comes first".into(),
-            Self::NotNow => "not in the present state; walk/stand comes first, and a skill ends first".into(),
+            Self::NotNow => not_now(command).into(),
             Self::Event { code, detail } => event(code, detail),
         }
+    }
+}
+
+/// What has to come before the command.
+const fn not_now(command: &Command) -> &'static str {
+    match command {
+        Command::Reset => {
+            "no effect: the motor supply is on, the joint loop is silent, or it was given again too soon"
+        }
+        Command::Enable => "no effect: system/reset comes first, and the joint loop must be alive",
+        _ => "not in the present state; walk/stand comes first, and a skill ends first",
     }
 }
 

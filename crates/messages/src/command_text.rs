@@ -53,6 +53,18 @@ const fn plain(name: &'static str, build: fn(&[f64]) -> Command, about: &'static
     CommandInfo { name, about, fields: &[], build }
 }
 
+/// Numbers of a command that gives a parameter another value.
+const PARAMETER: &[FieldInfo] = &[
+    field(
+        "number",
+        "",
+        [0.0, 1e3],
+        None,
+        "number of the parameter among those of its process that can be changed",
+    ),
+    field("value", "", [-1e9, 1e9], None, "in the parameter's unit"),
+];
+
 /// Every command. The ranges are those of any use on any robot; a gait narrows them.
 pub const COMMANDS: &[CommandInfo] = &[
     plain("system/emergency_stop", |_| Command::EmergencyStop, "motor supply off, latched"),
@@ -103,6 +115,12 @@ pub const COMMANDS: &[CommandInfo] = &[
         build: |v| Command::Platform(PlatformCommand { distance: v[0], height: v[1] }),
     },
     CommandInfo {
+        name: "walk/parameter",
+        about: "give a parameter of the planner another value; gangwerk param does it by name",
+        fields: PARAMETER,
+        build: |v| Command::WalkParameter(ParameterCommand { number: v[0] as u32, value: v[1] }),
+    },
+    CommandInfo {
         name: "sim/push",
         about: "push the simulated robot at its torso's centre of gravity",
         fields: &[
@@ -127,11 +145,8 @@ pub const COMMANDS: &[CommandInfo] = &[
     },
     CommandInfo {
         name: "stabilize/parameter",
-        about: "give a parameter another value; gangwerk param does it by name",
-        fields: &[
-            field("number", "", [0.0, 1e3], None, "number in the table of gangwerk param list"),
-            field("value", "", [-1e9, 1e9], None, "in the parameter's unit"),
-        ],
+        about: "give a parameter of the stabilizer another value; gangwerk param does it by name",
+        fields: PARAMETER,
         build: |v| Command::Parameter(ParameterCommand { number: v[0] as u32, value: v[1] }),
     },
     CommandInfo {
@@ -193,7 +208,7 @@ impl Command {
             Self::Velocity(v) => [v.forward, v.left, v.turn, 0.0],
             Self::Distance(d) => [d.distance, d.speed, d.acceleration, 0.0],
             Self::Platform(p) => [p.distance, p.height, 0.0, 0.0],
-            Self::Parameter(p) => [f64::from(p.number), p.value, 0.0, 0.0],
+            Self::Parameter(p) | Self::WalkParameter(p) => [f64::from(p.number), p.value, 0.0, 0.0],
             Self::Fixate(FixateCommand { point: [x, y, z] }) => [x, y, z, 0.0],
             Self::Lower(l) => [l.distance, 0.0, 0.0, 0.0],
             Self::HeadJoints(h) => [h.pan, h.tilt, 0.0, 0.0],

@@ -1,4 +1,4 @@
-//! `parameters`: what the stabilizer is set to.
+//! `parameters/PROCESS`: what a process is set to.
 
 use crate::{Header, record};
 
@@ -6,7 +6,7 @@ use crate::{Header, record};
 pub const MAX_PARAMETERS: usize = 64;
 
 record! {
-    /// Present values of all parameters, in the order of their table. Written by controller at start and after a change.
+    /// Present values of all parameters, in the order of their table. Written at start and after a change.
     record Parameters {
         /// The cycle from which they hold.
         header: Header,

@@ -122,8 +122,11 @@ topics! {
     /// What the stabilizer sees and does.
     CONTROLLER_STATE: ControllerState = "controller_state", Controller -> [Planner], wakes [],
         1000 Hz, stale 100, depth 256, logged true;
+    /// Parameters of the planner.
+    PARAMETERS_PLANNER: Parameters = "parameters/planner", Planner -> [], wakes [],
+        0 Hz, stale 0, depth 8, logged true;
     /// Parameters of the stabilizer.
-    PARAMETERS: Parameters = "parameters", Controller -> [], wakes [],
+    PARAMETERS_CONTROLLER: Parameters = "parameters/controller", Controller -> [], wakes [],
         0 Hz, stale 0, depth 8, logged true;
     /// Sign of life of the joint loop.
     WATCHDOG_RESET: WatchdogReset = "watchdog_reset", Lowlevel -> [Watchdog], wakes [Watchdog],
@@ -164,6 +167,9 @@ topics! {
     /// What each cycle of the stabilizer began with.
     INPUTS_CONTROLLER: CycleInputs = "cycle_inputs/controller", Controller -> [], wakes [],
         1000 Hz, stale 0, depth 256, logged true;
+    /// Commands that the broker refused.
+    COMMANDS_BROKER: CommandTaken = "commands/broker", Broker -> [], wakes [],
+        0 Hz, stale 0, depth 512, logged true;
     /// Commands that the watchdog took or left out.
     COMMANDS_WATCHDOG: CommandTaken = "commands/watchdog", Watchdog -> [], wakes [],
         0 Hz, stale 0, depth 64, logged true;

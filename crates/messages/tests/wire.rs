@@ -29,6 +29,7 @@ enum Peer {
     Home,
     ZeroForce,
     Lower { distance: f64 },
+    WalkParameter { number: u32, value: f64 },
 }
 
 impl From<Command> for Peer {
@@ -59,6 +60,9 @@ impl From<Command> for Peer {
             Command::Home => Self::Home,
             Command::ZeroForce => Self::ZeroForce,
             Command::Lower(LowerCommand { distance }) => Self::Lower { distance },
+            Command::WalkParameter(ParameterCommand { number, value }) => {
+                Self::WalkParameter { number, value }
+            }
         }
     }
 }
@@ -81,6 +85,8 @@ fn any_command() -> impl Strategy<Value = Command> {
         f().prop_map(|distance| Command::Lower(LowerCommand { distance })),
         (any::<u32>(), f())
             .prop_map(|(number, value)| Command::Parameter(ParameterCommand { number, value })),
+        (any::<u32>(), f())
+            .prop_map(|(number, value)| Command::WalkParameter(ParameterCommand { number, value })),
         prop::array::uniform3(f()).prop_map(|point| Command::Fixate(FixateCommand { point })),
         (f(), f()).prop_map(|(pan, tilt)| Command::HeadJoints(HeadJointsCommand { pan, tilt })),
         (f(), f()).prop_map(|(distance, height)| Command::Platform(PlatformCommand { distance, height })),
@@ -154,7 +160,7 @@ fn every_cut_and_every_surplus_is_an_error() {
 
 #[test]
 fn unknown_commands_are_named_as_such() {
-    for n in [19u32, 255, 1 << 16, u32::MAX] {
+    for n in [20u32, 255, 1 << 16, u32::MAX] {
         let error = decode(&n.to_le_bytes()).unwrap_err().to_string();
         assert!(error.starts_with("not a command") && error.contains(&n.to_string()), "{error}");
     }

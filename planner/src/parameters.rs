@@ -1,0 +1,29 @@
+//! Parameters of the planner that may be changed while the robot walks: `walk/parameter`.
+
+use crate::Planner;
+use config::parameters::PLANNER;
+use messages::command::ParameterCommand;
+use messages::{EventCode, Parameters, Reason};
+
+impl Planner {
+    /// Another value for a parameter, from the next step that is planned.
+    pub(crate) fn set(&mut self, change: &ParameterCommand) -> Result<(), Reason> {
+        let Some(parameter) = PLANNER.get(change.number as usize) else {
+            return Err(Reason::Limit { field: 0, low: 0.0, high: PLANNER.len() as f64 - 1.0 });
+        };
+        let [low, high] = parameter.range;
+        if !parameter.set(&mut self.builder.step, change.value) {
+            return Err(Reason::Limit { field: 1, low, high });
+        }
+        self.event(EventCode::ParameterSet, change.number.into());
+        Ok(())
+    }
+
+    /// Writes the present values of all parameters.
+    pub fn report_parameters(&self, record: &mut Parameters) {
+        record.count = PLANNER.len() as u64;
+        for (value, p) in record.values.iter_mut().zip(PLANNER) {
+            *value = p.get(&self.builder.step);
+        }
+    }
+}
