@@ -4,7 +4,7 @@
 //! `GANGWERK_SOAK_SECONDS=3600` makes the soak longer.
 
 use broker::connection::UNANSWERED;
-use broker::message::{MAX_BYTES, SERVICE, VERSION, service, service_message, write_command};
+use broker::message::{MAX_BYTES, VERSION, service, service_message, write_command};
 use broker::{StreamClient, keys};
 use harness::{Running, Site, doze, turn};
 use ipc::{Reader, Space};
@@ -15,9 +15,8 @@ use realtime::clock::{SECOND, now};
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpStream};
 use std::os::unix::fs::PermissionsExt;
-use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::time::Duration;
@@ -82,7 +81,7 @@ fn write_key(path: &Path, digits: &str) {
 #[derive(Clone)]
 struct Place {
     tcp: SocketAddr,
-    socket: std::path::PathBuf,
+    dir: PathBuf,
     over: Arc<AtomicBool>,
     /// Times that it was done.
     done: Arc<AtomicU64>,
@@ -137,7 +136,8 @@ fn every_command(place: &Place) {
 
 /// The key's name with another secret.
 fn wrong_key(place: &Place) {
-    let path = std::env::temp_dir().join(format!("gangwerk-wrong-key-{}", std::process::id()));
+    let own = std::thread::current().id();
+    let path = std::env::temp_dir().join(format!("gangwerk-wrong-key-{}-{own:?}", std::process::id()));
     write_key(&path, "7b");
     let key = keys::load(&path).unwrap().remove(0);
     std::fs::remove_file(path).unwrap();
@@ -214,17 +214,14 @@ fn slow_readers(place: &Place) {
     }
 }
 
-/// As many connections as there is time for, at both doors; some stay open, with a frame of nobody's.
+/// As many connections as there is time for; some stay open, with a frame of nobody's.
 fn connections(place: &Place) {
     let mut open = Vec::new();
     while place.again() {
         if let Some(mut stream) = place.stream() {
-            let mut nobody = service_message(77, 1, 0, &[]);
-            nobody[..2].copy_from_slice(&SERVICE.to_le_bytes());
-            let _ = stream.write_all(&frame(&nobody));
+            let _ = stream.write_all(&frame(&service_message(77, 1, 0, &[])));
             open.push(stream);
         }
-        let _ = UnixStream::connect(&place.socket);
         if open.len() == 200 {
             open.clear();
         }
@@ -233,11 +230,10 @@ fn connections(place: &Place) {
 
 /// Another user's programs at the run directory, which he cannot enter.
 fn another_user(place: &Place) {
-    let dir = place.socket.parent().unwrap();
     while place.again() {
         for info in COMMANDS.iter().filter(|info| !info.name.ends_with("stop")).step_by(5) {
             let mut program = std::process::Command::new(EXE);
-            program.args(["topic", "pub", info.name, "--dir"]).arg(dir).uid(65534).gid(65534);
+            program.args(["topic", "pub", info.name, "--dir"]).arg(&place.dir).uid(65534).gid(65534);
             let Ok(said) = program.output() else { return };
             assert!(!said.status.success(), "{said:?}");
         }
@@ -257,18 +253,29 @@ const ATTACKS: [Attack; 8] = [
     ("another user", another_user),
 ];
 
+/// Ends the attack.
+struct Over<'a>(&'a AtomicBool);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Relaxed);
+    }
+}
+
 /// Does something while the attack goes on; returns how often it was done.
 fn under(robot: &mut Robot, attack: fn(&Place), mut meanwhile: impl FnMut(&mut Robot, &Place)) -> u64 {
     let place = Place {
         tcp: (Ipv4Addr::LOCALHOST, robot.site.port()).into(),
-        socket: robot.site.run_dir().join("broker.sock"),
+        dir: robot.site.run_dir(),
         over: Arc::default(),
         done: Arc::default(),
     };
     std::thread::scope(|scope| {
         let attackers: Vec<_> = (0..2).map(|_| scope.spawn(|| attack(&place))).collect();
+        // Also if something is found.
+        let over = Over(&place.over);
         meanwhile(robot, &place);
-        place.over.store(true, Relaxed);
+        drop(over);
         for attacker in attackers {
             attacker.join().unwrap_or_else(|e| std::panic::resume_unwind(e));
         }
@@ -329,7 +336,7 @@ fn ten_thousand_commands_per_second_lose_no_command_of_the_operator() {
     let flood = || {
         let mut client = StreamClient::connect(&dir, "flood").unwrap();
         let mut waiting = std::collections::VecDeque::new();
-        let mut answered = |client: &mut StreamClient, number| match client.answer(number).unwrap().code {
+        let answered = |client: &mut StreamClient, number| match client.answer(number).unwrap().code {
             0 => accepted.fetch_add(1, Relaxed),
             6 => busy.fetch_add(1, Relaxed),
             _ => refused.fetch_add(1, Relaxed),

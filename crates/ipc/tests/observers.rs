@@ -8,8 +8,12 @@ use ipc::{Reader, Space, Writer};
 use messages::topics::{PLAN, SENSORS};
 use messages::{Header, Plan, Process, Sensors};
 use place::RunDir;
+use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
+
+/// Observers that live and die together.
+const AT_ONCE: u64 = 8;
 
 /// The observing process: this program again. It dies with everything open.
 #[test]
@@ -39,7 +43,7 @@ fn files(dir: &Path) -> usize {
 
 #[test]
 fn observers_that_are_killed_leave_nothing() {
-    let many = std::env::var("GANGWERK_OBSERVERS").ok().and_then(|n| n.parse().ok()).unwrap_or(500);
+    let many = std::env::var("GANGWERK_OBSERVERS").ok().and_then(|n| n.parse().ok()).unwrap_or(504);
     let dir = RunDir::new("observers");
     let space = Space::create(dir.path()).unwrap();
     let lowlevel = Space::open(dir.path(), Process::Lowlevel).unwrap();
@@ -47,20 +51,26 @@ fn observers_that_are_killed_leave_nothing() {
     let mut write = |tick| writer.write(&Sensors { header: Header { tick, ..Header::default() }, ..Sensors::default() });
     write(1);
     let mut first = None;
-    for n in 0..many {
-        let died = Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", "observer"])
-            .env("GANGWERK_OBSERVED", dir.path())
-            .stdout(Stdio::null())
-            .status()
-            .unwrap();
-        assert_eq!(std::os::unix::process::ExitStatusExt::signal(&died), Some(9), "observer {n}: {died}");
-        assert!(space.clear_dead() > 0, "observer {n} was not seen to be dead");
+    for n in 0..many / AT_ONCE {
+        let start = || {
+            Command::new(std::env::current_exe().unwrap())
+                .args(["--exact", "observer"])
+                .env("GANGWERK_OBSERVED", dir.path())
+                .stdout(Stdio::null())
+                .spawn()
+                .unwrap()
+        };
+        let observers: Vec<Child> = (0..AT_ONCE).map(|_| start()).collect();
+        for mut observer in observers {
+            let died = observer.wait().unwrap();
+            assert_eq!(died.signal(), Some(9), "lot {n}: {died}");
+        }
+        space.clear_dead();
         let now = files(dir.path());
-        assert_eq!(*first.get_or_insert(now), now, "files after observer {n}");
+        assert_eq!(*first.get_or_insert(now), now, "files after lot {n}");
         write(n + 2);
     }
     let mut reader: Reader<Sensors> = space.reader(&SENSORS).unwrap();
-    assert_eq!(reader.latest().map(|s| s.header.tick), Some(many + 1));
+    assert_eq!(reader.latest().map(|s| s.header.tick), Some(many / AT_ONCE + 1));
     println!("{many} observers, {} files before and after", first.unwrap_or(0));
 }
