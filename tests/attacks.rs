@@ -173,7 +173,8 @@ fn oversized(place: &Place) {
     while place.again() {
         for length in [u32::MAX, 1 << 31, 1 << 20, 600, 0] {
             if let Some(mut stream) = place.stream() {
-                let _ = stream.write_all(&length.to_le_bytes()).and_then(|()| stream.write_all(&[7; 100_000]));
+                let _ =
+                    stream.write_all(&length.to_le_bytes()).and_then(|()| stream.write_all(&[7; 100_000]));
                 let _ = stream.read(&mut [0; 512]);
             }
         }

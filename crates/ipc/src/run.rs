@@ -167,8 +167,10 @@ mod tests {
         let dir = Path::new("/nowhere");
         let good = Run::bare(dir).to_text();
         assert_eq!(Run::parse(dir, &good).unwrap(), Run::bare(dir));
-        for (from, to) in [("simulated", "sicenmulated"), ("real-time", "real"), ("log = ", "log = w.mcap\r")] {
-            let error = Run::parse(dir, &good.trim_end_matches('\n').replace(from, to)).unwrap_err().to_string();
+        for (from, to) in [("simulated", "sicenmulated"), ("real-time", "real"), ("log = ", "log = w.mcap\r")]
+        {
+            let error =
+                Run::parse(dir, &good.trim_end_matches('\n').replace(from, to)).unwrap_err().to_string();
             assert!(error.contains("must be") || error.contains("log is missing"), "{to:?}: {error}");
         }
     }

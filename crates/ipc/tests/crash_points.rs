@@ -250,7 +250,9 @@ fn records<T: Pattern>(role: &str) {
         assert_eq!([latest, fresh].map(|mut reader| reader.latest().map(T::number)), [Some(77); 2]);
         killed += 1;
     }
-    println!("{role}: {points} points looked at, {in_one} in the last write; {killed} deaths, each followed by a writer");
+    println!(
+        "{role}: {points} points looked at, {in_one} in the last write; {killed} deaths, each followed by a writer"
+    );
     assert!(in_one > 100, "{in_one} instructions write a record?");
 }
 

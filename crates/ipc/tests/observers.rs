@@ -48,7 +48,8 @@ fn observers_that_are_killed_leave_nothing() {
     let space = Space::create(dir.path()).unwrap();
     let lowlevel = Space::open(dir.path(), Process::Lowlevel).unwrap();
     let mut writer: Writer<Sensors> = lowlevel.writer(&SENSORS).unwrap();
-    let mut write = |tick| writer.write(&Sensors { header: Header { tick, ..Header::default() }, ..Sensors::default() });
+    let mut write =
+        |tick| writer.write(&Sensors { header: Header { tick, ..Header::default() }, ..Sensors::default() });
     write(1);
     let mut first = None;
     for n in 0..many / AT_ONCE {

@@ -220,7 +220,8 @@ pub(crate) fn walk(
         let (opcode, data) = match event {
             Ok(LinearReadEvent::Record { opcode, data }) => (opcode, data),
             Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                let wanted = wanted.max(64 * 1024);
+                // What a record claims to be long is not yet there to be read.
+                let wanted = wanted.clamp(64 * 1024, 1024 * 1024);
                 let got =
                     file.read(reader.insert(wanted)).map_err(|e| RecordingError::Read(path.into(), e))?;
                 bytes += got as u64;

@@ -37,7 +37,8 @@ pub(crate) fn mcap_seeds() -> Vec<Vec<u8>> {
 
     let mut traffic = TrafficWriter::create(&path).expect("a log");
     for id in 1..=3 {
-        let frame = CanFrame { stamp_ns: 5, line: "vcan0", id, form: 0, flags: 0, way: 0, len: 2, data: &[1, 2] };
+        let frame =
+            CanFrame { stamp_ns: 5, line: "vcan0", id, form: 0, flags: 0, way: 0, len: 2, data: &[1, 2] };
         traffic.write(&frame).expect("room");
     }
     traffic.finish().expect("room");
@@ -59,9 +60,11 @@ pub(crate) fn scene(bytes: &[u8]) {
 }
 
 pub(crate) fn scene_seeds() -> Vec<Vec<u8>> {
-    let names = ["bus_faults", "demo", "obstacle", "startup", "walk_auto", "walk_2kmh_sensors", "walk_tables"];
+    let names =
+        ["bus_faults", "demo", "obstacle", "startup", "walk_auto", "walk_2kmh_sensors", "walk_tables"];
     let read = |name: &str| {
-        let text = fs::read_to_string(config::root(None).join(format!("scenes/{name}.toml"))).expect("shipped");
+        let text =
+            fs::read_to_string(config::root(None).join(format!("scenes/{name}.toml"))).expect("shipped");
         // Without comments and topics' slashes, see above.
         let lines = text.lines().filter(|line| !line.starts_with('#')).map(|line| format!("{line}\n"));
         lines.collect::<String>().replace('/', " ").into_bytes()

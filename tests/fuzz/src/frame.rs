@@ -35,7 +35,8 @@ impl Broker {
         let path = dir.join("keys");
         let mut file = std::fs::OpenOptions::new();
         let file = file.write(true).create(true).truncate(true).mode(0o600).open(&path).expect("key file");
-        std::io::Write::write_all(&mut &file, format!("op all {}\n", "7a".repeat(32)).as_bytes()).expect("room");
+        std::io::Write::write_all(&mut &file, format!("op all {}\n", "7a".repeat(32)).as_bytes())
+            .expect("room");
         let keys = Arc::new(keys::load(&path).expect("a key"));
         let exchange = RefCell::new(Exchange::new(space, inlet, now()).expect("queues"));
         Self { gate, exchange, keys, token: Cell::new(FIRST_STREAM) }
@@ -189,7 +190,8 @@ impl Client {
 pub(crate) fn seeds() -> Vec<Vec<u8>> {
     let subscribe = [2, service::SUBSCRIBE as u8, 2, 0xff, 0, 0, 0];
     let ask = [2, service::DESCRIBE as u8, 0, 2, service::STATISTICS as u8, 0];
-    let lease = [2, service::TAKE_LEASE as u8, 1, 1, 0, 2, service::GIVE_LEASE as u8, 0, 2, service::PING as u8, 0];
+    let lease =
+        [2, service::TAKE_LEASE as u8, 1, 1, 0, 2, service::GIVE_LEASE as u8, 0, 2, service::PING as u8, 0];
     let commands: Vec<u8> = (0..COMMANDS.len() as u8).flat_map(|n| [4, n]).collect();
     let talk = [&subscribe[..], &ask, &lease, &commands].concat();
     let raw = |bytes: &[u8]| [&[0u8, 0, bytes.len() as u8][..], bytes].concat();
