@@ -43,7 +43,7 @@ fn files(dir: &Path) -> usize {
 
 #[test]
 fn observers_that_are_killed_leave_nothing() {
-    let many = std::env::var("GANGWERK_OBSERVERS").ok().and_then(|n| n.parse().ok()).unwrap_or(504);
+    let many = std::env::var("GANGWERK_OBSERVERS").ok().and_then(|n| n.parse().ok()).unwrap_or(96);
     let dir = RunDir::new("observers");
     let space = Space::create(dir.path()).unwrap();
     let lowlevel = Space::open(dir.path(), Process::Lowlevel).unwrap();
