@@ -177,8 +177,10 @@ fn any_order_of_starting_gives_the_same_walk() {
         let now = order.map(|name| format!("\"{name}\"")).join(", ");
         site.edit("system.toml", &before, &now);
         before = now;
-        println!("{before}");
-        assert_eq!(different(&alone, &run(&site, &[0, 1])), [""; 0], "{before}");
+        let mut changed = different(&alone, &run(&site, &[0, 1]));
+        // It carries the time of the first record that its logger saw.
+        changed.retain(|name| name != "/robot_description");
+        assert_eq!(changed, [""; 0], "{before}");
     }
 }
 

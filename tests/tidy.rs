@@ -13,7 +13,7 @@ const LAYERS: [&[&str]; 6] = [
     &["messages"],
     &["ipc", "realtime", "config", "recording", "daemon", "fieldbus", "sercos", "latency"],
     &["planner", "controller", "lowlevel", "sim-backend", "broker", "watchdog", "logger"],
-    &["studies", "harness"],
+    &["studies", "harness", "fuzzing"],
     &["cli"],
 ];
 const PROCESSES: usize = 3;
@@ -26,7 +26,7 @@ const ONLY: [(&str, &[&str]); 10] = [
     ("mcap", &["recording"]),
     ("urdf-rs", &["multibody"]),
     ("tiny-skia", &["drawing"]),
-    ("tokio", &["broker"]),
+    ("tokio", &["broker", "fuzzing"]),
     ("socketcan", &["fieldbus"]),
     ("can-dbc", &["config"]),
     ("libc", &["ipc", "realtime", "sercos"]),

@@ -114,16 +114,21 @@ impl Run {
         let value = |key: &str| {
             text.lines()
                 .filter_map(|line| line.split_once(" = ").or(line.strip_suffix(" =").map(|k| (k, ""))))
-                .find_map(|(k, v)| (k == key).then_some(v))
+                .find_map(|(k, v)| (k == key && !v.contains(char::is_control)).then_some(v))
                 .ok_or_else(|| IpcError::Other(format!("{}: {key} is missing", path.display())))
+        };
+        let wrong = |key: &str, other: &str, choice: &str| {
+            IpcError::Other(format!("{}: {key} = {other}: must be {choice}", path.display()))
         };
         let mode = match value("mode")? {
             "lockstep" => Mode::Lockstep,
             "real-time" => Mode::RealTime,
-            other => {
-                let text = format!("{}: mode = {other}: must be lockstep or real-time", path.display());
-                return Err(IpcError::Other(text));
-            }
+            other => return Err(wrong("mode", other, "lockstep or real-time")),
+        };
+        let robot = match value("robot")? {
+            "simulated" => true,
+            "elsewhere" => false,
+            other => return Err(wrong("robot", other, "simulated or elsewhere")),
         };
         let (method, log) = (value("method")?, value("log")?);
         Ok(Self {
@@ -133,7 +138,7 @@ impl Run {
             method: (!method.is_empty()).then(|| method.into()),
             config: value("config")?.into(),
             bus: value("bus")?.into(),
-            robot: value("robot")? == "simulated",
+            robot,
             log: (!log.is_empty()).then(|| log.into()),
         })
     }
@@ -149,5 +154,24 @@ impl Run {
     /// Enters the space of this run.
     pub fn enter(&self, process: Process) -> Result<Space, IpcError> {
         Space::open(&self.dir, process)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Found by fuzzing: any other word was taken for a robot elsewhere, and a carriage return for part of a name.
+    #[test]
+    fn a_word_that_is_no_choice_and_a_control_character_are_refused() {
+        let dir = Path::new("/nowhere");
+        let good = Run::bare(dir).to_text();
+        assert_eq!(Run::parse(dir, &good).unwrap(), Run::bare(dir));
+        for (from, to) in [("simulated", "sicenmulated"), ("real-time", "real"), ("log = ", "log = w.mcap\r")]
+        {
+            let error =
+                Run::parse(dir, &good.trim_end_matches('\n').replace(from, to)).unwrap_err().to_string();
+            assert!(error.contains("must be") || error.contains("log is missing"), "{to:?}: {error}");
+        }
     }
 }

@@ -12,6 +12,7 @@ pub mod cdr;
 pub mod definition;
 mod error;
 mod hashes;
+mod lengths;
 mod links;
 mod log;
 pub mod polygon;

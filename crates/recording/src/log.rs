@@ -3,6 +3,7 @@
 use crate::cdr::{Decoder, decode};
 use crate::definition::definition;
 use crate::error::RecordingError;
+use crate::lengths;
 use crate::links::Pose;
 use crate::recorder::channel_name;
 use crate::robot::{METADATA, RobotInfo, RunInfo, from_metadata};
@@ -219,7 +220,8 @@ pub(crate) fn walk(
         let (opcode, data) = match event {
             Ok(LinearReadEvent::Record { opcode, data }) => (opcode, data),
             Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                let wanted = wanted.max(64 * 1024);
+                // What a record claims to be long is not yet there to be read.
+                let wanted = wanted.clamp(64 * 1024, 1024 * 1024);
                 let got =
                     file.read(reader.insert(wanted)).map_err(|e| RecordingError::Read(path.into(), e))?;
                 bytes += got as u64;
@@ -235,6 +237,13 @@ pub(crate) fn walk(
             Err(McapError::UnexpectedEof) => return Ok(End::Truncated(messages)),
             Err(e) => return Err(RecordingError::Damaged(path.into(), messages, e.to_string())),
         };
+        if !lengths::is_read(opcode) {
+            continue;
+        }
+        if !lengths::fit(opcode, data) {
+            let why = "a string is longer than the record that it is in".into();
+            return Err(RecordingError::Damaged(path.into(), messages, why));
+        }
         let entry = mcap::parse_record(opcode, data)
             .map_err(|e| RecordingError::Damaged(path.into(), messages, e.to_string()))?;
         let flow = match entry {

@@ -253,3 +253,24 @@ fn a_full_disk_is_an_error_that_says_so() {
     let error = result.unwrap_err().to_string();
     assert!(error.contains("disk full"), "{error}");
 }
+
+/// Found by fuzzing: a length in a damaged record was believed, and up to 4 GB were asked for.
+#[test]
+fn a_string_that_claims_to_be_longer_than_its_record_is_damage() {
+    let path = file("long_string.mcap");
+    let record = |opcode: u8, body: &[u8]| [&[opcode][..], &(body.len() as u64).to_le_bytes(), body].concat();
+    let long = u32::MAX.to_le_bytes();
+    let bodies = [
+        (0x03, [&[1, 0][..], &long].concat()),
+        (0x04, [&[1, 0, 1, 0, 0, 0, 0, 0][..], &long].concat()),
+        (0x09, [&[0; 16][..], &long].concat()),
+        (0x0c, long.to_vec()),
+        (0x0c, [&[0, 0, 0, 0, 4, 0, 0, 0][..], &long].concat()),
+    ];
+    for (opcode, body) in bodies {
+        let bytes = [b"\x89MCAP0\r\n".to_vec(), record(0x01, &[0; 8]), record(opcode, &body)].concat();
+        std::fs::write(&path, bytes).unwrap();
+        let error = Log::open(&path).unwrap_err().to_string();
+        assert!(error.contains("a string is longer than the record"), "{opcode:#x}: {error}");
+    }
+}
