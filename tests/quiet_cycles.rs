@@ -37,9 +37,12 @@ const GETRUSAGE: u32 = 98;
 const CLOCK_NANOSLEEP: u32 = 230;
 const PPOLL: u32 = 271;
 
-/// Calls per cycle at most. A bell is rung by a datagram (sendto) to whoever is woken and heard by ppoll and recvfrom; the
+/// Numbers of system calls, and how often per cycle at most.
+type Calls = &'static [(u32, f64)];
+
+/// What each process may ask for. A bell is rung by a datagram (sendto) to whoever is woken and heard by ppoll and recvfrom; the
 /// two clocks sleep; page faults are asked for (getrusage) once in a hundred cycles.
-const LIST: [(Process, &Topic, &[(u32, f64)]); 5] = [
+const LIST: [(Process, &Topic, Calls); 5] = [
     (Process::Watchdog, &STATS_WATCHDOG, &[(CLOCK_NANOSLEEP, 1.0), (SENDTO, 0.02), (GETRUSAGE, 0.01)]),
     (
         Process::SimBackend,
