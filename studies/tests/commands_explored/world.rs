@@ -1,11 +1,6 @@
-//! Every order of what two operators send, what stalls and what dies, up to some steps: the real admission, lease, age,
-//! walk lease, watchdog and relay together, explored depth first.
-//!
-//! Between them is a model of the ways: a stream per operator, which waits while the broker stands still and is lost when
-//! it dies; a queue to each process, which waits while that process stands still; and a lease that a process knows only
-//! once its courier has run. Beside them stand plain rules that share nothing with what they judge, not even the constants.
+//! The world that is explored, and the rules beside it.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use broker::admission::{Sender, admit};
@@ -19,22 +14,19 @@ use watchdog::{Inputs, Watchdog};
 /// \[ns\] Time of one tick: a command that waits for one is in time, for two it is not.
 const TICK: u64 = 60_000_000;
 /// Ticks that a step of the search may take: all in time, or the end of a lease.
-const STEPS: [u64; 2] = [1, 8];
+pub(crate) const STEPS: [u64; 2] = [1, 8];
 /// \[ticks\] Rule: age of a command that may still move something.
 const IN_TIME: u64 = 1;
 /// \[ticks\] Rule: silence after which an operator counts as gone.
 const GONE: u64 = 9;
-/// Steps of a history, and how often something stands still, hurries or dies in it; `GANGWERK_STEPS` and
-/// `GANGWERK_STALLS` say other numbers.
-const DEPTH: (u8, u8) = (5, 1);
 /// Frames that an operator may have on the way.
-const ON_THE_WAY: usize = 2;
+pub(crate) const ON_THE_WAY: usize = 2;
 
-const WALK: Command = Command::Velocity(VelocityCommand { forward: 0.3, left: 0.0, turn: 0.0 });
+pub(crate) const WALK: Command = Command::Velocity(VelocityCommand { forward: 0.3, left: 0.0, turn: 0.0 });
 
 /// What an operator sends in one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Frame {
+pub(crate) enum Frame {
     Command(Command),
     Ping,
     TakeOver,
@@ -42,7 +34,7 @@ enum Frame {
     Reconnect,
 }
 
-const FIRST: [Option<Frame>; 9] = [
+pub(crate) const FIRST: [Option<Frame>; 9] = [
     None,
     Some(Frame::Command(WALK)),
     Some(Frame::Command(Command::Stop)),
@@ -54,7 +46,7 @@ const FIRST: [Option<Frame>; 9] = [
     Some(Frame::Reconnect),
 ];
 /// The second operator need not do all that the first one does.
-const SECOND: [Option<Frame>; 4] =
+pub(crate) const SECOND: [Option<Frame>; 4] =
     [None, Some(Frame::Command(WALK)), Some(Frame::Ping), Some(Frame::TakeOver)];
 
 impl Frame {
@@ -64,14 +56,14 @@ impl Frame {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Broker {
+pub(crate) enum Broker {
     Runs,
     Stops,
     Dies,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Process {
+pub(crate) enum Process {
     Runs,
     /// Its cycle comes before its courier does.
     Hurries,
@@ -80,7 +72,7 @@ enum Process {
 
 /// What may be broken on purpose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Broken {
+pub(crate) enum Broken {
     Nothing,
     /// Processes take what the broker admitted, whenever it comes.
     Age,
@@ -91,7 +83,7 @@ enum Broken {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct OnTheWay {
+pub(crate) struct OnTheWay {
     token: u32,
     frame: Frame,
     sequence: u64,
@@ -99,10 +91,10 @@ struct OnTheWay {
 }
 
 #[derive(Clone, Debug, Default)]
-struct Operator {
+pub(crate) struct Operator {
     token: u32,
     issued: u64,
-    wire: Vec<OnTheWay>,
+    pub(crate) wire: Vec<OnTheWay>,
 }
 
 /// A process's end: its queue, what its courier told it of the lease.
@@ -113,11 +105,11 @@ struct End {
 }
 
 #[derive(Clone)]
-struct World {
+pub(crate) struct World {
     broken: Broken,
     /// \[ticks\]
     now: u64,
-    operators: [Operator; 2],
+    pub(crate) operators: [Operator; 2],
     tokens: u32,
     keeper: LeaseKeeper,
     senders: Vec<Sender>,
@@ -125,12 +117,12 @@ struct World {
     planner: End,
     guard: End,
     walk: WalkLease,
-    walking: bool,
+    pub(crate) walking: bool,
     dog: Watchdog,
     skipped: u64,
     power: Power,
     reset: WatchdogReset,
-    relay: PowerLine,
+    pub(crate) relay: PowerLine,
     rules: Rules,
 }
 
@@ -153,7 +145,7 @@ struct Rules {
 }
 
 impl World {
-    fn new(broken: Broken) -> Self {
+    pub(crate) fn new(broken: Broken) -> Self {
         let mut world = Self {
             broken,
             now: 100,
@@ -348,7 +340,7 @@ impl World {
         Ok(())
     }
 
-    fn step(
+    pub(crate) fn step(
         &mut self,
         ticks: u64,
         sent: [Option<Frame>; 2],
@@ -386,7 +378,7 @@ impl World {
     }
 
     /// All that decides what can happen next, with times counted from now and numbers from each other.
-    fn key(&self) -> u64 {
+    pub(crate) fn key(&self) -> u64 {
         let mut h = DefaultHasher::new();
         let ago = |t: u64| (self.now - t).min(GONE + 1);
         let until = |l: Lease| (l.until_ns / TICK + GONE).saturating_sub(self.now);
@@ -469,103 +461,4 @@ impl Rules {
     fn closed(&mut self, token: u32) {
         self.owner = self.owner.filter(|(owner, _)| *owner != token);
     }
-}
-
-/// The search: depth first, with a memory of what was explored how deep.
-struct Search {
-    /// Steps and faults that were left when a state was explored, by state.
-    seen: HashMap<u64, (u8, u8)>,
-    histories: u64,
-    sent: Vec<[Option<Frame>; 2]>,
-    runs: Vec<(u8, (Broker, Process, Process))>,
-    fault: Option<&'static str>,
-}
-
-impl Search {
-    /// Every history of so many steps in which at most so many times something stands still, hurries or dies.
-    fn explore(broken: Broken, (steps, faults): (u8, u8)) -> Self {
-        let sent = FIRST.iter().map(|f| [*f, None]).chain(SECOND[1..].iter().map(|s| [None, *s])).collect();
-        let mut runs = Vec::new();
-        let processes = [(0, Process::Runs), (1, Process::Hurries), (1, Process::Stops)];
-        for (a, broker) in [(0, Broker::Runs), (1, Broker::Stops), (1, Broker::Dies)] {
-            for (b, planner) in processes {
-                runs.extend(processes.map(|(c, dog)| (a + b + c, (broker, planner, dog))));
-            }
-        }
-        let mut search = Self { seen: HashMap::new(), histories: 0, sent, runs, fault: None };
-        search.go_on(&World::new(broken), steps, faults);
-        search
-    }
-
-    fn go_on(&mut self, world: &World, steps: u8, faults: u8) {
-        let done = self.seen.entry(world.key()).or_default();
-        if steps == 0 || (done.0 >= steps && done.1 >= faults) {
-            return;
-        }
-        *done = (steps, faults);
-        for i in 0..self.sent.len() {
-            let frames = self.sent[i];
-            if (0..2).any(|i| frames[i].is_some() && world.operators[i].wire.len() >= ON_THE_WAY) {
-                continue;
-            }
-            for j in 0..self.runs.len() {
-                let (cost, runs) = self.runs[j];
-                for ticks in STEPS.into_iter().filter(|_| cost <= faults) {
-                    let mut world = world.clone();
-                    self.histories += 1;
-                    if let Err(fault) = world.step(ticks, frames, runs) {
-                        self.fault = Some(fault);
-                    }
-                    if self.fault.is_none() {
-                        self.go_on(&world, steps - 1, faults - cost);
-                    }
-                    if self.fault.is_some() {
-                        println!("{steps} steps before the end: {ticks} ticks, {frames:?}, {runs:?}");
-                        return;
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn bounds() -> (u8, u8) {
-    let number = |name: &str| std::env::var(name).ok().and_then(|n| n.parse().ok());
-    (number("GANGWERK_STEPS").unwrap_or(DEPTH.0), number("GANGWERK_STALLS").unwrap_or(DEPTH.1))
-}
-
-#[test]
-fn nothing_moves_without_the_lease_and_no_stop_is_lost() {
-    let search = Search::explore(Broken::Nothing, bounds());
-    println!("{} states, {} histories, {:?}", search.seen.len(), search.histories, bounds());
-    assert_eq!(search.fault, None);
-    assert!(search.seen.len() > 10_000, "these are not all");
-}
-
-#[test]
-fn the_search_finds_what_is_broken_on_purpose() {
-    for (broken, found) in [
-        (Broken::Age, "an old command took effect"),
-        (Broken::Lease, "it walks for somebody who is gone"),
-        (Broken::Stop, "an emergency stop was lost"),
-    ] {
-        let search = Search::explore(broken, (6, 1));
-        println!("{broken:?}: {:?} among {} states", search.fault, search.seen.len());
-        assert_eq!(search.fault, Some(found), "{broken:?}");
-    }
-}
-
-/// Without this, nothing of the above says anything.
-#[test]
-fn the_robot_walks_at_all() {
-    let mut world = World::new(Broken::Nothing);
-    let all = (Broker::Runs, Process::Runs, Process::Runs);
-    for command in [Command::Stop, Command::Reset, Command::Enable, WALK] {
-        world.step(1, [Some(Frame::Command(command)), None], all).unwrap();
-    }
-    assert!(world.walking && world.relay.is_closed());
-    world.step(8, [None, None], all).unwrap();
-    assert!(world.walking, "for as long as the lease lasts");
-    world.step(1, [None, None], all).unwrap();
-    assert!(!world.walking);
 }
