@@ -15,6 +15,7 @@ use world::{Broken, Broker, FIRST, Frame, ON_THE_WAY, Process, SECOND, STEPS, WA
 /// Steps of a history, and how often something stands still, hurries or dies in it; `GANGWERK_STEPS` and
 /// `GANGWERK_STALLS` say other numbers.
 const DEPTH: (u8, u8) = (5, 1);
+
 /// The search: depth first, with a memory of what was explored how deep.
 struct Search {
     /// Steps and faults that were left when a state was explored, by state.
