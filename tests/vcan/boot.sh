@@ -1,21 +1,23 @@
 #!/bin/sh
-# Runs a command in a virtual machine that has CAN: tests/vcan/boot.sh [-t SECONDS] [-c CORES] [-k DIR] [-i] COMMAND...
+# Runs a command in a virtual machine that has CAN: tests/vcan/boot.sh [-t SECONDS] [-c CORES] [-k DIR] [-r] [-i] COMMAND...
 #
 # The machine is emulated (no KVM is needed, none is used), runs Debian's kernel, and sees all files of this one at their
 # places; what it writes stays in its memory and is gone at the end. The command runs as root in this folder, its output is
 # shown as it comes, its exit code is returned. 124: the time limit (-t, 600 s) was reached; 125: the machine itself failed.
 # -c: so many cores, 2. -k: what is written to /run/kept is kept in that folder.
-# -i: with the keyboard, for a shell: tests/vcan/boot.sh -i bash
+# -r: a kernel with PREEMPT_RT. -i: with the keyboard, for a shell: tests/vcan/boot.sh -i bash
 set -u
 limit=600
 cores=2
 keyboard=
 kept=
-while getopts t:c:k:i option; do
+flavour=
+while getopts t:c:k:ri option; do
     case $option in
     t) limit=$OPTARG ;;
     c) cores=$OPTARG ;;
     k) kept=$OPTARG ;;
+    r) flavour=rt ;;
     i) keyboard=yes ;;
     *) exit 2 ;;
     esac
@@ -28,12 +30,13 @@ fail() {
     exit 125
 }
 
-[ $# -gt 0 ] || fail "no command; usage: boot.sh [-t SECONDS] [-c CORES] [-k DIR] [-i] COMMAND..."
+[ $# -gt 0 ] || fail "no command; usage: boot.sh [-t SECONDS] [-c CORES] [-k DIR] [-r] [-i] COMMAND..."
 for tool in qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio; do
     command -v "${tool%%:*}" >/dev/null || fail "${tool%%:*} is missing: apt-get install ${tool##*:}"
 done
 [ -z "$kept" ] || mkdir -p "$kept" || fail "no folder $kept"
-kernel=$("$here/kernel.sh") || exit 125
+# shellcheck disable=SC2086
+kernel=$("$here/kernel.sh" $flavour) || exit 125
 work=$(mktemp -d) || exit 125
 trap 'rm -rf "$work"' EXIT
 

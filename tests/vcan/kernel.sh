@@ -1,9 +1,11 @@
 #!/bin/sh
-# Gets the kernel that the virtual machine boots: Debian's, from its package, unpacked into tests/vcan/.kernel.
+# Gets the kernel that the virtual machine boots: Debian's, from its package, unpacked into tests/vcan/.kernel; with the
+# argument `rt` the one with PREEMPT_RT, into tests/vcan/.kernel-rt.
 # Prints that folder, which holds `vmlinuz` and, in the order of their loading, `modules/NN-NAME.ko`. Safe to run again.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-kernel="$here/.kernel"
+flavour=${1:+$1-}
+kernel="$here/.kernel${1:+-$1}"
 
 # Each after those it needs. The host's files: 9p over virtio, with a writable layer above. The rest is CAN.
 modules="drivers/virtio/virtio_ring drivers/virtio/virtio drivers/virtio/virtio_pci_modern_dev
@@ -27,7 +29,7 @@ done
 
 # newest: name of the package that the metapackage stands for now.
 newest() {
-    apt-cache depends linux-image-amd64 2>/dev/null | sed -n 's/^ *Depends: \(linux-image-[0-9].*-amd64\)$/\1/p' | head -n 1
+    apt-cache depends "linux-image-${flavour}amd64" 2>/dev/null | sed -n 's/^ *Depends: \(linux-image-[0-9].*-amd64\)$/\1/p' | head -n 1
 }
 
 package=$(newest)
@@ -35,7 +37,7 @@ if [ -z "$package" ] && [ "$(id -u)" -eq 0 ]; then
     apt-get update -qq >&2 || true
     package=$(newest)
 fi
-[ -n "$package" ] || fail "no package linux-image-amd64 in apt's lists: run apt-get update as root; needs Debian's sources"
+[ -n "$package" ] || fail "no package linux-image-${flavour}amd64 in apt's lists: run apt-get update as root; needs Debian's sources"
 
 rm -rf "$kernel"
 mkdir -p "$kernel/modules" "$kernel/package"
