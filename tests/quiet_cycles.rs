@@ -62,8 +62,8 @@ const LIST: [(Process, &Topic, Calls); 5] = [
         &[(CLOCK_NANOSLEEP, 1.0), (PPOLL, 2.0), (RECVFROM, 3.0), (SENDTO, 3.0), (GETRUSAGE, 0.01)],
     ),
 ];
-/// Share by which a count may be above, for cycles that are cut at the ends and calls that are made again.
-const PLAY: f64 = 0.02;
+/// Share by which a count may be above: a wait that is woken too early is gone into again.
+const PLAY: f64 = 0.1;
 
 /// Counts the system calls of some threads, by thread and number.
 struct Trace(PathBuf);

@@ -35,7 +35,7 @@ granted() {
 # With --rt required the run ends at once if anything is not granted.
 real_time() {
     walk rt demo --rt required --no-log &
-    within 120 test -f "$work/rt/run/lowlevel.lock" && within 120 grep -q 'standing: ready\|Standing' "$work/rt/said" ||
+    within 400 test -f "$work/rt/run/lowlevel.lock" && within 400 grep -q 'standing: ready\|Standing' "$work/rt/said" ||
         because "no start: $(tail -n 5 "$work/rt/said")" || return 1
     granted || return 1
     "$GANGWERK" estop --dir "$work/rt/run" >"$work/estop" 2>&1 || because "$(cat "$work/estop")" || return 1
