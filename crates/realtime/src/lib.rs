@@ -16,6 +16,7 @@ pub mod last_words;
 mod meter;
 mod period;
 mod preflight;
+mod sanitizer;
 mod stop;
 mod thread;
 

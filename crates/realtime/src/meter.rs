@@ -1,6 +1,6 @@
 //! How well a process keeps its cycle: fills the record `cycle_stats`.
 
-use crate::{Histogram, allocations};
+use crate::{Histogram, allocations, sanitizer};
 use messages::{BusCounters, CycleStats};
 
 /// Measures the cycles of the thread it lives on.
@@ -12,6 +12,7 @@ pub struct CycleMeter {
     planned_ns: u64,
     deadline_ns: u64,
     faults_before: [u64; 2],
+    armed: bool,
     stats: CycleStats,
 }
 
@@ -27,6 +28,7 @@ impl CycleMeter {
             planned_ns: 0,
             deadline_ns,
             faults_before: [0; 2],
+            armed: false,
             stats,
         }
     }
@@ -38,6 +40,7 @@ impl CycleMeter {
         (self.stats.cycles, self.stats.overruns, self.stats.skipped) = (0, 0, 0);
         self.faults_before = page_faults();
         allocations::arm();
+        self.armed = true;
     }
 
     /// A cycle planned for `planned_ns` began at `now_ns`.
@@ -47,10 +50,16 @@ impl CycleMeter {
         self.planned_ns = planned_ns;
         self.begun_ns = now_ns;
         self.lateness.record(now_ns.saturating_sub(planned_ns));
+        if self.armed {
+            sanitizer::enter();
+        }
     }
 
     /// It ended at `now_ns`, and `skipped` wake-ups were missed.
     pub fn end(&mut self, now_ns: u64, skipped: u64) {
+        if self.armed {
+            sanitizer::exit();
+        }
         self.execution.record(now_ns.saturating_sub(self.begun_ns));
         self.stats.cycles += 1;
         self.stats.skipped += skipped;

@@ -1,0 +1,33 @@
+//! What RealtimeSanitizer is worth here: it sees an allocation in an armed cycle, and none outside. With the feature `rtsan`.
+#![cfg(feature = "rtsan")]
+
+use std::hint::black_box;
+use std::process::Command;
+
+/// The process that is looked at: this program again.
+#[test]
+fn cycle() {
+    let Ok(place) = std::env::var("GANGWERK_ALLOCATES") else { return };
+    let mut meter = realtime::CycleMeter::new(0, false, 0);
+    meter.arm();
+    meter.begin(0, 0);
+    if place == "inside" {
+        black_box(Box::new(black_box(1)));
+    }
+    meter.end(0, 0);
+    black_box(Box::new(black_box(2)));
+}
+
+#[test]
+fn an_allocation_in_a_cycle_is_reported() {
+    for (place, reported) in [("inside", true), ("outside", false)] {
+        let said = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "cycle", "--nocapture"])
+            .env("GANGWERK_ALLOCATES", place)
+            .env("RTSAN_OPTIONS", "halt_on_error=false")
+            .output()
+            .unwrap();
+        let text = String::from_utf8_lossy(&said.stderr).into_owned();
+        assert_eq!(text.contains("RealtimeSanitizer: unsafe-library-call"), reported, "{place}: {text}");
+    }
+}
