@@ -383,6 +383,7 @@ fn ten_thousand_commands_per_second_lose_no_command_of_the_operator() {
         operator as f64 * 1e-6
     );
     assert_eq!(accepted + busy + refused, all, "each is answered");
+    assert_eq!(refused, 0);
 }
 
 /// Resident memory of a process \[kB\].

@@ -276,10 +276,13 @@ fn inside_a_full_disk() {
 fn full_disk() -> Option<String> {
     let table = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("estop_full.md");
     let _ = std::fs::remove_file(&table);
-    let script =
-        "mount -t tmpfs -o size=96m tmpfs /dev/shm && exec \"$0\" --exact inside_a_full_disk --nocapture";
+    // Between the trials there has to be room again: for the log that grows meanwhile, and for what commands say.
+    let size = 96 + 4 * trials();
+    let script = format!(
+        "mount -t tmpfs -o size={size}m tmpfs /dev/shm && exec \"$0\" --exact inside_a_full_disk --nocapture"
+    );
     let done = Command::new("unshare")
-        .args(["--mount", "--propagation", "private", "sh", "-c", script])
+        .args(["--mount", "--propagation", "private", "sh", "-c", &script])
         .arg(std::env::current_exe().unwrap())
         .env("GANGWERK_ESTOP_INSIDE", &table)
         .output();

@@ -1,6 +1,6 @@
 //! What the supervisor does when something hangs, dies, fills up or does not read: a robot in real time, and one thing wrong.
 
-use harness::{Running, Site, doze, turn};
+use harness::{Running, Site, WALK, doze, turn};
 use ipc::{Reader, Space};
 use messages::topics::{
     CONTROLLER_STATE, POWER, SIM_STATE, STATS_CONTROLLER, STATS_LOWLEVEL, STATS_PLANNER, STATS_SIM_BACKEND,
@@ -20,16 +20,6 @@ const WAIT: &str = "
 [[command]]
 time = 0.2
 topic = \"walk/stand\"
-";
-/// She walks, until she is told to stop.
-const WALK: &str = "
-[[command]]
-time = 0.2
-topic = \"walk/stand\"
-[[command]]
-time = 2.0
-topic = \"walk/velocity\"
-forward = 0.278
 ";
 
 fn start(scene: &str, more: &[&str]) -> (Site, Running, Space) {

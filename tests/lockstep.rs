@@ -184,7 +184,7 @@ fn any_order_of_starting_gives_the_same_walk() {
     }
 }
 
-/// What the chain did, by channel and time \[ns\].
+/// Records of what the chain did, by channel and time \[ns\].
 fn acts(parts: &[PathBuf]) -> BTreeMap<(u64, String), Vec<u8>> {
     let mut found = BTreeMap::new();
     for part in parts {

@@ -1,4 +1,4 @@
-//! What a control cycle asks of the system while the robot walks and observers come and die: a short list of system calls,
+//! System calls of a control cycle while the robot walks and observers come and die: a short list,
 //! each so often per cycle and no oftener, no allocation, no page fault.
 //!
 //! The calls are counted by the kernel (tracefs, root only), not by us. `GANGWERK_SECONDS` says how long.
@@ -8,23 +8,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use harness::{Running, Site, doze, turn};
+use harness::{Running, Site, WALK, doze, turn};
 use messages::topics::{STATS_CONTROLLER, STATS_LOWLEVEL, STATS_PLANNER, STATS_SIM_BACKEND, STATS_WATCHDOG};
 use messages::{CycleStats, Process, Topic};
 use realtime::clock;
 
 const EXE: &str = harness::executable!();
 
-/// Lola stands up and walks.
-const WALK: &str = "
-[[command]]
-time = 0.2
-topic = \"walk/stand\"
-[[command]]
-time = 2.0
-topic = \"walk/velocity\"
-forward = 0.278
-";
 /// Time until she walks \[s\].
 const WALKS: f64 = 4.0;
 const CYCLE: f64 = 1e-3;
@@ -40,7 +30,7 @@ const PPOLL: u32 = 271;
 /// Numbers of system calls, and how often per cycle at most.
 type Calls = &'static [(u32, f64)];
 
-/// What each process may ask for. A bell is rung by a datagram (sendto) to whoever is woken and heard by ppoll and recvfrom; the
+/// Calls of each process. A bell is rung by a datagram (sendto) to whoever is woken and heard by ppoll and recvfrom; the
 /// two clocks sleep; page faults are asked for (getrusage) once in a hundred cycles.
 const LIST: [(Process, &Topic, Calls); 5] = [
     (Process::Watchdog, &STATS_WATCHDOG, &[(CLOCK_NANOSLEEP, 1.0), (SENDTO, 0.02), (GETRUSAGE, 0.01)]),
@@ -63,7 +53,7 @@ const LIST: [(Process, &Topic, Calls); 5] = [
     ),
 ];
 /// Share by which a count may be above: a wait that is woken too early is gone into again.
-const PLAY: f64 = 0.1;
+const PLAY: f64 = 0.02;
 
 /// Counts the system calls of some threads, by thread and number.
 struct Trace(PathBuf);

@@ -61,7 +61,7 @@ pub struct Exchange<'a> {
     members: Vec<Member>,
     lease: LeaseKeeper,
     pending: Pending,
-    /// What clients that watch are shown; none: nothing of this run is known.
+    /// Robot that clients watch; none: nothing of this run is known.
     robot: Option<Observation>,
     forwarded: [u64; 3],
     refused: u64,

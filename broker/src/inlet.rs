@@ -36,14 +36,14 @@ pub enum Request {
     Leave { token: u32 },
 }
 
-/// What a client can ask to be listed.
+/// Tables that a client can ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Table {
     /// Commands.
     Commands,
     /// Parameters of all processes.
     Parameters,
-    /// What the broker and its clients have sent and lost.
+    /// Messages sent and lost, of the broker and its clients.
     Statistics,
 }
 

@@ -35,12 +35,12 @@ pub(crate) struct Member {
     pub(crate) watch: Watch,
 }
 
-/// What a client wants to see of the robot.
+/// Subscription of a client to the robot's state and events.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Watch {
-    /// Whether it ever asked.
+    /// It has asked.
     pub(crate) asked: bool,
-    /// Whether it gets events.
+    /// It gets events.
     pub(crate) events: bool,
     /// Time from one state to the next \[ns\]; 0: none.
     pub(crate) period: u64,

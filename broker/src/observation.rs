@@ -1,4 +1,4 @@
-//! What clients of the broker are shown of the running robot: parameters, events, and its state.
+//! The running robot as clients of the broker see it: parameters, events, and its state.
 //!
 //! The broker reads topics as any observer does: no process knows of it or waits for it.
 

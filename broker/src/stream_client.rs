@@ -76,7 +76,7 @@ pub enum News {
     Welcome(Welcome),
     /// State of the robot: tick, messages that this client has lost, and the numbers of [`StreamClient::watch`]'s lines.
     State(u64, u32, Vec<f32>),
-    /// What a process reported: tick, process and name of the event, and its detail.
+    /// Event that a process reported: tick, process and name of the event, and its detail.
     Event(u64, String, u64),
     /// Present value of a parameter that can be changed.
     Parameter(String, f64),
@@ -446,7 +446,7 @@ impl StreamClient {
     }
 }
 
-/// What a client that watches is shown.
+/// STATE, EVENT or PARAMETER.
 fn seen(id: u16, payload: &[u8]) -> Option<News> {
     let (first, rest) = split_u64(payload)?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();

@@ -22,13 +22,13 @@ pub struct Entry {
     pub range: [f64; 2],
     /// Value from the configuration of this run.
     pub default: f64,
-    /// What it is.
+    /// Meaning.
     pub about: &'static str,
-    /// How it is changed.
+    /// Way to change it.
     pub change: Change,
 }
 
-/// How a parameter is changed.
+/// Ways to change a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// While the robot runs, by the command of its process with this number.

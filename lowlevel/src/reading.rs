@@ -121,6 +121,7 @@ impl Bounds {
     ) -> bool {
         let cycles = f64::from(cycles);
         let near = |a: f64, b: f64, most: f64| (a - b).abs() <= most;
+        // A joint moves no faster than its limit, and an encoder plays a little.
         let joint = |&j: &usize| {
             let angle = self.limits.jump + self.limits.jump_speed * self.speed[j] * self.dt * cycles;
             let speed = self.speed[j] * cycles;
@@ -129,11 +130,13 @@ impl Bounds {
                 && near(now.joint_speed[j], before.joint_speed[j], speed)
                 && near(now.motor_speed[j], before.motor_speed[j], speed)
         };
+        // A touchdown changes a force by about one weight.
         let foot = |&i: &usize| {
             let (a, b, force) = (&now.foot_wrench[i], &before.foot_wrench[i], self.force * cycles);
             (0..3)
                 .all(|k| near(a.force[k], b.force[k], force) && near(a.moment[k], b.moment[k], LEVER * force))
         };
+        // The torso turns and is shaken within bounds.
         let (a, b) = (&now.imu, &before.imu);
         let imu = || {
             let turned = PLAY + 0.5 * TURN * self.dt * cycles;

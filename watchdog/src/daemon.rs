@@ -101,7 +101,7 @@ fn real_time(d: &mut Daemon, guard: &mut Guard) {
     }
 }
 
-/// What the operator is answered: a reset or an enable that has had no effect is refused.
+/// Answer to the operator: a reset or an enable that has had no effect is refused.
 fn verdict(command: &Command, before: Supply, after: Supply) -> Verdict {
     let done = match command {
         Command::Reset => after == Supply::Ready || after == Supply::On && before != Supply::On,

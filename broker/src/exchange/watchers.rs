@@ -29,7 +29,7 @@ impl Exchange<'_> {
         self.answer_lines(token, sequence, layout());
     }
 
-    /// What has come since the last turn, to whom it is due. Nobody is waited for.
+    /// Gives events, changed parameters and states to those who are due. Nobody is waited for.
     pub(super) fn show(&mut self) {
         let (now, Some(robot)) = (self.now, &mut self.robot) else { return };
         while let Some(event) = robot.next_event() {

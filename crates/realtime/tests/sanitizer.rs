@@ -1,4 +1,4 @@
-//! What RealtimeSanitizer is worth here: it sees an allocation in an armed cycle, and none outside. With the feature `rtsan`.
+//! RealtimeSanitizer sees an allocation in an armed cycle, and none outside. With the feature `rtsan`.
 #![cfg(feature = "rtsan")]
 
 use std::hint::black_box;

@@ -24,7 +24,7 @@ pub(crate) const ON_THE_WAY: usize = 2;
 
 pub(crate) const WALK: Command = Command::Velocity(VelocityCommand { forward: 0.3, left: 0.0, turn: 0.0 });
 
-/// What an operator sends in one tick.
+/// Frame that an operator sends in one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Frame {
     Command(Command),
@@ -70,7 +70,7 @@ pub(crate) enum Process {
     Stops,
 }
 
-/// What may be broken on purpose.
+/// Rule that is broken on purpose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Broken {
     Nothing,
@@ -126,7 +126,7 @@ pub(crate) struct World {
     rules: Rules,
 }
 
-/// What holds, seen from outside.
+/// Rules, seen from outside, and what they keep.
 #[derive(Clone, Debug, Default, Hash)]
 struct Rules {
     /// Connection that may move the robot, and when it last showed that it is there; by what the broker has handled.
@@ -188,7 +188,7 @@ impl World {
         }
     }
 
-    /// What the broker does in a tick: commands by class, then everything else, then what is a matter of time.
+    /// The broker's work of a tick: commands by class, then everything else, then what is a matter of time.
     fn broker(&mut self) -> Result<(), &'static str> {
         let now = self.now * TICK;
         let mut all: Vec<OnTheWay> =
@@ -248,7 +248,7 @@ impl World {
         Ok(())
     }
 
-    /// What came and may take effect, urgent commands first.
+    /// Commands that came and may take effect, urgent commands first.
     fn take(&mut self, end: fn(&mut Self) -> &mut End, how: Process) -> Result<Vec<Live>, &'static str> {
         let (told, now, broken) = (self.told, self.now, self.broken);
         let end = end(self);

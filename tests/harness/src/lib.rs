@@ -3,7 +3,7 @@
 mod place;
 mod running;
 
-pub use place::{Site, root};
+pub use place::{Site, WALK, root};
 pub use running::{Running, Said, doze, turn};
 pub use rustix::process::Signal;
 

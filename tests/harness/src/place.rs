@@ -8,6 +8,17 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 
+/// Tables of a scene: Lola stands up, and walks until she is told to stop.
+pub const WALK: &str = "
+[[command]]
+time = 0.2
+topic = \"walk/stand\"
+[[command]]
+time = 2.0
+topic = \"walk/velocity\"
+forward = 0.278
+";
+
 /// Directory, configuration and port of one test. Removed when dropped.
 pub struct Site {
     exe: PathBuf,
