@@ -11,6 +11,7 @@
 //!
 //! Only this crate names TOML.
 
+mod acceleration;
 pub mod brake;
 pub mod bus_fault;
 pub mod crane;

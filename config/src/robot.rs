@@ -7,6 +7,7 @@ use drives::homing::HomeSwitch;
 use messages::MAX_JOINTS;
 use messages::layout::Layout;
 
+use crate::acceleration;
 use crate::dbc;
 pub use crate::drive::Drive;
 use crate::drive::drives;
@@ -66,6 +67,9 @@ pub struct Joint {
     pub speed_limit: f64,
     /// \[rad/s^2\] How fast the joint may be brought to rest.
     pub braking: f64,
+    /// \[rad/s^2\] What its drives can accelerate it with at any angle of its range ([`Robot::acceleration`] is exact);
+    /// infinite for a robot of ideal drives.
+    pub acceleration: f64,
     /// \[rad\] Comfortable angle for redundancy resolution.
     pub comfort: f64,
     /// \[1\] Weight W of the joint's speed in the inverse kinematics (5.36).
@@ -136,6 +140,8 @@ impl Robot {
         let name = directory.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let (mut robot, (can, spare_names)) =
             section::read(&path, &text, |top| (Self::build(top, name), can(top)))?;
+        let limits = acceleration::least(&robot.drives, &robot.joints);
+        robot.joints.iter_mut().zip(limits).for_each(|(joint, limit)| joint.acceleration = limit);
         let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
         let classic = dbc::load(&directory.join(&can[0]), &joints, hash)?;
         let layout = dbc::load(&directory.join(&can[1]), &joints, hash)?;
@@ -207,6 +213,7 @@ impl Joint {
             range: row.interval("range_deg", "deg", -360.0..=360.0).map(f64::to_radians),
             speed_limit: row.number("speed_limit", "rad/s", POSITIVE),
             braking: row.number("braking", "rad/s^2", POSITIVE),
+            acceleration: f64::INFINITY,
             comfort: row.number("comfort_deg", "deg", -360.0..=360.0).to_radians(),
             weight: row.number("weight", "", POSITIVE),
         }

@@ -19,11 +19,16 @@ use config::Robot;
 use messages::{LEFT, MAX_JOINTS, RIGHT};
 use multibody::ModelError;
 
+use crate::approach::Approach;
 use crate::inverse_kinematics::JointVector;
 use crate::task_space::TaskSpace;
 
 /// \[m/rad\] Damping of the division by l: an arm that is stretched out forward cannot move that way.
 const DAMPING: f64 = 0.02;
+/// How an arm returns that is not where it should be, as after standing up from a crouch.
+const RETURN: Approach = Approach { rate: f64::INFINITY, speed: 0.5, acceleration: 5.0 };
+/// Share of its lever at rest that an arm has at least while it hangs.
+const HANGS: f64 = 0.3;
 /// Share of its length that an arm is swung out at most.
 const REACH: f64 = 0.8;
 
@@ -34,11 +39,15 @@ pub struct Arms {
     /// First joint of each leg that the other leg does not need.
     hips: [usize; 2],
     gain: f64,
-    /// x_0 of each arm, and how far it may be from there \[m\].
+    /// x_0 of each arm, and how far it may be from there \[m\]; l there \[m/rad\], and the shoulder's angle \[rad\].
     rest: [f64; 2],
     reach: [f64; 2],
+    lever: [f64; 2],
+    comfort: [f64; 2],
     /// References of the last cycle, for their rates; none after a pause.
     last: Option<[f64; 2]>,
+    /// \[rad/s\] Speeds with which the shoulders returned to their references in the last cycle.
+    returning: [f64; 2],
 }
 
 impl Arms {
@@ -58,18 +67,29 @@ impl Arms {
             gain,
             rest: [0, 1].map(|i| place(i).0.x),
             reach: [0, 1].map(|i| REACH * place(i).1.norm()),
+            lever: [0, 1].map(|i| place(i).1.x),
+            comfort: arms.joints.map(|j| q[j]),
             last: None,
+            returning: [0.0; 2],
         }))
     }
 
     /// Begins anew after a pause.
     pub fn halt(&mut self) {
         self.last = None;
+        self.returning = [0.0; 2];
     }
 
-    /// Speeds of the shoulders, `desired` being the kinematics of the angles that the joints were told last; errors
-    /// vanish with `drift` \[1/s\].
-    pub fn drive(&mut self, desired: &TaskSpace, dt: f64, drift: f64, given: &mut JointVector) {
+    /// Speeds of the shoulders, `desired` being the kinematics of the `angles` \[rad\] that the joints were told last; small
+    /// errors vanish with `drift` \[1/s\], large ones as fast as [`RETURN`] lets them.
+    pub fn drive(
+        &mut self,
+        desired: &TaskSpace,
+        angles: &[f64],
+        dt: f64,
+        drift: f64,
+        given: &mut JointVector,
+    ) {
         let leg = |foot: usize| desired.limb(self.hips[foot]).0.x;
         let half = 0.5 * self.gain * (leg(LEFT) - leg(RIGHT));
         let wanted = [self.rest[RIGHT] + half, self.rest[LEFT] - half];
@@ -78,8 +98,15 @@ impl Arms {
             let (com, swing) = desired.limb(self.joints[i]);
             let bounded = wanted[i].clamp(self.rest[i] - self.reach[i], self.rest[i] + self.reach[i]);
             let rate = if bounded == wanted[i] { (wanted[i] - last[i]) / dt } else { 0.0 };
-            let speed = rate + drift * (bounded - com.x);
-            given[self.joints[i]] = swing.x * speed / (swing.x * swing.x + DAMPING * DAMPING);
+            // Joint angles from ways of the arm's centre of gravity.
+            let turn = swing.x / (swing.x * swing.x + DAMPING * DAMPING);
+            // An arm that does not hang would be led over the top: it comes down first.
+            let hangs = swing.x / self.lever[i] > HANGS;
+            let error =
+                if hangs { turn * (bounded - com.x) } else { self.comfort[i] - angles[self.joints[i]] };
+            let back = Approach { rate: drift, ..RETURN };
+            self.returning[i] = back.next(error, self.returning[i], dt);
+            given[self.joints[i]] = turn * rate + self.returning[i];
         }
     }
 }
@@ -126,7 +153,7 @@ mod tests {
                     worst = worst.max((at[LEFT] - self.arms.rest[LEFT] + half).abs());
                 }
                 let mut given = JointVector::zeros();
-                self.arms.drive(&self.desired, DT, 100.0, &mut given);
+                self.arms.drive(&self.desired, &self.q, DT, 100.0, &mut given);
                 for j in self.arms.joints {
                     self.q[j] += DT * given[j];
                 }

@@ -91,11 +91,20 @@ impl InverseKinematics {
         Factorised { jacobian: *jacobian, gram, damped }
     }
 
-    /// Joint speeds for the task velocity `xd`; `given` are the speeds of the joints that are not free. (5.38)
-    pub fn speeds(&self, f: &Factorised, xd: &TaskVector, given: &JointVector, q: &[f64]) -> JointVector {
+    /// Joint speeds for the task velocity `xd`; `given` are the speeds of the joints that are not free, `share` of the
+    /// null-space motion is wanted (0 to 1). (5.38)
+    pub fn speeds(
+        &self,
+        f: &Factorised,
+        xd: &TaskVector,
+        given: &JointVector,
+        q: &[f64],
+        share: f64,
+    ) -> JointVector {
         let mut z = *given;
+        let gain = share * self.null_space_gain;
         for j in 0..MAX_JOINTS.min(q.len()) {
-            z[j] -= self.null_space_gain * self.inverse_weight[j] * self.gradient(j, q[j]);
+            z[j] -= gain * self.inverse_weight[j] * self.gradient(j, q[j]);
         }
         let mut rest = *xd;
         for j in (0..q.len().min(MAX_JOINTS)).filter(|&j| z[j] != 0.0) {
@@ -154,6 +163,7 @@ mod tests {
                 range: [-1.0, 1.0],
                 speed_limit: 8.0,
                 braking: 100.0,
+                acceleration: f64::INFINITY,
                 comfort: 0.1,
                 weight: 1.0 + j as f64,
             })
@@ -176,7 +186,7 @@ mod tests {
         assert!(!f.damped);
         let xd = TaskVector::from_fn(|i, _| 0.1 * i as f64 - 0.4);
         let q: Vec<f64> = (0..14).map(|i| 0.12 * f64::from(i) - 0.9).collect();
-        let speeds = ik.speeds(&f, &xd, &JointVector::zeros(), &q);
+        let speeds = ik.speeds(&f, &xd, &JointVector::zeros(), &q, 1.0);
         assert!((j * speeds - xd).norm() < 1e-11);
     }
 
@@ -188,7 +198,7 @@ mod tests {
         let f = ik.factorise(&j);
         let xd = TaskVector::repeat(0.2);
         let q = [0.95; 14];
-        let speeds = ik.speeds(&f, &xd, &JointVector::zeros(), &q);
+        let speeds = ik.speeds(&f, &xd, &JointVector::zeros(), &q, 1.0);
         // W q' + alpha grad H must lie in the row space of J.
         let g = JointVector::from_fn(|i, _| {
             if i < 14 { (1.0 + i as f64) * speeds[i] + 2.0 * ik.gradient(i, q[i]) } else { 0.0 }
@@ -204,7 +214,7 @@ mod tests {
         let f = ik.factorise(&jacobian(3));
         let mut q = [0.0; 14];
         q[4] = 0.97;
-        let speeds = ik.speeds(&f, &TaskVector::zeros(), &JointVector::zeros(), &q);
+        let speeds = ik.speeds(&f, &TaskVector::zeros(), &JointVector::zeros(), &q, 1.0);
         let slope: f64 = (0..14).map(|j| ik.gradient(j, q[j]) * speeds[j]).sum();
         assert!(slope < 0.0, "dH/dt = {slope}");
     }
@@ -219,7 +229,7 @@ mod tests {
         let mut given = JointVector::zeros();
         given[5] = 0.7;
         let xd = TaskVector::repeat(0.1);
-        let speeds = ik.speeds(&f, &xd, &given, &[0.0; 14]);
+        let speeds = ik.speeds(&f, &xd, &given, &[0.0; 14], 1.0);
         assert_eq!(speeds[5], 0.7);
         assert!((j * speeds - xd).norm() < 1e-10);
     }
@@ -231,7 +241,7 @@ mod tests {
         j.row_mut(2).fill(0.0);
         let f = ik.factorise(&j);
         assert!(f.damped);
-        let speeds = ik.speeds(&f, &TaskVector::repeat(0.1), &JointVector::zeros(), &[0.0; 14]);
+        let speeds = ik.speeds(&f, &TaskVector::repeat(0.1), &JointVector::zeros(), &[0.0; 14], 1.0);
         assert!(speeds.iter().all(|s| s.is_finite()) && speeds.norm() < 10.0);
         j.fill(f64::NAN);
         let f = ik.factorise(&j);

@@ -14,6 +14,7 @@
 //! | arm swing | 4.9 | [`arms`] |
 //! | direct kinematics of the desired joints (feedback path 1) | (4.5)-(4.10) | [`task_space`] |
 
+mod approach;
 pub mod arms;
 pub mod contact;
 pub mod contact_force;

@@ -28,6 +28,9 @@ use crate::watch::Watch;
 const MISSED_CYCLES: u64 = 20;
 /// \[s\] A limit is told again after so long without it.
 const QUIET: f64 = 1.0;
+/// \[s\] Time in which drift compensation and null-space motion set in when the joints begin to move: they may rest far from
+/// comfort, and where they rest is not quite where a plan begins.
+const RAMP: f64 = 0.5;
 /// Feedback path 2.
 const MEASURED: u64 = 2;
 
@@ -56,6 +59,8 @@ pub struct Controller {
     angle: [f64; MAX_JOINTS],
     speed: JointVector,
     started: bool,
+    /// \[s\] Since the joints were at rest.
+    moving: f64,
     /// Tick of the last cycle.
     last_tick: u64,
     /// \[m\] @I_0 Heights at which the plan wanted the soles at the end of the last cycle.
@@ -115,6 +120,7 @@ impl Controller {
             angle: [0.0; MAX_JOINTS],
             speed: JointVector::zeros(),
             started: false,
+            moving: 0.0,
             last_tick: 0,
             sole_height: [0.0; 2],
             watch: Watch::default(),
@@ -210,6 +216,7 @@ impl Controller {
             self.stabilize(sensors, &now, &end, &estimate);
         } else {
             self.speed.fill(0.0);
+            self.moving = 0.0;
         }
         (now, estimate)
     }
@@ -284,12 +291,25 @@ impl Controller {
             };
             gaze.drive(&torso, self.dt, &self.angle, &self.speed, &mut given);
         }
+        let drift = self.drift();
         if let Some(arms) = &mut self.arms {
-            arms.drive(&self.desired, self.dt, self.control.drift_gain, &mut given);
+            arms.drive(&self.desired, &self.angle, self.dt, drift, &mut given);
         }
-        let wanted = self.ik.speeds(&task, &velocity, &given, &self.angle);
+        let wanted = self.ik.speeds(&task, &velocity, &given, &self.angle, self.share());
+        self.moving += self.dt;
         let held = self.integrate(&wanted);
         self.tell_limits([task.damped, self.modification.limited, held]);
+    }
+
+    /// Share of drift compensation and null-space motion that is wanted: all of it a while after the joints began to move.
+    fn share(&self) -> f64 {
+        let x = (self.moving / RAMP).min(1.0);
+        x * x * (3.0 - 2.0 * x)
+    }
+
+    /// \[1/s\] K_x (5.35).
+    fn drift(&self) -> f64 {
+        self.control.drift_gain * self.share()
     }
 
     /// An event where a nearly singular task begins to be damped (1), a modification (2) or a joint (3) meets its limit,

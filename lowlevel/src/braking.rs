@@ -23,6 +23,7 @@ mod tests {
             range: [-1.0, 1.0],
             speed_limit: 9.0,
             braking: 64.0,
+            acceleration: f64::INFINITY,
             comfort: 0.0,
             weight: 1.0,
         };

@@ -17,6 +17,9 @@ use drives::cia402::{self, Wanted, controlword};
 /// \[m/s^2\]
 const GRAVITY: f64 = 9.81;
 
+/// \[s\] A joint that is held back is told of again after so long without it.
+const QUIET: f64 = 1.0;
+
 /// What the joint loop is doing with the joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
@@ -44,7 +47,11 @@ pub struct JointLoop {
     /// Cycles since targets were new, now and in the cycle before.
     stale: u32,
     stale_before: u32,
+    /// Whether targets were followed in the cycle before.
+    tracked: bool,
     rejoin: [Rejoin; messages::MAX_JOINTS],
+    /// Tick at which each joint was held back last.
+    limited: [Option<u64>; messages::MAX_JOINTS],
     /// Drives with a fault that was told.
     named: [bool; messages::MAX_JOINTS],
     guard: LineGuard,
@@ -69,7 +76,9 @@ impl JointLoop {
             used: 0,
             stale: 0,
             stale_before: 0,
+            tracked: false,
             rejoin: [Rejoin::default(); messages::MAX_JOINTS],
+            limited: [None; messages::MAX_JOINTS],
             named: [false; messages::MAX_JOINTS],
             guard: LineGuard::new(robot, system, dt),
             start_up: StartUpSequence::new(robot.joints.len(), robot.total_mass * GRAVITY),
@@ -144,7 +153,8 @@ impl JointLoop {
             State::Stop(_) => self.brake_all(),
             State::Track => self.track(targets),
         }
-        if self.state != State::Track {
+        self.tracked = self.state == State::Track;
+        if !self.tracked {
             self.rejoin.iter_mut().for_each(Rejoin::forget);
         }
         self.follow_the_unable();
@@ -252,8 +262,8 @@ impl JointLoop {
         }
     }
 
-    /// New targets if they are new and finite, otherwise the last ones carried on at their speed. After a pause the joints
-    /// come back to them gently.
+    /// New targets if they are new and finite, otherwise the last ones carried on at their speed. At first and after a pause
+    /// the joints come to them gently.
     fn track(&mut self, targets: Option<&JointTargets>) {
         let fresh = targets.filter(|_| self.stale == 0);
         if let Some(bad) = fresh.and_then(|t| self.first_not_finite(t)) {
@@ -261,6 +271,7 @@ impl JointLoop {
             self.state = self.stop(EventCode::TargetNotFinite, bad as u64);
             return self.brake_all();
         }
+        let mut held = 0u64;
         for (j, joint) in self.robot.joints.iter().enumerate() {
             if !self.leads(j) {
                 self.rejoin[j].forget();
@@ -276,7 +287,7 @@ impl JointLoop {
             let wanted = match fresh {
                 Some(t) => {
                     let target = Motion { angle: t.angle[j], speed: t.speed[j] };
-                    if self.stale_before > 0 {
+                    if self.stale_before > 0 || !self.tracked {
                         self.rejoin[j].begin(carried, target);
                         carried
                     } else if self.rejoin[j].is_over() {
@@ -287,14 +298,31 @@ impl JointLoop {
                 }
                 None => carried,
             };
-            if let Ok((motion, held)) = admit(joint, last, wanted, self.dt) {
+            let possible = || self.robot.acceleration(j, &self.sensors.joint_angle);
+            if let Ok((motion, limited)) = admit(joint, possible, last, wanted, self.dt) {
                 self.last[j] = motion;
-                if held {
+                if limited {
                     self.sensors.targets_limited += 1;
-                    self.event.get_or_insert((EventCode::TargetLimited, j as u64));
+                    held |= 1 << j;
                 }
             }
         }
+        (0..self.robot.joints.len()).filter(|j| held >> j & 1 == 1).for_each(|j| self.tell_limited(j));
+    }
+
+    /// Tells that joint `j` is held back: once, until it was not for [`QUIET`]; in the next cycle if something else is told in
+    /// this one.
+    fn tell_limited(&mut self, j: usize) {
+        let tick = self.sensors.header.tick;
+        let quiet = |last: u64| tick.saturating_sub(last) as f64 * self.dt > QUIET;
+        let begins = self.limited[j].is_none_or(quiet);
+        if begins && self.event.is_some() {
+            return;
+        }
+        if begins {
+            self.event = Some((EventCode::TargetLimited, j as u64));
+        }
+        self.limited[j] = Some(tick);
     }
 
     fn first_not_finite(&self, t: &JointTargets) -> Option<usize> {

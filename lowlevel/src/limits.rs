@@ -2,6 +2,11 @@
 
 use config::robot::Joint;
 
+/// Share of the acceleration with which a joint that catches up plans to slow down.
+const PLANNED: f64 = 0.8;
+/// \[1\] A target at its limit is none beyond it.
+const ROUNDING: f64 = 1.0 + 1e-9;
+
 /// Why a target was changed or refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
@@ -22,22 +27,55 @@ pub struct Motion {
 
 /// The nearest admissible target to `wanted`, one cycle of `dt` \[s\] after `last`, and whether anything was held back.
 ///
+/// Range, speed, and what its drives can accelerate: `possible` \[rad/s^2\], asked for only when the target needs more than
+/// they can everywhere. A joint that was held back follows as fast as it can and slows down in time, so that it meets its
+/// targets again without passing them.
+///
 /// Finite first: a NaN passes every comparison of a clamp.
-pub fn admit(joint: &Joint, last: Motion, wanted: Motion, dt: f64) -> Result<(Motion, bool), Refusal> {
+pub fn admit(
+    joint: &Joint,
+    possible: impl FnOnce() -> f64,
+    last: Motion,
+    wanted: Motion,
+    dt: f64,
+) -> Result<(Motion, bool), Refusal> {
     if !(wanted.angle.is_finite() && wanted.speed.is_finite()) {
         return Err(Refusal::NotFinite);
     }
+    let asked = needed(last, wanted, dt);
+    let reached =
+        if asked <= joint.acceleration { wanted } else { accelerated(joint, possible(), last, wanted, dt) };
     let reach = joint.speed_limit * dt;
     let [low, high] = joint.range;
     // A joint found outside of its range may stay where it is or come back, never go further out.
     let (low, high) = (low.min(last.angle), high.max(last.angle));
-    let angle = wanted.angle.clamp(low, high).clamp(last.angle - reach, last.angle + reach);
-    let mut speed = wanted.speed.clamp(-joint.speed_limit, joint.speed_limit);
-    let held = angle != wanted.angle || speed != wanted.speed;
-    if angle != wanted.angle {
+    let angle = reached.angle.clamp(low, high).clamp(last.angle - reach, last.angle + reach);
+    let mut speed = reached.speed.clamp(-joint.speed_limit, joint.speed_limit);
+    if angle != reached.angle {
         speed = speed.clamp(-((angle - last.angle) / dt).abs(), ((angle - last.angle) / dt).abs());
     }
-    Ok((Motion { angle, speed }, held))
+    let motion = Motion { angle, speed };
+    Ok((motion, motion != wanted))
+}
+
+/// \[rad/s^2\] Acceleration that a target needs: by its speed, or by its angle if that is further from where the joint moves
+/// at its last speed (a target whose angle and speed agree needs half of it for the angle).
+fn needed(last: Motion, wanted: Motion, dt: f64) -> f64 {
+    let ahead = wanted.angle - last.angle - last.speed * dt;
+    ((wanted.speed - last.speed) / dt).abs().max((ahead / (dt * dt)).abs()) / ROUNDING
+}
+
+/// The motion with at most `most` \[rad/s^2\] that leads to `wanted`.
+fn accelerated(joint: &Joint, most: f64, last: Motion, wanted: Motion, dt: f64) -> Motion {
+    if needed(last, wanted, dt) <= most {
+        return wanted;
+    }
+    let ahead = wanted.angle - last.angle - last.speed * dt;
+    let in_time = (2.0 * PLANNED * most * ahead.abs()).sqrt().min(ahead.abs() / dt);
+    let speed = wanted.speed + in_time.copysign(ahead);
+    let speed = speed.clamp(last.speed - most * dt, last.speed + most * dt);
+    let speed = speed.clamp(-joint.speed_limit, joint.speed_limit);
+    Motion { angle: last.angle + 0.5 * (last.speed + speed) * dt, speed }
 }
 
 /// Largest allowed distance between target and measured angle at a joint speed: a floor plus a delay (scales with
@@ -57,6 +95,7 @@ mod tests {
             range: [-0.1, 2.0],
             speed_limit: 8.0,
             braking: 100.0,
+            acceleration: 200.0,
             comfort: 0.3,
             weight: 1.0,
         }
@@ -65,16 +104,42 @@ mod tests {
     #[test]
     fn a_target_in_range_passes_unchanged() {
         let wanted = Motion { angle: 0.504, speed: 4.0 };
-        assert_eq!(admit(&joint(), Motion { angle: 0.5, speed: 4.0 }, wanted, 1e-3), Ok((wanted, false)));
+        assert_eq!(
+            admit(&joint(), || 200.0, Motion { angle: 0.5, speed: 4.0 }, wanted, 1e-3),
+            Ok((wanted, false))
+        );
     }
 
     #[test]
     fn a_joint_outside_of_its_range_may_come_back() {
         let last = Motion { angle: -0.3, speed: 0.0 };
-        let (m, held) = admit(&joint(), last, Motion { angle: -0.295, speed: 5.0 }, 1e-3).unwrap();
+        let joint = Joint { acceleration: f64::INFINITY, ..joint() };
+        let (m, held) =
+            admit(&joint, || f64::INFINITY, last, Motion { angle: -0.295, speed: 5.0 }, 1e-3).unwrap();
         assert!(!held && m.angle == -0.295);
-        let (m, held) = admit(&joint(), last, Motion { angle: -0.305, speed: -5.0 }, 1e-3).unwrap();
+        let (m, held) =
+            admit(&joint, || f64::INFINITY, last, Motion { angle: -0.305, speed: -5.0 }, 1e-3).unwrap();
         assert!(held && m.angle == -0.3 && m.speed == 0.0);
+    }
+
+    /// A step of the target by half a radian: the drive's acceleration is kept, the target met and not passed.
+    #[test]
+    fn a_target_that_jumps_is_followed_as_fast_as_the_drive_can_and_met() {
+        let (j, target) = (joint(), Motion { angle: 1.0, speed: 0.0 });
+        let mut last = Motion { angle: 0.5, speed: 0.0 };
+        let mut cycles = 0;
+        while last != target {
+            let (next, held) = admit(&j, || 200.0, last, target, 1e-3).unwrap();
+            assert!((next.speed - last.speed).abs() <= 0.2 * (1.0 + 1e-9), "{last:?} {next:?}");
+            assert_eq!(held, next != target);
+            assert!(next.angle <= 1.0 + 2e-4, "passed: {next:?}");
+            last = next;
+            cycles += 1;
+            assert!(cycles < 200, "{last:?}");
+        }
+        // Half of the way at 200 rad/s^2 each, at best.
+        let best = 2.0 * (0.5 / 200.0f64).sqrt() / 1e-3;
+        assert!((best..1.5 * best).contains(&f64::from(cycles)), "{cycles} cycles, {best:.0} at best");
     }
 
     fn any_f64() -> impl Strategy<Value = f64> {
@@ -93,7 +158,7 @@ mod tests {
         #[test]
         fn whatever_is_asked_stays_within_range_and_rate(angle in any_f64(), speed in any_f64(), last in -0.1..2.0f64) {
             let j = joint();
-            match admit(&j, Motion { angle: last, speed: 0.0 }, Motion { angle, speed }, 1e-3) {
+            match admit(&j, || 200.0, Motion { angle: last, speed: 0.0 }, Motion { angle, speed }, 1e-3) {
                 Err(Refusal::NotFinite) => prop_assert!(!(angle.is_finite() && speed.is_finite())),
                 Err(other) => prop_assert!(false, "{other:?}"),
                 Ok((m, held)) => {
@@ -101,6 +166,7 @@ mod tests {
                     prop_assert!((j.range[0]..=j.range[1]).contains(&m.angle));
                     prop_assert!((m.angle - last).abs() <= j.speed_limit * 1e-3 * (1.0 + 1e-12));
                     prop_assert!(m.speed.abs() <= j.speed_limit);
+                    prop_assert!(m.speed.abs() <= j.acceleration * 1e-3 * (1.0 + 1e-9), "from rest");
                     prop_assert_eq!(held, m.angle != angle || m.speed != speed);
                 }
             }

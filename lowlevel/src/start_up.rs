@@ -16,7 +16,7 @@ use messages::{Command, EventCode, Sensors, StartUp, Wrench};
 
 /// Share of the weight on a foot up to which it counts as unloaded: nothing but what hangs on its sensor, and its offset.
 const UNLOADED: f64 = 0.15;
-/// Share of the weight on both feet from which a robot that was not hung up stands.
+/// Share of the weight on both feet, at any time since the supply is on, from which a robot that was not hung up stands.
 const STOOD: f64 = 0.5;
 /// Share of the weight on both feet, for [`LANDED_CYCLES`], from which a robot that was lowered stands.
 const LANDED: f64 = 0.9;
@@ -46,6 +46,8 @@ pub struct StartUpSequence {
     joints: usize,
     /// \[N\]
     weight: f64,
+    /// \[N\] Most that both feet carried since the supply is on.
+    most_load: f64,
     zero: Zero,
     /// What the force sensors read; right, left.
     raw: [Wrench; 2],
@@ -63,6 +65,7 @@ impl StartUpSequence {
             state: StartUp::Off,
             joints,
             weight,
+            most_load: 0.0,
             zero: Zero::default(),
             raw: Default::default(),
             cycles: 0,
@@ -122,6 +125,8 @@ impl StartUpSequence {
         let stands = self.state == StartUp::Standing;
         let off = (0..self.joints).find(|&j| !(is_enabled(sensors, j) || stands && spares(j)));
         let load: f64 = sensors.foot_wrench.iter().map(|w| w.force[2]).sum();
+        // A robot that settles while its supply comes on may leave its soles for a moment.
+        self.most_load = if sensors.power == 1 { self.most_load.max(load) } else { 0.0 };
         let carried = load > LANDED * self.weight;
         self.landed = if carried { self.landed.saturating_add(1) } else { 0 };
         let next = match self.state {
@@ -135,7 +140,7 @@ impl StartUpSequence {
             StartUp::Hanging => StartUp::Hanging,
             StartUp::Zeroed if self.landed >= LANDED_CYCLES => StartUp::Standing,
             StartUp::Zeroed => StartUp::Zeroed,
-            _ if load > STOOD * self.weight => StartUp::Standing,
+            _ if self.most_load > STOOD * self.weight => StartUp::Standing,
             _ => StartUp::Hanging,
         };
         match (self.state, next) {

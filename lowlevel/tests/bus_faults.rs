@@ -47,7 +47,7 @@ impl Rig {
         let loop_ = JointLoop::new(&robot, &system, DT);
         let (seen, events) = (Sensors::default(), Vec::new());
         let mut rig = Self { robot, system, loop_, tick: 0, drives, seen, trip: 0, events };
-        for _ in 0..10 {
+        for _ in 0..200 {
             let answer = rig.answer();
             rig.cycle(Some(&answer));
         }

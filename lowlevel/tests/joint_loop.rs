@@ -78,8 +78,8 @@ impl Rig {
 fn follows_targets_to_the_resolution_of_the_bus() {
     let mut rig = Rig::tracking();
     let mut wanted = rig.still();
-    wanted.angle[5] += 0.004;
-    wanted.speed[5] = 4.0;
+    wanted.angle[5] += 0.0001;
+    wanted.speed[5] = 0.2;
     rig.cycle(Some(&wanted));
     assert!((rig.last.targets.angle[5] - wanted.angle[5]).abs() < 2e-9);
     assert_eq!(rig.loop_.take_event(), None);

@@ -103,7 +103,7 @@ impl Rig {
         let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
         targets.header.tick = self.tick;
         targets.angle = self.wanted;
-        let step = if self.tick.is_multiple_of(2) { 1e-3 } else { -1e-3 };
+        let step = if self.tick.is_multiple_of(2) { 1e-5 } else { -1e-5 };
         targets.angle.iter_mut().for_each(|q| *q += step);
         let (frames, _) = self.loop_.send(Some(&targets), None);
         decode_targets(&self.robot.layout, frames, &mut self.told);

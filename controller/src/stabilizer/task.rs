@@ -4,12 +4,13 @@ use curves::Sample;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::Controller;
+use crate::approach::Approach;
 use crate::following::Desired;
 use crate::inverse_kinematics::{JointVector, TaskVector};
 use crate::torso;
 
-/// Joints without a task go to their comfortable angles with this time constant \[1/s\] and at most this speed \[rad/s\].
-const SETTLE: (f64, f64) = (2.0, 0.5);
+/// How joints without a task go to their comfortable angles.
+const SETTLE: Approach = Approach { rate: 2.0, speed: 0.5, acceleration: 5.0 };
 
 /// \[rad\] Toes are not held against the ground further than this from where they are.
 const YIELD: f64 = 0.05;
@@ -51,7 +52,7 @@ impl Controller {
             let is = self.desired.sole(foot);
             let position_error = position - (is.position - self.desired.com());
             let rotation_error = rotation_vector(&(rotation * is.rotation.transpose()));
-            let k = self.control.drift_gain;
+            let k = self.drift();
             x.fixed_rows_mut::<3>(6 * foot).copy_from(&(velocity + position_error * k));
             x.fixed_rows_mut::<3>(6 * foot + 3).copy_from(&(turning + rotation_error * k));
         }
@@ -63,12 +64,12 @@ impl Controller {
     fn toe_speed(&self, plan: &Sample<1>, toe: usize) -> f64 {
         let bent = self.state.tracking_error[toe]; // q_d - q
         let over = bent - bent.clamp(-YIELD, YIELD);
-        let back = (plan.position[0] - self.angle[toe]) * self.control.drift_gain;
+        let back = (plan.position[0] - self.angle[toe]) * self.drift();
         let moving = plan.velocity[0] != 0.0 || plan.acceleration[0] != 0.0;
         if over == 0.0 || moving {
-            plan.velocity[0] + back.clamp(-SETTLE.1, SETTLE.1)
+            plan.velocity[0] + back.clamp(-SETTLE.speed, SETTLE.speed)
         } else {
-            -over * self.control.drift_gain
+            -over * self.drift()
         }
     }
 
@@ -76,7 +77,7 @@ impl Controller {
     pub(super) fn given_speeds(&self, end: &Desired) -> JointVector {
         let mut speeds = JointVector::zeros();
         for (j, joint) in self.robot.joints.iter().enumerate().filter(|(j, _)| !self.free[*j]) {
-            speeds[j] = (SETTLE.0 * (joint.comfort - self.angle[j])).clamp(-SETTLE.1, SETTLE.1);
+            speeds[j] = SETTLE.next(joint.comfort - self.angle[j], self.speed[j], self.dt);
         }
         for (foot, toe) in self.robot.feet.iter().enumerate().filter_map(|(i, f)| Some((i, f.toe?))) {
             speeds[toe] = self.toe_speed(&end.toes[foot], toe);

@@ -131,7 +131,7 @@ impl Following {
     fn step(&mut self, q: &mut [f64], wanted: &TaskVector, h: f64) {
         self.space.task_jacobian(&mut self.jacobian);
         let factorised = self.kinematics.factorise(&self.jacobian);
-        let speeds = self.kinematics.speeds(&factorised, wanted, &JointVector::zeros(), q);
+        let speeds = self.kinematics.speeds(&factorised, wanted, &JointVector::zeros(), q, 1.0);
         for (q, speed) in q.iter_mut().zip(speeds.iter().take(MAX_JOINTS)) {
             *q += h * speed;
         }

@@ -75,7 +75,7 @@ fn knee(bench: &Bench) -> Findings {
         let mut xd = TaskVector::zeros();
         xd.fixed_rows_mut::<3>(6 * RIGHT).copy_from(&(leg * -0.1));
         let task = ik.factorise(&jacobian);
-        let speed = ik.speeds(&task, &xd, &JointVector::zeros(), &angles)[bent];
+        let speed = ik.speeds(&task, &xd, &JointVector::zeros(), &angles, 1.0)[bent];
         Ok::<_, Box<dyn std::error::Error>>((0.1 / shorter, speed, task.damped))
     };
     let mut findings = Vec::new();
