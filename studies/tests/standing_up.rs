@@ -8,6 +8,7 @@ use config::scene::Integrator;
 use config::{Setup, root};
 use messages::{Command, EventCode, GaitState, MAX_JOINTS, Process};
 use studies::chain::Chain;
+use studies::figures::Gatherer;
 
 /// \[1\] What both feet carry together in the first second, in weights.
 const LOAD: [f64; 2] = [0.7, 1.3];
@@ -168,5 +169,29 @@ fn from_poses_nobody_chose() {
                 if setup.scene.depth == 1 { Integrator::Euler } else { Integrator::SemiImplicit };
             stand_up(&setup).check(&format!("{name} pose {k}"));
         }
+    }
+}
+
+/// The demonstration, which begins in a crouch, walked to its end with motors and with elastic gears.
+#[test]
+fn the_demonstration_on_types_2_and_3() {
+    for depth in [2, 3] {
+        let mut setup = Setup::load(&root(None), "demo").unwrap();
+        setup.scene.depth = depth;
+        setup.scene.integrator = Integrator::SemiImplicit;
+        let mut chain = Chain::new(&setup).unwrap();
+        let mut gatherer = Gatherer::default();
+        let mut trouble: Vec<(Process, EventCode, u64)> = Vec::new();
+        for _ in 0..(setup.scene.duration / setup.scene.cycle) as usize {
+            let c = chain.step();
+            gatherer.add(&c.sim_state, &c.controller_state);
+            // A landing asks an ankle for more than its motors can.
+            let counts = |code| is_trouble(code) && code != EventCode::TargetLimited;
+            trouble.extend(c.events.iter().filter(|(_, code, _)| counts(*code)));
+        }
+        let f = gatherer.figures(&setup, 0.0, None);
+        assert!(!f.fell && trouble.is_empty() && f.steps == 25, "type {depth}: {trouble:?} {f:?}");
+        assert_eq!(chain.robot().state().power, 1, "type {depth}");
+        assert!(f.peak_normal_force_n < 1.6 * 597.3, "type {depth}: {} N", f.peak_normal_force_n);
     }
 }

@@ -22,7 +22,8 @@ pub enum EventCode {
     TargetsStale = 6,
     /// A target was not finite; detail: joint index.
     TargetNotFinite = 7,
-    /// A target left its range or rate and was held back; detail: joint index.
+    /// A target left its range, or asked for more speed or acceleration than the joint has, and was held back; detail: joint
+    /// index.
     TargetLimited = 8,
     /// A joint did not follow its target; detail: joint index.
     FollowingError = 9,
