@@ -180,7 +180,10 @@ impl<'a> Table<'a> {
     pub(crate) fn print(&mut self, all: &[Number]) -> Result<(), String> {
         let wanted = self.wanted(all);
         if !self.how.csv {
-            println!("{}{}", page(&wanted), if self.how.fields.is_empty() { "---" } else { "" });
+            let mut page = page(&wanted);
+            // Whole records are told apart by a line; fields alone are lines enough.
+            page += if self.how.fields.is_empty() { "---" } else { "" };
+            println!("{}", page.trim_end());
             return Ok(());
         }
         let row = |cell: fn(&Number) -> String| wanted.iter().map(|n| cell(n)).collect::<Vec<_>>();
