@@ -14,7 +14,7 @@ fn standing(site: &Site) -> Running {
     let space = run.space();
     let mut state = space.reader::<messages::ControllerState>(&messages::topics::CONTROLLER_STATE).unwrap();
     let begun = clock::now();
-    while !state.latest().is_some_and(|s| s.header.tick > 1000) {
+    while state.latest().is_none_or(|s| s.header.tick <= 1000) {
         assert!(run.is_alive() && clock::now() - begun < 30 * clock::SECOND, "{}", run.err());
         doze(0.01);
     }

@@ -202,7 +202,7 @@ mod tests {
         let short = |x: f64| Value::Real(x).short();
         assert_eq!(short(0.930_000_1), "0.93");
         assert_eq!(short(-9.812_345_678), "-9.81235");
-        assert_eq!(short(1234.567_89), "1234.57");
+        assert_eq!(short(1_234.567_89), "1234.57");
         assert_eq!(
             (short(1.5e-9).as_str(), short(0.0).as_str(), short(f64::NAN).as_str()),
             ("1.500e-9", "0", "NaN")

@@ -173,9 +173,9 @@ pub fn show(path: &Path) -> Result<(), Box<dyn Error>> {
         let process = topic.writer.name();
         match topic.type_name {
             "CommandTaken" => {
-                _ = log.each_record(topic, |taken: &CommandTaken| {
+                log.each_record(topic, |taken: &CommandTaken| {
                     lines.push((taken.header.tick, line(taken, process)));
-                })?
+                })?;
             }
             "Event" if topic.name.starts_with("events/") => {
                 let words = words_of(&log);

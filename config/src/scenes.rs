@@ -6,6 +6,9 @@ use crate::Scene;
 use crate::error::ConfigError;
 use crate::file;
 
+/// Name of a scene, and the scene or what is wrong with its file.
+pub type Listed = (String, Result<Scene, ConfigError>);
+
 /// Name of the scene that somebody asks for by name or by path: that of the file, without its ending.
 pub fn name(asked: &str) -> String {
     match path(asked) {
@@ -45,7 +48,7 @@ pub(crate) fn locate(root: &Path, asked: &str) -> Result<PathBuf, ConfigError> {
 ///
 /// # Errors
 /// There is no directory of scenes.
-pub fn list(root: &Path) -> Result<Vec<(String, Result<Scene, ConfigError>)>, ConfigError> {
+pub fn list(root: &Path) -> Result<Vec<Listed>, ConfigError> {
     let directory = root.join("scenes");
     let names = file::names(&directory, "toml").ok_or_else(|| {
         ConfigError::of_file(
