@@ -8,6 +8,7 @@ pub mod can;
 pub mod choose;
 pub mod estop;
 pub mod faults;
+pub mod fields;
 pub mod fit_friction;
 pub mod latency;
 pub mod log;

@@ -1,7 +1,7 @@
 //! `gangwerk run`: a run, its results and its exit code, with nothing printed but through the console.
 
 use std::error::Error;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -13,12 +13,34 @@ use terminal::Console;
 /// How long the terminal may take for what is left to say when a run has ended.
 const LAST_WORDS: Duration = Duration::from_secs(2);
 
+/// Where log and pictures go: what was asked for, else `runs/latest`, else where this user's programs keep such things.
+///
+/// # Errors
+/// Neither can be made.
+pub(crate) fn place(asked: Option<PathBuf>) -> Result<PathBuf, String> {
+    let made = |dir: &Path| {
+        // A directory of somebody else's may be there already: only a file in it shows.
+        let probe = dir.join(format!(".gangwerk-{}", std::process::id()));
+        std::fs::create_dir_all(dir)?;
+        std::fs::File::create(&probe).and_then(|_| std::fs::remove_file(&probe))
+    };
+    let told =
+        |dir: &Path, e: &std::io::Error| format!("{}: {e}; choose another place with --out", dir.display());
+    if let Some(dir) = asked {
+        return made(&dir).map_err(|e| told(&dir, &e)).map(|()| dir);
+    }
+    let here = PathBuf::from("runs/latest");
+    let Err(error) = made(&here) else { return Ok(here) };
+    let variable = |name| std::env::var_os(name).map(PathBuf::from).filter(|dir| dir.is_absolute());
+    let state = variable("XDG_STATE_HOME").or_else(|| Some(variable("HOME")?.join(".local/state")));
+    let own = state.map(|dir| dir.join("gangwerk/latest")).filter(|dir| made(dir).is_ok());
+    let own = own.ok_or_else(|| told(&here, &error))?;
+    eprintln!("{}: {error}; log and pictures go to {}", here.display(), own.display());
+    Ok(own)
+}
+
 /// A run, with nothing printed but through the console: a paused terminal holds up neither robot nor end.
 pub(crate) fn run(mut order: Order, no_plots: bool) -> Result<ExitCode, Box<dyn Error>> {
-    if let Some(directory) = order.log.as_ref().and_then(|log| log.parent()) {
-        std::fs::create_dir_all(directory)
-            .map_err(|e| format!("{}: {e}; choose another place with --out", directory.display()))?;
-    }
     let (setup, choice) = cli::choose::load(&order.config, &order.scene, true)?;
     order.method = choice.map(|choice| choice.method);
     // First of all that starts a thread: one with signals of its own would be where Ctrl-C ends everything.
@@ -54,6 +76,12 @@ fn run_on(
     // Reasons, last, so that they stand at the end: who was lost and why.
     for (process, cause) in &outcome.lost {
         console.say(format!("{} {cause}", process.name()));
+    }
+    if let Some(ms) = outcome.late_ms.filter(|_| order.robot) {
+        console.say(format!(
+            "this machine was too slow for real time: the joint loop came up to {ms:.1} ms late, and its motor supply was cut \
+             or the robot stopped, as a real one's would; take --lockstep, which needs no real time, or see `gangwerk doctor`"
+        ));
     }
     if outcome.log_broken {
         console.say("the log is not complete: its logger failed");

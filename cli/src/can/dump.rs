@@ -20,7 +20,7 @@ pub struct Order {
     /// Only one direction; needs --robot.
     #[arg(long, requires = "robot")]
     pub only: Option<Only>,
-    /// End after this time \[s\]; interfaces only.
+    /// End after this time, in s; interfaces only.
     #[arg(long, value_name = "S", value_parser = source::seconds)]
     pub seconds: Option<f64>,
     /// Leave broken lines out, and tell how many.

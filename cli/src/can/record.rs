@@ -29,7 +29,7 @@ pub struct Order {
     pub interfaces: String,
     /// Candump log, or MCAP if it ends in .mcap; an existing file is overwritten.
     pub file: PathBuf,
-    /// End after this time \[s\].
+    /// End after this time, in s.
     #[arg(long, value_name = "S", value_parser = source::seconds)]
     pub seconds: Option<f64>,
     /// Only one direction; needs --robot.

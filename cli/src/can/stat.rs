@@ -19,13 +19,13 @@ pub struct Order {
     /// Robot whose frames these are: names messages, and finds gaps in their counters.
     #[arg(long, value_name = "NAME")]
     pub robot: Option<String>,
-    /// Bit rate \[bit/s\] of classic CAN and of the arbitration of CAN FD.
+    /// Bit rate in bit/s of classic CAN and of the arbitration of CAN FD.
     #[arg(long, default_value_t = 1e6, value_parser = rate)]
     pub bitrate: f64,
-    /// Bit rate \[bit/s\] of the data of CAN FD.
+    /// Bit rate in bit/s of the data of CAN FD.
     #[arg(long, default_value_t = 4e6, value_parser = rate)]
     pub data_bitrate: f64,
-    /// End after this time \[s\]; interfaces only.
+    /// End after this time, in s; interfaces only.
     #[arg(long, value_name = "S", value_parser = source::seconds)]
     pub seconds: Option<f64>,
     /// One JSON object on standard output instead of tables.

@@ -69,9 +69,14 @@ pub(super) fn supervise(
     let result = supervisor.start(setup).and_then(|()| supervisor.watch(&mut view));
     // Whatever became of it: nobody is left alive, and what was said last is heard.
     supervisor.manager.stopping();
+    view.update();
+    view.end();
     supervisor.end();
     view.update();
+    view.sum_up();
     supervisor.outcome.missing = view.missing();
+    // In simulated time nobody is late.
+    supervisor.outcome.late_ms = view.late_ms().filter(|_| supervisor.run.mode == Mode::RealTime);
     result.map(|()| std::mem::take(&mut supervisor.outcome))
 }
 

@@ -3,11 +3,14 @@
 use std::error::Error;
 
 use config::Setup;
-use drives::cia402::Fault;
 use ipc::{Reader, Space};
-use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE, Topic};
-use messages::{ControllerState, Event, EventCode, GaitState, Process, Sensors, SimState, StartUp};
+use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE, STATS_LOWLEVEL, Topic};
+use messages::{
+    ControllerState, CycleStats, Event, EventCode, GaitState, Process, Sensors, SimState, StartUp, Words,
+};
 use terminal::Console;
+
+use super::tally::Tally;
 
 /// What the operator sees.
 pub(super) struct View {
@@ -15,7 +18,15 @@ pub(super) struct View {
     sim: Reader<SimState>,
     sensors: Reader<Sensors>,
     events: Vec<(Process, Reader<Event>)>,
-    joints: Vec<String>,
+    stats: Reader<CycleStats>,
+    words: Words,
+    tally: Tally,
+    /// Bus cycle \[s\].
+    cycle: f64,
+    /// The run comes to its end.
+    ending: bool,
+    /// The supply was cut, or the robot was stopped, because processes came too late.
+    late: bool,
     start_up: StartUp,
     console: Console,
     gait: GaitState,
@@ -34,7 +45,12 @@ impl View {
             sim: space.reader(&SIM_STATE)?,
             sensors: space.reader(&SENSORS)?,
             events: Process::ALL.into_iter().map(events).collect::<Result<_, _>>()?,
-            joints: setup.robot.joints.iter().map(|joint| joint.name.clone()).collect(),
+            stats: space.reader(&STATS_LOWLEVEL)?,
+            words: crate::topic::words(setup),
+            tally: Tally::default(),
+            cycle: setup.scene.cycle,
+            ending: false,
+            late: false,
             start_up: StartUp::Off,
             gait: GaitState::Idle,
             missing: 0,
@@ -79,42 +95,61 @@ impl View {
         let (now, tick) = (StartUp::from_number(sensors.start_up), sensors.header.tick);
         if self.start_up != now {
             self.start_up = now;
-            self.console.say(format!("tick {tick:6}  {}", now.advice()));
+            if !self.ending {
+                let time = tick as f64 * self.cycle;
+                self.console.say(format!("{time:7.3} s  {}", now.advice()));
+            }
         }
     }
 
     /// Everything that is no routine.
     fn tell_events(&mut self) {
-        let mut lines = Vec::new();
         for (process, events) in &mut self.events {
             while let Some(e) = events.follow() {
                 let code = EventCode::from_number(e.code).unwrap_or(EventCode::None);
                 if code == EventCode::LogDropped {
                     self.missing += e.detail;
                 }
-                if !matches!(code, EventCode::Started | EventCode::Ended | EventCode::PlanActive) {
-                    let detail = match code {
-                        EventCode::PowerOff | EventCode::SafeStop => {
-                            format!("{:?}", EventCode::from_number(e.detail).unwrap_or(EventCode::None))
-                        }
-                        EventCode::DriveTripped | EventCode::DriveHeld => {
-                            let (joint, error) =
-                                (self.joints.get((e.detail & 0xFFFF) as usize), e.detail >> 16);
-                            let text = Fault::from_code(error as u16).map_or("", Fault::text);
-                            format!("{}: error {error:#06x} {text}", joint.map_or("?", String::as_str))
-                        }
-                        EventCode::EmergencyStop => {
-                            format!("asked for by pid {} of user {}", e.detail as u32, e.detail >> 32)
-                        }
-                        EventCode::NotHomed | EventCode::DriveNotEnabled => {
-                            self.joints.get(e.detail as usize).cloned().unwrap_or_default()
-                        }
-                        _ => e.detail.to_string(),
-                    };
-                    lines.push(format!("tick {:6}  {}: {code:?} ({detail})", e.header.tick, process.name()));
+                if matches!(code, EventCode::Started | EventCode::Ended | EventCode::PlanActive) {
+                    continue;
+                }
+                if self.ending && *process == Process::Watchdog && code == EventCode::PowerOff {
+                    continue; // the joint loop ended first, as it should
+                }
+                self.late |= is_of_lateness(code, e.detail);
+                let sentence = self.words.sentence(e.code, e.detail);
+                if let Some(text) = self.tally.tell(*process, &sentence) {
+                    let time = e.header.tick as f64 * self.cycle;
+                    self.console.say(format!("{time:7.3} s  {}: {text}", process.name()));
                 }
             }
         }
-        lines.into_iter().for_each(|line| self.console.say(line));
+    }
+
+    /// The end of a run: from now on it is normal that the supply goes off.
+    pub(super) fn end(&mut self) {
+        self.ending = true;
+    }
+
+    /// What was told once and came more often.
+    pub(super) fn sum_up(&mut self) {
+        self.tally.summary().for_each(|line| self.console.say(line));
+    }
+
+    /// Longest delay of the joint loop \[ms\], if the supply was cut or the robot was stopped because this machine was late.
+    pub(super) fn late_ms(&mut self) -> Option<f64> {
+        let most = self.stats.latest().map_or(0, |s| s.lateness_ns[3].max(s.execution_ns[3]));
+        self.late.then_some(most as f64 * 1e-6)
+    }
+}
+
+/// Whether a supply that was cut, or a stop, has its cause in processes that came too late.
+fn is_of_lateness(code: EventCode, detail: u64) -> bool {
+    use EventCode::{PowerOff, ResetMissed, SafeStop, TargetsStale, TooManyOverruns, WatchdogSilent};
+    let cause = EventCode::from_number(detail).unwrap_or(EventCode::None);
+    match code {
+        PowerOff | SafeStop => matches!(cause, ResetMissed | TooManyOverruns | TargetsStale | WatchdogSilent),
+        WatchdogSilent => true,
+        _ => false,
     }
 }

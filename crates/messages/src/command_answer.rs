@@ -123,7 +123,7 @@ fn event(code: EventCode, detail: u64) -> String {
         EventCode::ObstacleTooLong => format!("a step of {mm} m over it is longer than the robot's"),
         EventCode::NoFoothold => format!("there is no foothold for {mm} m"),
         EventCode::ZeroRefused => format!("the robot does not hang still: {detail} N on its feet"),
-        code => format!("{code:?} ({detail})"),
+        code => crate::Words::default().sentence(code as u64, detail),
     }
 }
 

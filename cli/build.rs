@@ -1,0 +1,22 @@
+//! The commit that is built, for `gangwerk -V`; and what makes the set of configuration files in the executable anew.
+
+use std::process::Command;
+
+/// Parts of the configuration that are shipped, as in `src/shipped.rs`: a file that is added is no change of any other.
+const SHIPPED: [&str; 6] = ["gaits", "gears", "objects", "robots", "scenes", "system.toml"];
+
+fn main() {
+    for part in SHIPPED {
+        println!("cargo::rerun-if-changed=../config/{part}");
+    }
+    // Without git, or outside of a clone, nobody knows.
+    let git = |arguments: &[&str]| {
+        let said = Command::new("git").args(arguments).output().ok().filter(|said| said.status.success())?;
+        Some(String::from_utf8(said.stdout).ok()?.trim().to_owned())
+    };
+    if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
+        println!("cargo::rerun-if-changed={log}");
+    }
+    let commit = git(&["rev-parse", "--short=12", "HEAD"]).unwrap_or_else(|| "commit unknown".into());
+    println!("cargo::rustc-env=GANGWERK_VERSION={} ({commit})", env!("CARGO_PKG_VERSION"));
+}
