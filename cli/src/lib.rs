@@ -7,6 +7,7 @@ extern crate terminal;
 pub mod can;
 pub mod choose;
 pub mod estop;
+pub mod exit;
 pub mod faults;
 pub mod fit_friction;
 pub mod latency;
@@ -20,4 +21,4 @@ pub mod scorecard;
 pub mod sim;
 pub mod topic;
 
-pub use studies::{chain, figures};
+pub use studies::{chain, ending, figures};

@@ -20,6 +20,7 @@ use ipc::{Mode, Space};
 use messages::Process;
 use messages::command::Domain;
 use realtime::{CountingAllocator, Grade, Stop};
+use run_command::Results;
 
 /// Counts what control cycles allocate: nothing, after they are armed.
 #[global_allocator]
@@ -39,6 +40,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Task {
     /// Run a scene with all processes: broker, watchdog, simulated robot, logger, planner, stabilizer, joint loop.
+    #[command(after_help = cli::exit::HELP)]
     Run {
         /// Name of a file in config/scenes, without .toml.
         scene: String,
@@ -63,6 +65,9 @@ enum Task {
         /// Log, but draw no pictures.
         #[arg(long)]
         no_plots: bool,
+        /// End with the figures of the log as one JSON object on standard output, instead of a table and pictures.
+        #[arg(long, conflicts_with = "no_log")]
+        json: bool,
         /// Where the processes meet; a second robot needs another one.
         #[arg(long, value_name = "DIR", default_value_os_t = ipc::default_dir())]
         dir: PathBuf,
@@ -70,6 +75,7 @@ enum Task {
     /// Emergency stop: cut the motor supply of a robot at once. See `gangwerk estop --help`.
     Estop,
     /// Run a scene in one process, as fast as possible.
+    #[command(after_help = cli::exit::HELP)]
     Sim {
         /// Name of a file in config/scenes, without .toml.
         scene: String,
@@ -319,16 +325,22 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         out: "runs/latest".into(),
         no_log: false,
         no_plots: false,
+        json: false,
         rt: None,
         dir: ipc::default_dir(),
     });
     match task {
-        Task::Run { scene, lockstep, bus, no_robot, out, no_log, no_plots, rt, dir } => {
+        Task::Run { scene, lockstep, bus, no_robot, out, no_log, no_plots, json, rt, dir } => {
             let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
             let log = (!no_log).then(|| out.join(format!("{scene}.mcap")));
             let (robot, rt_required) = (!no_robot, rt.is_some());
             let order = Order { mode, scene, method: None, config, bus, robot, dir, log, rt_required };
-            run_command::run(order, no_plots)
+            let results = match (json, no_plots) {
+                (true, _) => Results::Json,
+                (false, true) => Results::Table,
+                (false, false) => Results::Pictures,
+            };
+            run_command::run(order, results)
         }
         Task::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
         Task::Sim { scene, json, log, can } => sim(&config, &scene, json, log, can),
@@ -458,7 +470,7 @@ fn sim(
     } else {
         indicatif::ProgressBar::new(setup.scene.duration as u64)
     };
-    let mut figures = cli::sim::run(&setup, log.as_deref(), can.as_deref(), |t| bar.set_position(t as u64))?;
+    let (mut figures, exit) = cli::sim::run(&setup, log.as_deref(), can.as_deref(), |t| bar.set_position(t as u64))?;
     figures.depth_reason = choice.map(|choice| choice.reason());
     bar.finish_and_clear();
     if json {
@@ -466,7 +478,7 @@ fn sim(
     } else {
         println!("{}", cli::figures::table(&figures));
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(exit.into())
 }
 
 fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Error>> {

@@ -14,10 +14,13 @@ use recording::Recorder;
 
 use crate::can::record::Traffic;
 use crate::chain::{Chain, Cycle};
+use crate::exit::Exit;
 use crate::figures::{Figures, Gatherer};
 
-/// Runs a scene to its end, or until the robot has fallen and lies still; writes a log, and the traffic of the bus, if
-/// asked to.
+/// \[s\] For so long a run of a simulated robot goes on after it fell: it then lies still.
+pub const AFTER_FALL: f64 = 2.0;
+
+/// Runs a scene to its end, or until [`AFTER_FALL`] after a fall; writes a log, and the traffic of the bus, if asked to.
 ///
 /// `progress` is told the simulated time \[s\] once per simulated second.
 ///
@@ -28,7 +31,7 @@ pub fn run(
     log: Option<&Path>,
     traffic: Option<&Path>,
     mut progress: impl FnMut(f64),
-) -> Result<Figures, Box<dyn Error>> {
+) -> Result<(Figures, Exit), Box<dyn Error>> {
     let mut chain = Chain::new(setup)?;
     let mut traffic = traffic.map(Traffic::create).transpose()?;
     if let Some(traffic) = &mut traffic {
@@ -41,6 +44,9 @@ pub fn run(
     let begun = realtime::clock::processor_time();
     for i in 1..=cycles {
         let cycle = chain.step();
+        let time = cycle.sim_state.time;
+        cycle.events.iter().for_each(|&(_, code, detail)| gatherer.ending.tell(time, code, detail));
+        gatherer.ending.refused += cycle.refused;
         gatherer.add(&cycle.sim_state, &cycle.controller_state);
         if let Some(record) = &mut record {
             record.write(cycle)?;
@@ -52,6 +58,9 @@ pub fn run(
         if i % per_second == 0 {
             progress(i as f64 * setup.scene.cycle);
         }
+        if gatherer.ending.fell().is_some_and(|fell| time > fell + AFTER_FALL) {
+            break;
+        }
     }
     let cpu = (realtime::clock::processor_time() - begun) as f64 * 1e-9;
     if let Some(record) = record {
@@ -60,7 +69,8 @@ pub fn run(
     if let Some(traffic) = traffic {
         traffic.finish()?;
     }
-    Ok(gatherer.figures(setup, cpu, log.map(|p| p.display().to_string())))
+    let figures = gatherer.figures(setup, cpu, log.map(|p| p.display().to_string()));
+    Ok((figures, Exit::of(&gatherer.ending, false)))
 }
 
 /// Writes what the logger would write.

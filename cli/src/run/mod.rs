@@ -29,6 +29,7 @@ use messages::{ControllerState, Process, SimState};
 use realtime::{Stop, clock};
 use terminal::Console;
 
+use crate::ending::Ending;
 use crate::figures::{Figures, Gatherer};
 
 pub use crash::TEXT as CRASH_TEXT;
@@ -91,8 +92,10 @@ impl std::fmt::Display for Cause {
 pub struct Outcome {
     /// Processes that died or hung before their time, also those that were started again.
     pub lost: Vec<(Process, Cause)>,
-    /// Whether somebody asked for the end.
+    /// Whether a signal asked for the end.
     pub interrupted: bool,
+    /// How the walk ended.
+    pub ending: Ending,
     /// Records missing from the log.
     pub missing: u64,
     /// Whether the logger says that the log is not complete, because its disk failed.

@@ -5,9 +5,14 @@ use std::error::Error;
 use config::Setup;
 use drives::cia402::Fault;
 use ipc::{Reader, Space};
-use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE, Topic};
-use messages::{ControllerState, Event, EventCode, GaitState, Process, Sensors, SimState, StartUp};
+use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE, TOPICS, Topic};
+use messages::{
+    CommandTaken, ControllerState, Event, EventCode, GaitState, Process, Record, Sensors, SimState, StartUp,
+};
 use terminal::Console;
+
+use crate::ending::Ending;
+use crate::sim::AFTER_FALL;
 
 /// What the operator sees.
 pub(super) struct View {
@@ -20,6 +25,11 @@ pub(super) struct View {
     console: Console,
     gait: GaitState,
     missing: u64,
+    taken: Vec<Reader<CommandTaken>>,
+    /// \[s\] Bus cycle.
+    cycle: f64,
+    /// How the walk ends.
+    pub(super) ending: Ending,
 }
 
 impl View {
@@ -38,6 +48,9 @@ impl View {
             start_up: StartUp::Off,
             gait: GaitState::Idle,
             missing: 0,
+            taken: TOPICS.iter().filter(|t| t.type_name == CommandTaken::NAME).map(|t| space.reader(t)).collect::<Result<_, _>>()?,
+            cycle: setup.scene.cycle,
+            ending: Ending::default(),
             console,
         })
     }
@@ -51,12 +64,13 @@ impl View {
     pub(super) fn standing(&mut self) -> bool {
         self.state
             .latest()
-            .is_none_or(|s| matches!(GaitState::from(s.gait), GaitState::Standing | GaitState::Idle))
+            .is_none_or(|s| GaitState::from(s.gait).rests())
     }
 
     /// One look.
     pub(super) fn update(&mut self) {
         self.tell_events();
+        self.judge();
         self.tell_start_up();
         let Some(sim) = self.sim.latest() else { return };
         let (t, [x, y, _]) = (sim.time, sim.position);
@@ -71,6 +85,25 @@ impl View {
                 self.console.say(format!("{t:7.3} s  {gait:?}"));
             }
         }
+    }
+
+    /// Whether the robot still does what it is told to.
+    fn judge(&mut self) {
+        for taken in &mut self.taken {
+            while let Some(taken) = taken.follow() {
+                self.ending.refused += u64::from(taken.origin == 0 && taken.refused != 0);
+            }
+        }
+        let (Some(sensors), Some(state)) = (self.sensors.latest(), self.state.latest()) else { return };
+        let fallen = self.sim.latest().is_some_and(|sim| sim.fallen == 1);
+        let gait = if fallen { GaitState::Fallen } else { state.gait.into() };
+        self.ending.see(sensors.header.tick as f64 * self.cycle, sensors.power == 1, gait);
+    }
+
+    /// Whether the simulated robot has fallen, so long ago that it lies still.
+    pub(super) fn lies(&mut self) -> bool {
+        let fell = self.ending.fell();
+        self.sim.latest().is_some_and(|sim| fell.is_some_and(|fell| sim.time > fell + AFTER_FALL))
     }
 
     /// Where the start-up is, and what the operator does next.
@@ -89,6 +122,7 @@ impl View {
         for (process, events) in &mut self.events {
             while let Some(e) = events.follow() {
                 let code = EventCode::from_number(e.code).unwrap_or(EventCode::None);
+                self.ending.tell(e.header.tick as f64 * self.cycle, code, e.detail);
                 if code == EventCode::LogDropped {
                     self.missing += e.detail;
                 }
