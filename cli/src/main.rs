@@ -470,7 +470,8 @@ fn sim(
     } else {
         indicatif::ProgressBar::new(setup.scene.duration as u64)
     };
-    let (mut figures, exit) = cli::sim::run(&setup, log.as_deref(), can.as_deref(), |t| bar.set_position(t as u64))?;
+    let (mut figures, exit) =
+        cli::sim::run(&setup, log.as_deref(), can.as_deref(), |t| bar.set_position(t as u64))?;
     figures.depth_reason = choice.map(|choice| choice.reason());
     bar.finish_and_clear();
     if json {

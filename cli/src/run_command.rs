@@ -76,7 +76,8 @@ fn run_on(
     if matches!(exit, Exit::Fell | Exit::NotDone) {
         let (by, at) = outcome.ending.end();
         let refused = outcome.ending.refused;
-        console.say(format!("ended by {by}, at {at:.3} s; commands of the scene that were refused: {refused}"));
+        console
+            .say(format!("ended by {by}, at {at:.3} s; commands of the scene that were refused: {refused}"));
     }
     Ok(exit)
 }

@@ -9,11 +9,12 @@ use messages::topics::{
     EVENTS_WATCHDOG, JOINT_TARGETS, PARAMETERS_CONTROLLER, PARAMETERS_PLANNER, PLAN, POWER, SENSORS,
     SIM_STATE,
 };
-use messages::{Event, EventCode, Header, Process, Record, Topic};
+use messages::{Event, EventCode, GaitState, Header, Process, Record, Topic};
 use recording::Recorder;
 
 use crate::can::record::Traffic;
 use crate::chain::{Chain, Cycle};
+use crate::ending::Ending;
 use crate::exit::Exit;
 use crate::figures::{Figures, Gatherer};
 
@@ -38,15 +39,16 @@ pub fn run(
         traffic.write(chain.answer())?; // where the joints are before the first cycle
     }
     let mut record = log.map(|path| LogWriter::create(path, setup, &chain)).transpose()?;
-    let mut gatherer = Gatherer::default();
+    let (mut gatherer, mut ending) = (Gatherer::default(), Ending::default());
     let cycles = (setup.scene.duration / setup.scene.cycle).round() as u64;
     let per_second = (1.0 / setup.scene.cycle).round() as u64;
     let begun = realtime::clock::processor_time();
     for i in 1..=cycles {
         let cycle = chain.step();
-        let time = cycle.sim_state.time;
-        cycle.events.iter().for_each(|&(_, code, detail)| gatherer.ending.tell(time, code, detail));
-        gatherer.ending.refused += cycle.refused;
+        let time = i as f64 * setup.scene.cycle;
+        cycle.events.iter().for_each(|&(_, code, detail)| ending.tell(time, code, detail));
+        ending.refused += cycle.refused;
+        ending.see(time, cycle.sensors.power == 1, gait(cycle));
         gatherer.add(&cycle.sim_state, &cycle.controller_state);
         if let Some(record) = &mut record {
             record.write(cycle)?;
@@ -58,7 +60,7 @@ pub fn run(
         if i % per_second == 0 {
             progress(i as f64 * setup.scene.cycle);
         }
-        if gatherer.ending.fell().is_some_and(|fell| time > fell + AFTER_FALL) {
+        if ending.fell().is_some_and(|fell| time > fell + AFTER_FALL) {
             break;
         }
     }
@@ -70,7 +72,12 @@ pub fn run(
         traffic.finish()?;
     }
     let figures = gatherer.figures(setup, cpu, log.map(|p| p.display().to_string()));
-    Ok((figures, Exit::of(&gatherer.ending, false)))
+    Ok((figures.ended(&ending), Exit::of(&ending, false)))
+}
+
+/// Where in a walk the robot is; the simulation knows of a fall that the robot does not notice.
+fn gait(cycle: &Cycle) -> GaitState {
+    if cycle.sim_state.fallen == 1 { GaitState::Fallen } else { cycle.controller_state.gait.into() }
 }
 
 /// Writes what the logger would write.

@@ -130,7 +130,9 @@ mod tests {
 
     #[test]
     fn the_first_cause_that_is_not_mended_ended_the_run() {
-        use EventCode::{EmergencyStop, Fallen, FollowingError, None, PowerOff, PowerOn, SafeStop, TargetsStale};
+        use EventCode::{
+            EmergencyStop, Fallen, FollowingError, None, PowerOff, PowerOn, SafeStop, TargetsStale,
+        };
         let on = (0.04, PowerOn, None);
         let off = (17.6, PowerOff, FollowingError);
         let table: [(&[_], _, _, _, _); 8] = [
@@ -141,7 +143,13 @@ mod tests {
             (&[on, off, (18.0, Fallen, None)], false, GaitState::Fallen, "power_off: FollowingError", 17.6),
             (&[on, (5.0, TargetsStale, None)], true, GaitState::Halted, "stopped: TargetsStale", 5.0),
             // Armed again.
-            (&[on, (5.0, PowerOff, EmergencyStop), (6.0, PowerOn, None)], true, GaitState::Standing, "done", 20.0),
+            (
+                &[on, (5.0, PowerOff, EmergencyStop), (6.0, PowerOn, None)],
+                true,
+                GaitState::Standing,
+                "done",
+                20.0,
+            ),
             // The supply goes off behind the joint loop, which has ended.
             (&[on, off], true, GaitState::Standing, "done", 20.0),
             (&[], true, GaitState::Fallen, "fell", 20.0),

@@ -104,8 +104,7 @@ impl Figures {
 /// Gathers [`Figures`].
 #[derive(Clone, Debug, Default)]
 pub struct Gatherer {
-    /// How the walk ends.
-    pub ending: Ending,
+    ending: Ending,
     time: f64,
     error_max: [f64; 2],
     error_square: [f64; 2],

@@ -48,7 +48,11 @@ impl View {
             start_up: StartUp::Off,
             gait: GaitState::Idle,
             missing: 0,
-            taken: TOPICS.iter().filter(|t| t.type_name == CommandTaken::NAME).map(|t| space.reader(t)).collect::<Result<_, _>>()?,
+            taken: TOPICS
+                .iter()
+                .filter(|t| t.type_name == CommandTaken::NAME)
+                .map(|t| space.reader(t))
+                .collect::<Result<_, _>>()?,
             cycle: setup.scene.cycle,
             ending: Ending::default(),
             console,
@@ -62,9 +66,7 @@ impl View {
 
     /// Whether the robot stands, or nobody can tell.
     pub(super) fn standing(&mut self) -> bool {
-        self.state
-            .latest()
-            .is_none_or(|s| GaitState::from(s.gait).rests())
+        self.state.latest().is_none_or(|s| GaitState::from(s.gait).rests())
     }
 
     /// One look.
