@@ -4,6 +4,7 @@ use std::error::Error;
 use std::path::Path;
 
 use config::Setup;
+use logger::Origin;
 use messages::topics::{
     CONTROLLER_STATE, EVENTS_CONTROLLER, EVENTS_LOWLEVEL, EVENTS_PLANNER, EVENTS_SIM_BACKEND,
     EVENTS_WATCHDOG, JOINT_TARGETS, PARAMETERS_CONTROLLER, PARAMETERS_PLANNER, PLAN, POWER, SENSORS,
@@ -97,7 +98,8 @@ const REPORTERS: [(Process, &Topic); 5] = [
 
 impl LogWriter {
     fn create(path: &Path, setup: &Setup, chain: &Chain) -> Result<Self, Box<dyn Error>> {
-        let mut record = Self { recorder: logger::recorder(path, setup)?, last: Header::default() };
+        let origin = Origin { commit: crate::COMMIT.into(), simulated: true, clock: None };
+        let mut record = Self { recorder: logger::recorder(path, setup, &origin)?, last: Header::default() };
         record.all(EventCode::Started)?;
         let [planner, stabilizer] = chain.parameters();
         record.put(&PARAMETERS_PLANNER, planner)?;

@@ -140,6 +140,8 @@ pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<
         bus: order.bus.to_string(),
         robot: order.robot,
         log: order.log.clone(),
+        commit: crate::COMMIT.into(),
+        started: (order.mode == Mode::RealTime).then(|| [clock::unix_ns(), clock::now()]),
     };
     run.save()?;
     let outcome = supervisor::supervise(run, space, &setup, order.rt_required, stop, console)?;

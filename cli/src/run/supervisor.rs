@@ -54,7 +54,7 @@ pub(super) fn supervise(
         children: Vec::new(),
         restarts: [(Process::Broker, Backoff::default()), (Process::Logger, Backoff::default())],
         pulse: Pulse::default(),
-        crashes: Crashes::new(setup, run.log.as_deref(), console),
+        crashes: Crashes::new(setup, &run, console),
         memories: Vec::new(),
         manager: Manager::new(),
         outcome: Outcome::default(),
