@@ -33,6 +33,10 @@ pub fn show(path: &Path) -> Result<(), Box<dyn Error>> {
         run.config_hash,
         run.software
     );
+    println!("commit {}, seed {}", if run.commit.is_empty() { "unknown" } else { &run.commit }, run.seed);
+    if let Some(clock) = &run.clock {
+        println!("started {} on {}", clock.date(), clock.host);
+    }
     let mut crash = None;
     log.each_attachment(|name, bytes| {
         if name == crate::run::CRASH_TEXT {

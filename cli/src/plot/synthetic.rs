@@ -121,6 +121,7 @@ pub(super) fn write(path: &Path, links: bool) {
         torso: "torso".into(),
         imu: [0.0; 3],
         feet: [foot("right"), foot("left")],
+        odom: [0.0; 3],
     };
     let run =
         RunInfo { scene: "synthetic".into(), config_hash: 1, software: "0.1.0".into(), ..RunInfo::default() };

@@ -78,7 +78,7 @@ impl WallClock {
     }
 
     /// The start as a date (RFC 3339).
-    fn date(&self) -> String {
+    pub fn date(&self) -> String {
         let start = std::time::UNIX_EPOCH + std::time::Duration::from_nanos(self.unix_ns);
         humantime::format_rfc3339_nanos(start).to_string()
     }
