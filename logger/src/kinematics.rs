@@ -64,7 +64,9 @@ impl LinkPoses for Kinematics {
 
     /// What the motors give to the joints, before friction of the gears and inertia of the rotors take their part.
     fn torques(&mut self, sensors: &Sensors, out: &mut Joints) -> bool {
-        if sensors.motor_current.iter().take(self.drives.len()).all(|current| current.is_nan()) {
+        // A model without motors says nothing, or zeros where the bus knows no NaN.
+        let silent = |current: &f64| current.is_nan() || *current == 0.0;
+        if sensors.motor_current.iter().take(self.drives.len()).all(silent) {
             return false;
         }
         out[..self.drives.len()].fill(0.0);
@@ -81,6 +83,6 @@ impl LinkPoses for Kinematics {
                 out[j] += ratio * drive.motor.torque(current);
             }
         }
-        !self.drives.is_empty()
+        true
     }
 }

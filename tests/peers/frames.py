@@ -29,7 +29,7 @@ def read(path):
     with AnyReader([Path(path)]) as reader:
         for connection, time, raw in reader.messages():
             topic = connection.topic
-            if topic not in ("/robot_description", "/joint_states", "/tf", "/tf_static", "/rosout"):
+            if topic not in ("/robot_description", "/joint_states", "/tf", "/truth/tf", "/tf_static", "/rosout"):
                 continue
             message = reader.deserialize(raw, connection.msgtype)
             if topic == "/robot_description":
@@ -41,9 +41,8 @@ def read(path):
             elif topic == "/rosout":
                 lines.append((message.level, message.name, message.msg))
             else:
-                true = message.transforms[0].child_frame_id.startswith("truth/")
                 tree = {t.child_frame_id: (t.header.frame_id, pose(t)) for t in message.transforms}
-                frames[true][time] = tree
+                frames[topic == "/truth/tf"][time] = tree
     return urdf, joints, frames, static, lines
 
 
@@ -87,7 +86,9 @@ def worst(model, data, joints, trees, static, prefix):
             way = max(way, np.linalg.norm(difference.translation))
         place(both, prefix + torso, "world")
         count += 1
-    if count < 50:
+    if prefix and count == 0:
+        print("truth/: no stamp is that of a /joint_states, as in real time")
+    elif count < 50:
         sys.exit(f"only {count} messages of /tf have a /joint_states of the same stamp")
     print(f"{prefix or 'believed'}: {count} instants, {len(names)} frames: {angle:.2e} rad, {way:.2e} m")
     return angle, way

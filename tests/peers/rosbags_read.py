@@ -24,6 +24,8 @@ STANDARD = {
     "/foot/left/wrench": "geometry_msgs/msg/WrenchStamped",
     "/tf": "tf2_msgs/msg/TFMessage",
     "/tf_static": "tf2_msgs/msg/TFMessage",
+    "/truth/tf": "tf2_msgs/msg/TFMessage",
+    "/truth/markers": "visualization_msgs/msg/MarkerArray",
     "/rosout": "rcl_interfaces/msg/Log",
     "/markers": "visualization_msgs/msg/MarkerArray",
     "/robot_description": "std_msgs/msg/String",
@@ -73,7 +75,7 @@ def with_rosbags(path):
         check_types(reader)
         for connection, time, raw in reader.messages():
             message = reader.deserialize(raw, connection.msgtype)
-            if connection.topic in ("/tf", "/tf_static"):
+            if connection.topic in ("/tf", "/tf_static", "/truth/tf"):
                 for t in message.transforms:
                     frames[t.child_frame_id].add(t.header.frame_id)
             yield connection.topic, time, scalars(message, [])

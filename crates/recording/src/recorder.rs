@@ -2,7 +2,7 @@
 //!
 //! Every logged topic is written verbatim, at full rate, as `/gangwerk/TOPIC` with its own message type. Beside them
 //! stand standard ROS 2 messages, thinned to [`STANDARD_RATE`]: they are for viewers, not for arithmetic. `/tf` and `/markers`
-//! are what the robot believes, and beside it, under names that begin with `truth/`, what the simulation knows.
+//! are what the robot believes, `/truth/tf` and `/truth/markers` what the simulation knows, under names that begin with `truth/`.
 //!
 //! Time of the log is wall time of a run in real time, simulated time otherwise; messages stand in its order, but for those
 //! that come more than 0.1 s late.
@@ -20,6 +20,7 @@ use crate::robot::{METADATA, RobotInfo, RunInfo, to_metadata};
 use crate::standard::{self, ODOM, TRUTH, WORLD};
 use crate::standard_definitions::{
     FOOT_WRENCH, IMU, JOINT_STATES, MARKERS, ROBOT_DESCRIPTION, ROSOUT, STANDARD, TF, TF_STATIC,
+    TRUTH_MARKERS, TRUTH_TF,
 };
 use crate::{markers, rosout};
 use mcap::records::{MessageHeader, Metadata};
@@ -98,7 +99,7 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Also writes the pose of every link as `/tf`. Without it `/tf` holds the true torso alone.
+    /// Also writes the pose of every link as `/tf`. Without it there is the true torso alone.
     pub fn with_links(mut self, links: Box<dyn LinkPoses>) -> Self {
         self.poses = vec![Pose::IDENTITY; links.links().len()];
         self.links = Some(links);
@@ -283,9 +284,9 @@ impl Recorder {
                 standard::tf_of_torso(&mut self.encoder, time, WORLD, &name, &torso);
             }
         }
-        self.put(TF.topic, stamp);
+        self.put(TRUTH_TF.topic, stamp);
         markers::truth(&mut self.encoder, time, &self.robot, state);
-        self.put(MARKERS.topic, stamp);
+        self.put(TRUTH_MARKERS.topic, stamp);
     }
 
     /// Queues what the encoder holds; a topic that is not logged is left out.

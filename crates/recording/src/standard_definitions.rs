@@ -86,6 +86,10 @@ const TF_PARTS: &[&str] = &[
 pub(crate) const TF: Standard =
     Standard { topic: "/tf", interface: "tf2_msgs/msg/TFMessage", body: TF_BODY, parts: TF_PARTS };
 
+/// The same of the simulated robot as it is.
+pub(crate) const TRUTH_TF: Standard =
+    Standard { topic: "/truth/tf", interface: "tf2_msgs/msg/TFMessage", body: TF_BODY, parts: TF_PARTS };
+
 /// Frames that do not, once.
 pub(crate) const TF_STATIC: Standard =
     Standard { topic: "/tf_static", interface: "tf2_msgs/msg/TFMessage", body: TF_BODY, parts: TF_PARTS };
@@ -99,13 +103,9 @@ pub(crate) const ROSOUT: Standard = Standard {
     parts: &[TIME],
 };
 
-/// Ground, planned steps, zero-moment point, support polygon, centre of gravity.
-pub(crate) const MARKERS: Standard = Standard {
-    topic: "/markers",
-    interface: "visualization_msgs/msg/MarkerArray",
-    body: "visualization_msgs/Marker[] markers\n",
-    parts: &[
-        "MSG: visualization_msgs/Marker\n\
+const MARKERS_BODY: &str = "visualization_msgs/Marker[] markers\n";
+const MARKERS_PARTS: &[&str] = &[
+    "MSG: visualization_msgs/Marker\n\
          int32 ARROW=0\nint32 CUBE=1\nint32 SPHERE=2\nint32 CYLINDER=3\nint32 LINE_STRIP=4\nint32 LINE_LIST=5\n\
          int32 CUBE_LIST=6\nint32 SPHERE_LIST=7\nint32 POINTS=8\nint32 TEXT_VIEW_FACING=9\n\
          int32 MESH_RESOURCE=10\nint32 TRIANGLE_LIST=11\n\
@@ -116,18 +116,33 @@ pub(crate) const MARKERS: Standard = Standard {
          string texture_resource\nsensor_msgs/CompressedImage texture\n\
          visualization_msgs/UVCoordinate[] uv_coordinates\nstring text\nstring mesh_resource\n\
          visualization_msgs/MeshFile mesh_file\nbool mesh_use_embedded_materials\n",
-        "MSG: sensor_msgs/CompressedImage\nstd_msgs/Header header\nstring format\nuint8[] data\n",
-        "MSG: visualization_msgs/UVCoordinate\nfloat32 u\nfloat32 v\n",
-        "MSG: visualization_msgs/MeshFile\nstring filename\nuint8[] data\n",
-        HEADER,
-        TIME,
-        DURATION,
-        VECTOR3,
-        POINT,
-        QUATERNION,
-        POSE,
-        COLOR,
-    ],
+    "MSG: sensor_msgs/CompressedImage\nstd_msgs/Header header\nstring format\nuint8[] data\n",
+    "MSG: visualization_msgs/UVCoordinate\nfloat32 u\nfloat32 v\n",
+    "MSG: visualization_msgs/MeshFile\nstring filename\nuint8[] data\n",
+    HEADER,
+    TIME,
+    DURATION,
+    VECTOR3,
+    POINT,
+    QUATERNION,
+    POSE,
+    COLOR,
+];
+
+/// Ground, planned steps, zero-moment point, support polygon, centre of gravity.
+pub(crate) const MARKERS: Standard = Standard {
+    topic: "/markers",
+    interface: "visualization_msgs/msg/MarkerArray",
+    body: MARKERS_BODY,
+    parts: MARKERS_PARTS,
+};
+
+/// The same of the simulated robot as it is.
+pub(crate) const TRUTH_MARKERS: Standard = Standard {
+    topic: "/truth/markers",
+    interface: "visualization_msgs/msg/MarkerArray",
+    body: MARKERS_BODY,
+    parts: MARKERS_PARTS,
 };
 
 /// The URDF, once.
@@ -139,7 +154,7 @@ pub(crate) const ROBOT_DESCRIPTION: Standard = Standard {
 };
 
 /// All of them.
-pub(crate) const STANDARD: [&Standard; 9] = [
+pub(crate) const STANDARD: [&Standard; 11] = [
     &ROBOT_DESCRIPTION,
     &JOINT_STATES,
     &IMU,
@@ -148,6 +163,8 @@ pub(crate) const STANDARD: [&Standard; 9] = [
     &TF_STATIC,
     &TF,
     &MARKERS,
+    &TRUTH_TF,
+    &TRUTH_MARKERS,
     &ROSOUT,
 ];
 
