@@ -6,6 +6,7 @@ extern crate terminal;
 
 mod fault_table;
 mod run_command;
+mod sim_command;
 mod study;
 
 use std::error::Error;
@@ -335,15 +336,10 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             let log = (!no_log).then(|| out.join(format!("{scene}.mcap")));
             let (robot, rt_required) = (!no_robot, rt.is_some());
             let order = Order { mode, scene, method: None, config, bus, robot, dir, log, rt_required };
-            let results = match (json, no_plots) {
-                (true, _) => Results::Json,
-                (false, true) => Results::Table,
-                (false, false) => Results::Pictures,
-            };
-            run_command::run(order, results)
+            run_command::run(order, Results::of(json, no_plots))
         }
         Task::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
-        Task::Sim { scene, json, log, can } => sim(&config, &scene, json, log, can),
+        Task::Sim { scene, json, log, can } => sim_command::run(&config, &scene, json, log.as_deref(), can.as_deref()),
         Task::Topic { what, dir } => {
             realtime::end_with_reader();
             match what {
@@ -455,31 +451,6 @@ fn last_words(dir: &std::path::Path, process: Process) -> Result<(), Box<dyn Err
 /// Live commands of these domains, through the broker.
 fn commands(name: &str, domains: &[Domain], space: &Space) -> Result<Commands, String> {
     Ok(Box::new(broker::Client::start(name, domains, space)?))
-}
-
-fn sim(
-    config: &std::path::Path,
-    scene: &str,
-    json: bool,
-    log: Option<PathBuf>,
-    can: Option<PathBuf>,
-) -> Result<ExitCode, Box<dyn Error>> {
-    let (setup, choice) = cli::choose::load(config, scene, !json)?;
-    let bar = if json {
-        indicatif::ProgressBar::hidden()
-    } else {
-        indicatif::ProgressBar::new(setup.scene.duration as u64)
-    };
-    let (mut figures, exit) =
-        cli::sim::run(&setup, log.as_deref(), can.as_deref(), |t| bar.set_position(t as u64))?;
-    figures.depth_reason = choice.map(|choice| choice.reason());
-    bar.finish_and_clear();
-    if json {
-        println!("{}", serde_json::to_string(&figures)?);
-    } else {
-        println!("{}", cli::figures::table(&figures));
-    }
-    Ok(exit.into())
 }
 
 fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Error>> {

@@ -25,6 +25,17 @@ pub(crate) enum Results {
     Pictures,
 }
 
+impl Results {
+    /// As the command line asks for them.
+    pub(crate) fn of(json: bool, no_plots: bool) -> Self {
+        match (json, no_plots) {
+            (true, _) => Self::Json,
+            (false, true) => Self::Table,
+            (false, false) => Self::Pictures,
+        }
+    }
+}
+
 /// A run, with nothing printed but through the console: a paused terminal holds up neither robot nor end.
 pub(crate) fn run(mut order: Order, wanted: Results) -> Result<ExitCode, Box<dyn Error>> {
     if let Some(directory) = order.log.as_ref().and_then(|log| log.parent()) {
