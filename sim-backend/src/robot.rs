@@ -244,6 +244,7 @@ impl SimBackend {
         if let Some(crane) = &mut self.crane {
             outside.rope = Some(crane.step(&self.state, dt));
         }
+        let told = self.event.filter(|_| self.fallen);
         let fell_before = self.fallen;
         if !self.lies {
             outside.powered = powered;
@@ -270,7 +271,7 @@ impl SimBackend {
         }
         if fell_before {
             // Sensors out of range and contacts that are not found say nothing new of a robot on its way down.
-            self.event = self.event.filter(|(code, _)| *code == EventCode::Diverged);
+            self.event = self.event.filter(|(code, _)| *code == EventCode::Diverged).or(told);
         }
     }
 

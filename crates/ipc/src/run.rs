@@ -9,9 +9,9 @@
 //! config = /home/me/gangwerk/config
 //! bus = can:vcan0,vcan1      # or shm, canfd:..., sercos:...
 //! robot = simulated          # or elsewhere
-//! log = /home/me/walk.mcap   # empty: no log
 //! commit = 5c1f...           # of the software; empty: unknown
 //! started = 1763812800123456789 4711000000 # [ns] since 1970, and CLOCK_MONOTONIC at that instant; empty: simulated time
+//! log = /home/me/walk.mcap   # empty: no log
 //! ```
 
 use crate::IpcError;
@@ -83,15 +83,15 @@ impl Run {
         let log = self.log.as_deref().unwrap_or(Path::new(""));
         let started = self.started.map_or(String::new(), |[unix, monotonic]| format!("{unix} {monotonic}"));
         format!(
-            "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nbus = {}\nrobot = {}\nlog = {}\n\
-             commit = {}\nstarted = {started}\n",
+            "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nbus = {}\nrobot = {}\ncommit = {}\n\
+             started = {started}\nlog = {}\n",
             self.scene,
             self.method.as_deref().unwrap_or_default(),
             self.config.display(),
             self.bus,
             if self.robot { "simulated" } else { "elsewhere" },
-            log.display(),
-            self.commit
+            self.commit,
+            log.display()
         )
     }
 
