@@ -35,7 +35,9 @@ fn deserved(trial: &Trial, code: EventCode) -> bool {
     };
     let after: &[EventCode] =
         if lost { &[Fallen, Lifted, EarlyContact, SafeStop, PlanKept, NotStanding] } else { &[] };
-    [PlanActive, ControlLimited].contains(&code) || cause.contains(&code) || after.contains(&code)
+    // Whoever hits the ground is slower at once than a reading may be.
+    let impact: &[EventCode] = if trial.fell { &[FrameRefused, FramesLost] } else { &[] };
+    [PlanActive, ControlLimited].contains(&code) || [cause, after, impact].iter().any(|of| of.contains(&code))
 }
 
 #[test]
