@@ -4,8 +4,8 @@
 //! Regression: records without a stamp made the logs of real time begin in 1970 and last as long as the machine was up.
 
 use harness::{Site, WALK, turn};
+use realtime::clock;
 use recording::{Log, RunInfo};
-use std::time::{SystemTime, UNIX_EPOCH};
 
 const EXE: &str = harness::executable!();
 /// \[s\] Of the scene.
@@ -51,14 +51,13 @@ fn site() -> Site {
 #[test]
 fn a_log_of_real_time_lasts_as_long_as_its_scene_and_begins_today() {
     let (_turn, site) = (turn(), site());
-    let now = || SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_nanos() as u64;
-    let before = now();
+    let before = clock::unix_ns();
     let _ = site.run("walk", &[]).end(); // on a busy machine she may lose her supply
     let found = read(&site, "walk.mcap");
     check(&found);
-    assert!(found.span[0] >= before && found.span[1] <= now(), "{:?}", found.span);
-    let clock = found.run.clock.expect("real time has a date");
-    assert!(clock.unix_ns >= before && clock.unix_ns <= found.span[0] && !clock.host.is_empty(), "{clock:?}");
+    assert!(found.span[0] >= before && found.span[1] <= clock::unix_ns(), "{:?}", found.span);
+    let start = found.run.clock.expect("real time has a date");
+    assert!(start.unix_ns >= before && start.unix_ns <= found.span[0] && !start.host.is_empty(), "{start:?}");
 }
 
 #[test]
