@@ -339,7 +339,9 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             run_command::run(order, Results::of(json, no_plots))
         }
         Task::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
-        Task::Sim { scene, json, log, can } => sim_command::run(&config, &scene, json, log.as_deref(), can.as_deref()),
+        Task::Sim { scene, json, log, can } => {
+            sim_command::run(&config, &scene, json, log.as_deref(), can.as_deref())
+        }
         Task::Topic { what, dir } => {
             realtime::end_with_reader();
             match what {
