@@ -1,4 +1,4 @@
-//! The commit that is built, for `gangwerk -V`; and what makes the set of configuration files in the executable anew.
+//! The commit that is built, for `gangwerk -V` and logs; and what makes the set of configuration files in the executable anew.
 
 use std::process::Command;
 
@@ -14,9 +14,11 @@ fn main() {
         let said = Command::new("git").args(arguments).output().ok().filter(|said| said.status.success())?;
         Some(String::from_utf8(said.stdout).ok()?.trim().to_owned())
     };
-    if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
-        println!("cargo::rerun-if-changed={log}");
+    for file in ["HEAD", "logs/HEAD"].iter().filter_map(|name| git(&["rev-parse", "--git-path", name])) {
+        println!("cargo::rerun-if-changed={file}");
     }
-    let commit = git(&["rev-parse", "--short=12", "HEAD"]).unwrap_or_else(|| "commit unknown".into());
-    println!("cargo::rustc-env=GANGWERK_VERSION={} ({commit})", env!("CARGO_PKG_VERSION"));
+    let commit = git(&["describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]).unwrap_or_default();
+    let known = if commit.is_empty() { "commit unknown" } else { &commit };
+    println!("cargo::rustc-env=GANGWERK_COMMIT={commit}");
+    println!("cargo::rustc-env=GANGWERK_VERSION={} ({known})", env!("CARGO_PKG_VERSION"));
 }

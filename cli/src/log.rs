@@ -61,6 +61,10 @@ pub fn info(path: &Path) -> Result<(), Box<dyn Error>> {
 fn head(log: &Log) {
     let (run, robot) = (log.run(), &log.robot().name);
     println!("scene {}, robot {robot}, configuration {:016x}, {}", run.scene, run.config_hash, run.software);
+    println!("commit {}, seed {}", if run.commit.is_empty() { "unknown" } else { &run.commit }, run.seed);
+    if let Some(clock) = &run.clock {
+        println!("started {} on {}", clock.date(), clock.host);
+    }
 }
 
 /// Prints the records of a topic as a table; see [`Echo`].

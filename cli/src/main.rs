@@ -10,6 +10,7 @@ mod log_command;
 mod param_command;
 mod run_command;
 mod shipped;
+mod sim_command;
 mod study;
 mod topic_command;
 mod words;
@@ -26,6 +27,7 @@ use ipc::{Mode, Space};
 use messages::Process;
 use messages::command::Domain;
 use realtime::{CountingAllocator, Grade, Stop};
+use run_command::Results;
 
 /// Counts what control cycles allocate: nothing, after they are armed.
 #[global_allocator]
@@ -45,6 +47,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Task {
     /// Run a scene with all processes: broker, watchdog, simulated robot, logger, planner, stabilizer, joint loop.
+    #[command(after_help = cli::exit::HELP)]
     Run {
         /// Name of a scene, see `gangwerk scene list`, or path of a scene file.
         scene: String,
@@ -69,6 +72,9 @@ enum Task {
         /// Log, but draw no pictures.
         #[arg(long)]
         no_plots: bool,
+        /// End with the figures of the log as one JSON object on standard output, instead of a table and pictures.
+        #[arg(long, conflicts_with = "no_log")]
+        json: bool,
         /// Where the processes meet; a second robot needs another one.
         #[arg(long, value_name = "DIR", default_value_os_t = ipc::default_dir())]
         dir: PathBuf,
@@ -76,6 +82,7 @@ enum Task {
     /// Emergency stop: cut the motor supply of a robot at once. See `gangwerk estop --help`.
     Estop,
     /// Run a scene in one process, as fast as possible.
+    #[command(after_help = cli::exit::HELP)]
     Sim {
         /// Name of a scene, see `gangwerk scene list`, or path of a scene file.
         scene: String,
@@ -291,11 +298,12 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         out: None,
         no_log: false,
         no_plots: false,
+        json: false,
         rt: None,
         dir: ipc::default_dir(),
     });
     match task {
-        Task::Run { scene, lockstep, bus, no_robot, out, no_log, no_plots, rt, dir } => {
+        Task::Run { scene, lockstep, bus, no_robot, out, no_log, no_plots, json, rt, dir } => {
             let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
             let config = config()?;
             let log = match no_log {
@@ -306,10 +314,12 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             };
             let (robot, rt_required) = (!no_robot, rt.is_some());
             let order = Order { mode, scene, method: None, config, bus, robot, dir, log, rt_required };
-            run_command::run(order, no_plots)
+            run_command::run(order, Results::of(json, no_plots))
         }
         Task::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
-        Task::Sim { scene, json, log, can } => sim(&config()?, &scene, json, log, can),
+        Task::Sim { scene, json, log, can } => {
+            sim_command::run(&config()?, &scene, json, log.as_deref(), can.as_deref())
+        }
         Task::Topic { what, dir } => done(topic_command::run(&dir, what)),
         Task::Param { what, dir } => done(param_command::run(&dir, what)),
         Task::Config { what } => done(config_command::run(asked, what)),
@@ -399,30 +409,6 @@ fn last_words(dir: &std::path::Path, process: Process) -> Result<(), Box<dyn Err
 /// Live commands of these domains, through the broker.
 fn commands(name: &str, domains: &[Domain], space: &Space) -> Result<Commands, String> {
     Ok(Box::new(broker::Client::start(name, domains, space)?))
-}
-
-fn sim(
-    config: &std::path::Path,
-    scene: &str,
-    json: bool,
-    log: Option<PathBuf>,
-    can: Option<PathBuf>,
-) -> Result<ExitCode, Box<dyn Error>> {
-    let (setup, choice) = cli::choose::load(config, scene, !json)?;
-    let bar = if json {
-        indicatif::ProgressBar::hidden()
-    } else {
-        indicatif::ProgressBar::new(setup.scene.duration as u64)
-    };
-    let mut figures = cli::sim::run(&setup, log.as_deref(), can.as_deref(), |t| bar.set_position(t as u64))?;
-    figures.depth_reason = choice.map(|choice| choice.reason());
-    bar.finish_and_clear();
-    if json {
-        println!("{}", serde_json::to_string(&figures)?);
-    } else {
-        println!("{}", cli::figures::table(&figures));
-    }
-    Ok(ExitCode::SUCCESS)
 }
 
 fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Error>> {

@@ -194,7 +194,7 @@ impl Skill {
 
     fn is_done(&mut self) -> bool {
         let Some(state) = self.state.latest() else { return false };
-        let moves = !matches!(GaitState::from(state.gait), GaitState::Idle | GaitState::Standing);
+        let moves = !GaitState::from(state.gait).rests();
         self.begun |= moves || clock::now() > self.since + BEGIN;
         self.begun && !moves
     }

@@ -30,6 +30,7 @@ use messages::{ControllerState, Process, SimState};
 use realtime::{Stop, clock};
 use terminal::Console;
 
+use crate::ending::Ending;
 use crate::figures::{Figures, Gatherer};
 
 pub use crash::TEXT as CRASH_TEXT;
@@ -92,10 +93,12 @@ impl std::fmt::Display for Cause {
 pub struct Outcome {
     /// Processes that died or hung before their time, also those that were started again.
     pub lost: Vec<(Process, Cause)>,
-    /// Whether somebody asked for the end.
+    /// Whether a signal asked for the end.
     pub interrupted: bool,
     /// Longest delay of the joint loop \[ms\], if the supply was cut or the robot was stopped because this machine was late.
     pub late_ms: Option<f64>,
+    /// How the walk ended.
+    pub ending: Ending,
     /// Records missing from the log.
     pub missing: u64,
     /// Whether the logger says that the log is not complete, because its disk failed.
@@ -142,6 +145,8 @@ pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<
         bus: order.bus.to_string(),
         robot: order.robot,
         log: order.log.clone(),
+        commit: crate::COMMIT.into(),
+        started: (order.mode == Mode::RealTime).then(|| [clock::unix_ns(), clock::now()]),
     };
     run.save()?;
     let outcome = supervisor::supervise(run, space, &setup, order.rt_required, stop, console)?;

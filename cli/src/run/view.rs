@@ -4,13 +4,16 @@ use std::error::Error;
 
 use config::Setup;
 use ipc::{Reader, Space};
-use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE, STATS_LOWLEVEL, Topic};
+use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE, STATS_LOWLEVEL, TOPICS, Topic};
 use messages::{
-    ControllerState, CycleStats, Event, EventCode, GaitState, Process, Sensors, SimState, StartUp, Words,
+    CommandTaken, ControllerState, CycleStats, Event, EventCode, GaitState, Process, Record, Sensors,
+    SimState, StartUp, Words,
 };
 use terminal::Console;
 
 use super::tally::Tally;
+use crate::ending::Ending;
+use crate::sim::AFTER_FALL;
 
 /// What the operator sees.
 pub(super) struct View {
@@ -21,16 +24,19 @@ pub(super) struct View {
     stats: Reader<CycleStats>,
     words: Words,
     tally: Tally,
-    /// Bus cycle \[s\].
-    cycle: f64,
     /// The run comes to its end.
-    ending: bool,
+    ends: bool,
     /// The supply was cut, or the robot was stopped, because processes came too late.
     late: bool,
     start_up: StartUp,
     console: Console,
     gait: GaitState,
     missing: u64,
+    taken: Vec<Reader<CommandTaken>>,
+    /// \[s\] Bus cycle.
+    cycle: f64,
+    /// How the walk ends.
+    pub(super) ending: Ending,
 }
 
 impl View {
@@ -48,12 +54,18 @@ impl View {
             stats: space.reader(&STATS_LOWLEVEL)?,
             words: crate::topic::words(setup),
             tally: Tally::default(),
-            cycle: setup.scene.cycle,
-            ending: false,
+            ends: false,
             late: false,
             start_up: StartUp::Off,
             gait: GaitState::Idle,
             missing: 0,
+            taken: TOPICS
+                .iter()
+                .filter(|t| t.type_name == CommandTaken::NAME)
+                .map(|t| space.reader(t))
+                .collect::<Result<_, _>>()?,
+            cycle: setup.scene.cycle,
+            ending: Ending::default(),
             console,
         })
     }
@@ -65,14 +77,13 @@ impl View {
 
     /// Whether the robot stands, or nobody can tell.
     pub(super) fn standing(&mut self) -> bool {
-        self.state
-            .latest()
-            .is_none_or(|s| matches!(GaitState::from(s.gait), GaitState::Standing | GaitState::Idle))
+        self.state.latest().is_none_or(|s| GaitState::from(s.gait).rests())
     }
 
     /// One look.
     pub(super) fn update(&mut self) {
         self.tell_events();
+        self.judge();
         self.tell_start_up();
         let Some(sim) = self.sim.latest() else { return };
         let (t, [x, y, _]) = (sim.time, sim.position);
@@ -89,13 +100,32 @@ impl View {
         }
     }
 
+    /// Whether the robot still does what it is told to.
+    fn judge(&mut self) {
+        for taken in &mut self.taken {
+            while let Some(taken) = taken.follow() {
+                self.ending.refused += u64::from(taken.origin == 0 && taken.refused != 0);
+            }
+        }
+        let (Some(sensors), Some(state)) = (self.sensors.latest(), self.state.latest()) else { return };
+        let fallen = self.sim.latest().is_some_and(|sim| sim.fallen == 1);
+        let gait = if fallen { GaitState::Fallen } else { state.gait.into() };
+        self.ending.see(sensors.header.tick as f64 * self.cycle, sensors.power == 1, gait);
+    }
+
+    /// Whether the simulated robot has fallen, so long ago that it lies still.
+    pub(super) fn lies(&mut self) -> bool {
+        let fell = self.ending.fell();
+        self.sim.latest().is_some_and(|sim| fell.is_some_and(|fell| sim.time > fell + AFTER_FALL))
+    }
+
     /// Where the start-up is, and what the operator does next.
     fn tell_start_up(&mut self) {
         let Some(sensors) = self.sensors.latest() else { return };
         let (now, tick) = (StartUp::from_number(sensors.start_up), sensors.header.tick);
         if self.start_up != now {
             self.start_up = now;
-            if !self.ending {
+            if !self.ends {
                 let time = tick as f64 * self.cycle;
                 self.console.say(format!("{time:7.3} s  {}", now.advice()));
             }
@@ -107,13 +137,14 @@ impl View {
         for (process, events) in &mut self.events {
             while let Some(e) = events.follow() {
                 let code = EventCode::from_number(e.code).unwrap_or(EventCode::None);
+                self.ending.tell(e.header.tick as f64 * self.cycle, code, e.detail);
                 if code == EventCode::LogDropped {
                     self.missing += e.detail;
                 }
                 if matches!(code, EventCode::Started | EventCode::Ended | EventCode::PlanActive) {
                     continue;
                 }
-                if self.ending && *process == Process::Watchdog && code == EventCode::PowerOff {
+                if self.ends && *process == Process::Watchdog && code == EventCode::PowerOff {
                     continue; // the joint loop ended first, as it should
                 }
                 self.late |= is_of_lateness(code, e.detail);
@@ -128,7 +159,7 @@ impl View {
 
     /// The end of a run: from now on it is normal that the supply goes off.
     pub(super) fn end(&mut self) {
-        self.ending = true;
+        self.ends = true;
     }
 
     /// What was told once and came more often.

@@ -122,6 +122,12 @@ fn event(code: EventCode, detail: u64) -> String {
         EventCode::ObstacleTooHigh => format!("{mm} m is higher than the robot steps"),
         EventCode::ObstacleTooLong => format!("a step of {mm} m over it is longer than the robot's"),
         EventCode::NoFoothold => format!("there is no foothold for {mm} m"),
+        EventCode::Fallen => {
+            "the robot has fallen: put it on its feet, then system/reset, system/enable, walk/stand".into()
+        }
+        EventCode::SafeStop => "its joints were stopped: secure the robot, then system/emergency_stop, \
+                                system/reset, system/enable, walk/stand"
+            .into(),
         EventCode::ZeroRefused => format!("the robot does not hang still: {detail} N on its feet"),
         code => crate::Words::default().sentence(code as u64, detail),
     }
