@@ -82,6 +82,9 @@ enum Task {
         /// Write the traffic of the bus: candump log, or MCAP if it ends in .mcap.
         #[arg(long, value_name = "FILE")]
         can: Option<PathBuf>,
+        /// Frames of classic CAN on the bus, instead of those of CAN FD.
+        #[arg(long)]
+        classic: bool,
     },
     /// Look at the topics of a running robot, or send it commands.
     Topic {
@@ -331,7 +334,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             run_command::run(order, no_plots)
         }
         Task::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
-        Task::Sim { scene, json, log, can } => sim(&config, &scene, json, log, can),
+        Task::Sim { scene, json, log, can, classic } => sim(&config, &scene, json, log, can, classic),
         Task::Topic { what, dir } => {
             realtime::end_with_reader();
             match what {
@@ -451,8 +454,10 @@ fn sim(
     json: bool,
     log: Option<PathBuf>,
     can: Option<PathBuf>,
+    classic: bool,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let (setup, choice) = cli::choose::load(config, scene, !json)?;
+    let setup = setup.on_bus(classic);
     let bar = if json {
         indicatif::ProgressBar::hidden()
     } else {
