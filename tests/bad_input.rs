@@ -151,7 +151,8 @@ fn what_is_no_run_directory_is_refused_by_every_command() {
             one_error(&said, &["run directory", &dir, why, "choose another one with --dir"]);
         }
         let said = site.gangwerk(&["estop", "--dir", &dir]);
-        assert!(said.code == Some(1) && said.err.contains("NOT KNOWN TO BE OFF"), "{said:#?}");
+        let text = format!("{}{}", said.out, said.err);
+        assert!(said.code == Some(1) && text.contains("NOT KNOWN TO BE OFF"), "{said:#?}");
     }
 }
 

@@ -4,12 +4,14 @@ use super::walk::Walk;
 use drawing::color::{BLUE, VERMILION};
 use drawing::{Chart, Figure};
 
+/// \[rad\] Resolution of the bus: joints without drives are off their targets by less.
+const NOTHING: f64 = 1e-6;
 /// Title, and the words that the names of its joints contain.
 const GROUPS: [(&str, &str, &str); 3] =
     [("Hip flexion", "hip", "flex"), ("Knee", "knee", ""), ("Ankle flexion", "ankle", "flex")];
 
 pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
-    let moves = |c: &super::walk::Cycle| c.state.tracking_error.iter().any(|error| *error != 0.0);
+    let moves = |c: &super::walk::Cycle| c.state.tracking_error.iter().any(|error| error.abs() > NOTHING);
     if !walk.cycles.iter().any(moves) {
         return Err("every joint is where its target is: the scene has no drives (depth = 2 or more has)".into());
     }
