@@ -162,11 +162,14 @@ impl Field {
     }
 }
 
+/// Name of the signal that switches another one, and the ranges of its values with which that one is there.
+type Switch<'a> = (&'a str, Vec<(u64, u64)>);
+
 /// What the file says about its signals further down, by message and signal.
 struct Details<'a> {
     words: HashMap<(MessageId, &'a str), Vec<(i64, String)>>,
     floats: HashMap<(MessageId, &'a str), SignalExtendedValueType>,
-    switches: HashMap<(MessageId, &'a str), (&'a str, Vec<(u64, u64)>)>,
+    switches: HashMap<(MessageId, &'a str), Switch<'a>>,
 }
 
 impl<'a> Details<'a> {
@@ -227,7 +230,7 @@ fn places(s: &can_dbc::Signal) -> Vec<usize> {
         ByteOrder::LittleEndian => (start..start.saturating_add(s.size as usize)).rev().collect(),
         // Downwards within a byte, then from the top of the next one.
         ByteOrder::BigEndian => {
-            let next = |bit: &usize| Some(if bit % 8 == 0 { bit + 15 } else { bit - 1 });
+            let next = |bit: &usize| Some(if bit.is_multiple_of(8) { bit + 15 } else { bit - 1 });
             std::iter::successors(Some(start), next).take(s.size as usize).collect()
         }
     }
