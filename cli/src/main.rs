@@ -466,11 +466,7 @@ fn sim(
     let mut figures = cli::sim::run(&setup, log.as_deref(), can.as_deref(), |t| bar.set_position(t as u64))?;
     figures.depth_reason = choice.map(|choice| choice.reason());
     bar.finish_and_clear();
-    if json {
-        println!("{}", serde_json::to_string(&figures)?);
-    } else {
-        println!("{}", cli::figures::table(&figures));
-    }
+    println!("{}", if json { serde_json::to_string(&figures)? } else { cli::figures::table(&figures) });
     Ok(ExitCode::SUCCESS)
 }
 
