@@ -120,6 +120,47 @@ fn a_look_at_no_robot_says_how_to_start_one() {
     one_error(&site.topic(&["echo", "sensors", "--once"]), &["gangwerk run"]);
 }
 
+/// A FIFO, a file, a link or somebody else's directory where the processes are to meet: one error that says what to do, and
+/// nobody waits for it.
+#[test]
+fn what_is_no_run_directory_is_refused_by_every_command() {
+    let site = Site::patient(EXE);
+    let (fifo, file, link, foreign) =
+        (site.path("fifo"), site.path("file"), site.path("link"), site.path("foreign"));
+    assert!(std::process::Command::new("mkfifo").arg(&fifo).status().unwrap().success());
+    std::fs::write(&file, "").unwrap();
+    std::os::unix::fs::symlink(site.path("."), &link).unwrap();
+    std::fs::DirBuilder::new().mode(0o700).create(&foreign).unwrap();
+    let no_dir = "is a link or no directory: remove it";
+    let mut places = vec![
+        (fifo.clone(), no_dir, no_dir),
+        (file.clone(), no_dir, no_dir),
+        (link, no_dir, no_dir),
+        (file.join("below"), "lies below something that is no directory", no_dir),
+    ];
+    // Only root can give a directory away.
+    if std::os::unix::fs::chown(&foreign, Some(65534), None).is_ok() {
+        places.push((foreign, "belongs to user 65534", "belongs to user 65534"));
+    }
+    for (place, of_run, of_others) in places {
+        let dir = place.display().to_string();
+        let commands: [(&[&str], &str); 5] = [
+            (&["run", "stand", "--lockstep", "--no-log"], of_run),
+            (&["topic", "hz", "sensors"], of_others),
+            (&["topic", "pub", "walk/stop"], of_others),
+            (&["param", "list"], of_others),
+            (&["can", "record", "shm", "/dev/null"], of_others),
+        ];
+        for (command, why) in commands {
+            let said = site.gangwerk(&[command, &["--dir", &dir]].concat());
+            one_error(&said, &["run directory", &dir, why, "choose another one with --dir"]);
+        }
+        let said = site.gangwerk(&["estop", "--dir", &dir]);
+        let text = format!("{}{}", said.out, said.err);
+        assert!(said.code == Some(1) && text.contains("NOT KNOWN TO BE OFF"), "{said:#?}");
+    }
+}
+
 /// A robot in simulated time that stands on its feet.
 struct Robot {
     site: Site,

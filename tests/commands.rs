@@ -254,6 +254,14 @@ fn a_refused_command_ends_topic_pub_with_the_reason_and_the_limit() {
     let said = site.topic(&["pub", "walk/velocity", "forward=1.9"]);
     assert_eq!(said.code, Some(1), "{said:#?}");
     assert_eq!(said.err.trim(), "error: walk/velocity refused by planner: forward = 1.9 m/s: at most 0.943");
+    // The joint loop decides these two; it accepted whatever it was told.
+    for (command, why) in [
+        ("joint/home", "refused by lowlevel: no joint waits for its angle"),
+        ("joint/zero_force", "N on a foot, at most 90 N: the robot must hang"),
+    ] {
+        let said = site.topic(&["pub", command]);
+        assert!(said.code == Some(1) && said.err.contains(why), "{said:#?}");
+    }
     let said = site.topic(&["pub", "walk/velocity", "forward=0.278", "--for", "0.5"]).well();
     assert!(said.out.ends_with("walk/stop accepted by planner\n"), "{}", said.out);
     run.interrupt();

@@ -95,6 +95,9 @@ enum Task {
         /// Write the traffic of the bus: candump log, or MCAP if it ends in .mcap.
         #[arg(long, value_name = "FILE")]
         can: Option<PathBuf>,
+        /// Frames of classic CAN on the bus, instead of those of CAN FD.
+        #[arg(long)]
+        classic: bool,
     },
     /// Look at the topics of a running robot, or send it commands.
     Topic {
@@ -317,8 +320,8 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             run_command::run(order, Results::of(json, no_plots))
         }
         Task::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
-        Task::Sim { scene, json, log, can } => {
-            sim_command::run(&config()?, &scene, json, log.as_deref(), can.as_deref())
+        Task::Sim { scene, json, log, can, classic } => {
+            sim_command::run(&config()?, &scene, json, log.as_deref(), can.as_deref(), classic)
         }
         Task::Topic { what, dir } => done(topic_command::run(&dir, what)),
         Task::Param { what, dir } => done(param_command::run(&dir, what)),

@@ -35,7 +35,7 @@ pub fn run(
     mut progress: impl FnMut(f64),
 ) -> Result<(Figures, Exit), Box<dyn Error>> {
     let mut chain = Chain::new(setup)?;
-    let mut traffic = traffic.map(Traffic::create).transpose()?;
+    let mut traffic = traffic.map(|path| Traffic::create(path, Some(&setup.robot.layout))).transpose()?;
     if let Some(traffic) = &mut traffic {
         traffic.write(chain.answer())?; // where the joints are before the first cycle
     }

@@ -11,8 +11,10 @@ pub(crate) fn run(
     json: bool,
     log: Option<&Path>,
     can: Option<&Path>,
+    classic: bool,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let (setup, choice) = cli::choose::load(config, scene, !json)?;
+    let setup = setup.on_bus(classic);
     let bar = if json {
         indicatif::ProgressBar::hidden()
     } else {

@@ -15,6 +15,7 @@ mod acceleration;
 pub mod brake;
 pub mod bus_fault;
 pub mod crane;
+pub mod database;
 pub mod dbc;
 pub mod drive;
 pub mod efficiency;

@@ -240,7 +240,8 @@ impl Chain {
     /// Second half of the joint loop's cycle.
     fn drive_joints(&mut self) {
         take_due(&mut self.joint, self.tick, &mut self.due);
-        self.due.iter().for_each(|command| self.joint_loop.command(command));
+        // Nobody waits for an answer; a refusal is told as an event.
+        self.due.iter().for_each(|command| _ = self.joint_loop.command(command));
         self.reset = *self.joint_loop.send(Some(&self.cycle.joint_targets), None).1;
     }
 

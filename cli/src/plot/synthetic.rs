@@ -104,8 +104,20 @@ impl LinkPoses for Sticks {
     }
 }
 
-/// Writes the walk; `links`: with the poses of links.
-pub(super) fn write(path: &Path, links: bool) {
+/// What a log may be without.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Part {
+    Links,
+    Truth,
+    Sensors,
+    Tracking,
+    Margin,
+    Inclination,
+}
+
+/// Writes the walk without some parts.
+pub(super) fn write(path: &Path, without: &[Part]) {
+    let with = |part: Part| !without.contains(&part);
     let foot = |side: &str| FootInfo {
         link: format!("{side}_foot"),
         sole: [0.0, 0.0, -0.1],
@@ -126,7 +138,7 @@ pub(super) fn write(path: &Path, links: bool) {
     let run =
         RunInfo { scene: "synthetic".into(), config_hash: 1, software: "0.1.0".into(), ..RunInfo::default() };
     let mut recorder = Recorder::create(path, &robot, &run).expect("log");
-    if links {
+    if with(Part::Links) {
         let tree = LINKS
             .iter()
             .map(|(name, parent)| Link { name: (*name).into(), parent: *parent, fixed: false })
@@ -136,10 +148,23 @@ pub(super) fn write(path: &Path, links: bool) {
     for tick in 0..(DURATION * 1000.0) as u64 {
         let t = tick as f64 * 1e-3;
         let header = Header { tick, stamp_ns: tick * 1_000_000, epoch: 1 };
-        let (sensors, controller, state) = records(header, t);
-        recorder.write(&SENSORS, &sensors).expect("log");
+        let (sensors, mut controller, state) = records(header, t);
+        if !with(Part::Tracking) {
+            controller.tracking_error = Default::default();
+        }
+        if !with(Part::Margin) {
+            controller.zmp_margin = f64::NAN;
+        }
+        if !with(Part::Inclination) {
+            controller.inclination_error = [f64::NAN; 2];
+        }
         recorder.write(&CONTROLLER_STATE, &controller).expect("log");
-        recorder.write(&SIM_STATE, &state).expect("log");
+        if with(Part::Sensors) {
+            recorder.write(&SENSORS, &sensors).expect("log");
+        }
+        if with(Part::Truth) {
+            recorder.write(&SIM_STATE, &state).expect("log");
+        }
     }
     recorder.finish().expect("log");
 }
