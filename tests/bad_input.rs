@@ -45,7 +45,7 @@ fn real_time_that_is_required_and_not_to_be_had_is_refused_before_anything_is_ar
     {
         assert!(said.err.contains(text), "`{text}` in: {}", said.err);
     }
-    assert!(!said.err.contains("PowerOn"), "{}", said.err);
+    assert!(!said.err.contains("motor supply on"), "{}", said.err);
     assert_eq!(site.shared_memory(), [""; 0], "left in /dev/shm");
 }
 
@@ -69,7 +69,12 @@ fn a_missing_scene_is_named_with_those_there_are() {
     refused(
         &Site::patient(EXE),
         "walk_9kmh",
-        &["scenes/walk_9kmh.toml", "cannot be read", "walk_1kmh, walk_2kmh"],
+        &[
+            "scenes/walk_9kmh.toml",
+            "there is no scene `walk_9kmh`",
+            "walk_1kmh or walk_2kmh",
+            "gangwerk scene list",
+        ],
     );
 }
 
@@ -113,6 +118,47 @@ fn a_look_at_no_robot_says_how_to_start_one() {
     one_error(&site.topic(&["pub", "walk/stop"]), &["gangwerk run"]);
     std::fs::DirBuilder::new().mode(0o700).create(site.run_dir()).unwrap();
     one_error(&site.topic(&["echo", "sensors", "--once"]), &["gangwerk run"]);
+}
+
+/// A FIFO, a file, a link or somebody else's directory where the processes are to meet: one error that says what to do, and
+/// nobody waits for it.
+#[test]
+fn what_is_no_run_directory_is_refused_by_every_command() {
+    let site = Site::patient(EXE);
+    let (fifo, file, link, foreign) =
+        (site.path("fifo"), site.path("file"), site.path("link"), site.path("foreign"));
+    assert!(std::process::Command::new("mkfifo").arg(&fifo).status().unwrap().success());
+    std::fs::write(&file, "").unwrap();
+    std::os::unix::fs::symlink(site.path("."), &link).unwrap();
+    std::fs::DirBuilder::new().mode(0o700).create(&foreign).unwrap();
+    let no_dir = "is a link or no directory: remove it";
+    let mut places = vec![
+        (fifo.clone(), no_dir, no_dir),
+        (file.clone(), no_dir, no_dir),
+        (link, no_dir, no_dir),
+        (file.join("below"), "lies below something that is no directory", no_dir),
+    ];
+    // Only root can give a directory away.
+    if std::os::unix::fs::chown(&foreign, Some(65534), None).is_ok() {
+        places.push((foreign, "belongs to user 65534", "belongs to user 65534"));
+    }
+    for (place, of_run, of_others) in places {
+        let dir = place.display().to_string();
+        let commands: [(&[&str], &str); 5] = [
+            (&["run", "stand", "--lockstep", "--no-log"], of_run),
+            (&["topic", "hz", "sensors"], of_others),
+            (&["topic", "pub", "walk/stop"], of_others),
+            (&["param", "list"], of_others),
+            (&["can", "record", "shm", "/dev/null"], of_others),
+        ];
+        for (command, why) in commands {
+            let said = site.gangwerk(&[command, &["--dir", &dir]].concat());
+            one_error(&said, &["run directory", &dir, why, "choose another one with --dir"]);
+        }
+        let said = site.gangwerk(&["estop", "--dir", &dir]);
+        let text = format!("{}{}", said.out, said.err);
+        assert!(said.code == Some(1) && text.contains("NOT KNOWN TO BE OFF"), "{said:#?}");
+    }
 }
 
 /// A robot in simulated time that stands on its feet.

@@ -91,6 +91,99 @@ fn recorded_traffic_gives_the_sensors_of_the_log_and_its_targets_the_traffic() {
     assert_eq!(fs::read_to_string(back).unwrap().replace(' ', ""), walk.text().replace(' ', ""));
 }
 
+/// Classic frames, and no other, in the cycle of the CAN lines; they give the logged sensor data like those of a run do.
+#[test]
+fn a_simulation_writes_the_traffic_of_classic_can() {
+    let site = Site::new(EXE);
+    let path = |name: &str| site.path(name).display().to_string();
+    let (log, traffic) = (path("walk.mcap"), path("walk.log"));
+    site.gangwerk(&["sim", "can_2kmh", "--classic", "--log", &log, "--can", &traffic]).well();
+    let text = fs::read_to_string(&traffic).unwrap();
+    assert!(text.lines().count() > 10_000 && !text.contains("##"), "{}", &text[..200]);
+    let said = site.gangwerk(&["can", "check", &traffic, "--against", &log]).well();
+    assert!(said.out.contains("the same, bit for bit"), "{}", said.out);
+    let stat = site.gangwerk(&["can", "stat", &traffic, "--robot", "lola", "--json"]).well().out;
+    let json: serde_json::Value = serde_json::from_str(&stat).unwrap();
+    let most = json["lines"].as_array().unwrap().iter().map(|l| l["load"].as_f64().unwrap()).fold(0.0, f64::max);
+    assert!((0.3..0.62).contains(&most), "the worst case is 61.9 %: {most}");
+}
+
+/// A step of the clock costs no frame: it is told, and the rest of the figures is that of the frames.
+#[test]
+fn a_clock_that_was_put_back_costs_no_frame() {
+    let walk = Walk::new(0.2);
+    // From 0.1 s on the clock is 0.1 s behind.
+    let back = |line: &str| {
+        let line = line.replacen("(0000000000.1", "(0000000000.0", 1);
+        format!("{}\n", line.replacen("(0000000000.2", "(0000000000.1", 1))
+    };
+    let file = walk.other(&walk.text().lines().map(back).collect::<String>());
+    let said = walk.can(&["stat", &file, "--robot", "lola", "--json"]).well();
+    assert!(said.err.contains("the clock was put back, 1 times, by up to 0.09"), "{}", said.err);
+    let json: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(json["clock_steps"], 1);
+    for m in json["messages"].as_array().unwrap() {
+        assert_eq!((&m["missing"], &m["repeated"]), (&0.into(), &0.into()), "{m}");
+        assert!((m["period_max"].as_f64().unwrap() - 1e-3).abs() < 1e-9, "{m}");
+    }
+    assert_eq!(walk.check(&file).well().out, walk.check(&walk.traffic).well().out);
+}
+
+/// `--dbc`: a robot's own file says what `--robot` says, in words; of any other file the same.
+#[test]
+fn frames_are_decoded_by_any_dbc_file() {
+    let walk = Walk::new(0.05);
+    let dbc = walk.site.config("robots/lola/can/lola_fd.dbc").display().to_string();
+    let by_file = walk.can(&["dump", &walk.traffic, "--dbc", &dbc]).well().out;
+    let by_robot = walk.can(&["dump", &walk.traffic, "--robot", "lola"]).well().out;
+    let signals = |text: &str| -> Vec<(String, String)> {
+        let lines = text.lines().filter_map(|line| line.trim().split_once(" = "));
+        lines.map(|(n, v)| (n.into(), v.split_whitespace().next().unwrap().into())).collect()
+    };
+    let (by_file_, by_robot_) = (signals(&by_file), signals(&by_robot));
+    assert_eq!(by_file_.len(), by_robot_.len());
+    let words = ["_status", "_error", "_control"];
+    for ((name, value), (_, wanted)) in by_file_.iter().zip(&by_robot_) {
+        if !words.iter().any(|word| name.ends_with(word)) {
+            assert_eq!(value, wanted, "{name}");
+        }
+    }
+    assert!(by_file.contains("mode = 1 (hold)") && by_file.contains("_error = 0 (none)"), "{by_file:.2000}");
+    assert!(by_file.contains("_status = 32") && by_file.contains("(switch on disabled"), "{by_file:.2000}");
+    let stat = walk.can(&["stat", &walk.traffic, "--dbc", &dbc]).well().out;
+    assert!(stat.contains("node0_targets"), "{stat}");
+    refused(&walk.can(&["dump", &walk.traffic, "--dbc", "/nowhere/x.dbc"]), &["/nowhere/x.dbc: cannot be read"]);
+    refused(&walk.can(&["dump", &walk.traffic, "--dbc", &walk.traffic]), &["walk.log: this is not a DBC file"]);
+}
+
+/// The load over time as a picture; the documented bit rate of CAN FD is the one it is computed with.
+#[test]
+fn stat_draws_the_load_over_time() {
+    let walk = Walk::new(0.5);
+    let png = walk.site.path("load.png").display().to_string();
+    let said = walk.can(&["stat", &walk.traffic, "--json", "--png", &png]).well();
+    assert!(fs::read(&png).unwrap().starts_with(b"\x89PNG"), "{said:?}");
+    let json: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(json["data_bitrate"], 5e6, "docs/can.md");
+    refused(&walk.can(&["stat", &walk.traffic, "--png", "/nowhere/x.png"]), &["/nowhere/x.png"]);
+}
+
+/// Logs of other tools hold the same frames.
+#[test]
+fn asc_and_trc_are_read_and_blf_is_named() {
+    let walk = Walk::new(0.02);
+    let read = |name: &str, text: &[u8]| {
+        let path = walk.site.path(name);
+        fs::write(&path, text).unwrap();
+        walk.can(&["dump", &path.display().to_string()])
+    };
+    let asc = b"date Sat Sep 30 15:06:13.191 2017\nbase hex  timestamps absolute\n 0.5 2  123  Rx   d 1 AB\n";
+    assert_eq!(read("a.asc", asc).well().out, "(0000000000.500000) can1 123#AB R\n");
+    let trc = b";$FILEVERSION=1.1\n 1) 500.0 Rx 0123 1 AB\n";
+    assert_eq!(read("a.trc", trc).well().out, "(0000000000.500000) can0 123#AB R\n");
+    refused(&read("a.blf", b"LOGG\x90\0\0\0"), &["BLF", "python3 -m can.logconvert", "a.log"]);
+}
+
 /// One flipped bit anywhere in what counts is found, and its tick, frame and signal named.
 #[test]
 fn a_flipped_bit_is_named_with_its_cycle_frame_and_signal() {

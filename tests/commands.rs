@@ -162,15 +162,32 @@ fn hz_and_echo_show_the_sensors_of_a_robot_in_real_time() {
     assert!((980.0..=1005.0).contains(&rate), "{}", said.out);
     let said = site.topic(&["echo", "sensors", "--once"]).well();
     let field = |name: &str| {
-        let line = said.out.lines().find_map(|line| line.strip_prefix(&format!("{name}:")));
+        let line = said.out.lines().find_map(|line| line.strip_prefix(&format!("{name} ")));
         let numbers = line.unwrap_or_else(|| panic!("{name} of {}", said.out)).split_whitespace();
-        numbers.map(|n| n.parse::<f64>().unwrap()).collect::<Vec<_>>()
+        numbers.map_while(|n| n.parse::<f64>().ok()).collect::<Vec<_>>()
     };
     assert!(field("header.tick")[0] > 500.0);
-    assert!(field("joint_angle").len() >= 25);
+    assert_eq!(said.out.lines().filter(|line| line.starts_with("joint_angle.")).count(), 24, "{}", said.out);
+    assert!(said.out.contains("joint_angle.right_knee_flexion 0."), "{}", said.out);
+    assert!(
+        said.out.lines().any(|l| l.starts_with("joint_angle.head_pan ") && l.ends_with(" rad")),
+        "{}",
+        said.out
+    );
     assert_eq!(field("power"), [1.0]);
     assert_eq!(field("imu.orientation").len(), 4);
     assert_eq!(said.out.matches("---").count(), 1, "only one record");
+    // Spread of the period, and age of records of a robot in real time.
+    let said = site.topic(&["hz", "sensors"]).well();
+    assert!(
+        said.out.contains("period by the stamps: mean 1.00") && said.out.contains(", std "),
+        "{}",
+        said.out
+    );
+    let said = site.topic(&["delay", "sensors", "--seconds", "0.5"]).well();
+    let mean: f64 =
+        said.out.split("mean ").nth(1).and_then(|text| text.split(' ').next()?.parse().ok()).unwrap();
+    assert!((0.0..50.0).contains(&mean), "{}", said.out);
 }
 
 /// Issue 10, C7: the operator's link was lost, and the robot walked on for ever.
@@ -237,6 +254,14 @@ fn a_refused_command_ends_topic_pub_with_the_reason_and_the_limit() {
     let said = site.topic(&["pub", "walk/velocity", "forward=1.9"]);
     assert_eq!(said.code, Some(1), "{said:#?}");
     assert_eq!(said.err.trim(), "error: walk/velocity refused by planner: forward = 1.9 m/s: at most 0.943");
+    // The joint loop decides these two; it accepted whatever it was told.
+    for (command, why) in [
+        ("joint/home", "refused by lowlevel: no joint waits for its angle"),
+        ("joint/zero_force", "N on a foot, at most 90 N: the robot must hang"),
+    ] {
+        let said = site.topic(&["pub", command]);
+        assert!(said.code == Some(1) && said.err.contains(why), "{said:#?}");
+    }
     let said = site.topic(&["pub", "walk/velocity", "forward=0.278", "--for", "0.5"]).well();
     assert!(said.out.ends_with("walk/stop accepted by planner\n"), "{}", said.out);
     run.interrupt();

@@ -115,8 +115,10 @@ impl StreamClient {
     /// No broker runs there, or it is of another version.
     pub fn connect(dir: &Path, name: &str) -> Result<Self, String> {
         let path = dir.join(SOCKET);
-        let stream = UnixStream::connect(&path)
-            .map_err(|e| format!("no broker at {}: {e}; start one with `gangwerk run`", path.display()))?;
+        let stream = UnixStream::connect(&path).map_err(|e| match ipc::wrong_dir(dir) {
+            Some(wrong) => wrong.to_string(),
+            None => format!("no broker at {}: {e}; start one with `gangwerk run`", path.display()),
+        })?;
         Self::begin(Box::new(stream), name, None, None)
     }
 

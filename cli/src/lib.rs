@@ -7,7 +7,9 @@ extern crate terminal;
 pub mod can;
 pub mod choose;
 pub mod estop;
+pub mod exit;
 pub mod faults;
+pub mod fields;
 pub mod fit_friction;
 pub mod latency;
 pub mod log;
@@ -20,4 +22,7 @@ pub mod scorecard;
 pub mod sim;
 pub mod topic;
 
-pub use studies::{chain, figures};
+pub use studies::{chain, ending, figures};
+
+/// Git commit that this program was built from, `-dirty` with changes; empty: unknown.
+pub const COMMIT: &str = env!("GANGWERK_COMMIT");

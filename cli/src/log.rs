@@ -1,11 +1,15 @@
-//! `gangwerk log`: what stands in a log besides the walk, and a log whose writer died made whole.
+//! `gangwerk log`: what stands in a log, as overview, as table, against another one; a log whose writer died made whole.
 
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
-use messages::topics::TOPICS;
-use messages::{CommandTaken, EventCode};
+use messages::topics::{ForType, TOPICS, Topic, with_type};
+use messages::{CommandTaken, Event, EventCode, Record, Words};
 use recording::{Log, Repaired, repair};
+
+use crate::fields::{first_difference, numbers};
+use crate::topic::{Echo, Table};
 
 /// Gives a log its end and index, if it lacks them.
 ///
@@ -19,20 +23,146 @@ pub fn mend(path: &Path) -> Result<String, Box<dyn Error>> {
     })
 }
 
-/// Tells what a log is of; of a crash record, how the process ended; of a run, every command with sender and answer.
+/// Prints what a log is of, how long it is, and what it holds.
+///
+/// # Errors
+/// The file is no log.
+pub fn info(path: &Path) -> Result<(), Box<dyn Error>> {
+    let log = Log::open(path)?;
+    head(&log);
+    let mut channels: BTreeMap<String, u64> = BTreeMap::new();
+    // What was written before the first cycle has no time.
+    let (mut first, mut last) = (u64::MAX, 0);
+    let end = log.each(|message| {
+        *channels.entry(message.channel.to_owned()).or_default() += 1;
+        if message.log_time_ns > 0 {
+            (first, last) = (first.min(message.log_time_ns), last.max(message.log_time_ns));
+        }
+    })?;
+    let seconds = last.saturating_sub(first) as f64 * 1e-9;
+    let size = std::fs::metadata(path)?.len() as f64 * 1e-6;
+    let messages: u64 = channels.values().sum();
+    println!("{seconds:.3} s, {messages} messages, {size:.1} MB, {} joints", log.robot().joints.len());
+    if end != recording::End::Complete {
+        println!("it has no end: `gangwerk log repair {}` makes it whole", path.display());
+    }
+    for (channel, count) in channels {
+        let rate = if count > 1 && seconds > 0.0 {
+            format!("{:9.1} Hz", count as f64 / seconds)
+        } else {
+            String::new()
+        };
+        println!("  {channel:36} {count:8} {rate}");
+    }
+    Ok(())
+}
+
+/// The line about what a log is of.
+fn head(log: &Log) {
+    let (run, robot) = (log.run(), &log.robot().name);
+    println!("scene {}, robot {robot}, configuration {:016x}, {}", run.scene, run.config_hash, run.software);
+    println!("commit {}, seed {}", if run.commit.is_empty() { "unknown" } else { &run.commit }, run.seed);
+    if let Some(clock) = &run.clock {
+        println!("started {} on {}", clock.date(), clock.host);
+    }
+}
+
+/// Prints the records of a topic as a table; see [`Echo`].
+///
+/// # Errors
+/// The file is no log, there is no such topic or field, or no record of it.
+pub fn export(path: &Path, topic: &str, how: &Echo) -> Result<(), Box<dyn Error>> {
+    let log = Log::open(path)?;
+    let known: Vec<&str> = TOPICS.iter().map(|t| t.name).collect();
+    let hint = "`gangwerk log info` shows what is in the log";
+    with_type(topic, Export { log: &log, how })
+        .unwrap_or_else(|| Err(messages::unknown("topic", topic, &known, hint).into()))
+}
+
+struct Export<'a> {
+    log: &'a Log,
+    how: &'a Echo,
+}
+
+impl ForType<Result<(), Box<dyn Error>>> for Export<'_> {
+    fn call<T: Record>(self, topic: &'static Topic) -> Result<(), Box<dyn Error>> {
+        let joints = &self.log.robot().joints;
+        let mut table = Table::new(self.how, &numbers(&T::empty(), joints))?;
+        let (mut failed, mut count) = (Ok(()), 0u64);
+        self.log.each_record(topic, |record: &T| {
+            count += 1;
+            if failed.is_ok() {
+                failed = table.print(&numbers(record, joints));
+            }
+        })?;
+        failed?;
+        if count == 0 {
+            return Err(format!("the log holds no record of {}", topic.name).into());
+        }
+        Ok(())
+    }
+}
+
+/// Holds every topic of two logs against the other's, bit for bit, and prints where they differ first; whether they are equal.
+///
+/// Cycle statistics are left out: no two runs have the same.
+///
+/// # Errors
+/// One of the files is no log.
+pub fn compare(a: &Path, b: &Path) -> Result<bool, Box<dyn Error>> {
+    let (a, b) = (Log::open(a)?, Log::open(b)?);
+    let (ours, theirs) = (a.run().config_hash, b.run().config_hash);
+    if ours != theirs {
+        println!("configurations differ: {ours:016x} and {theirs:016x}");
+    }
+    let (mut same, mut equal) = (0, true);
+    for topic in TOPICS.iter().filter(|t| t.logged && !t.name.starts_with("cycle_stats/")) {
+        match with_type(topic.name, Compare { a: &a, b: &b }).unwrap_or(Ok(None))? {
+            None => same += 1,
+            Some(difference) => {
+                println!("{}: {difference}", topic.name);
+                equal = false;
+            }
+        }
+    }
+    println!("{same} topics are equal, bit for bit");
+    Ok(equal)
+}
+
+struct Compare<'a> {
+    a: &'a Log,
+    b: &'a Log,
+}
+
+impl ForType<Result<Option<String>, Box<dyn Error>>> for Compare<'_> {
+    /// Where the records of a topic differ first; none: nowhere.
+    fn call<T: Record>(self, topic: &'static Topic) -> Result<Option<String>, Box<dyn Error>> {
+        let (a, b) = (self.a.records::<T>(topic)?, self.b.records::<T>(topic)?);
+        let differs =
+            a.iter().zip(&b).enumerate().find_map(|(i, (a, b))| Some((i, a, first_difference(a, b)?)));
+        Ok(match differs {
+            Some((i, record, (field, ours, theirs))) => Some(format!(
+                "record {i}, tick {}, {field}: {ours} and {theirs}; {} and {} records",
+                record.header().tick,
+                a.len(),
+                b.len()
+            )),
+            None if a.len() != b.len() => {
+                Some(format!("equal as far as it goes, {} and {} records", a.len(), b.len()))
+            }
+            None => None,
+        })
+    }
+}
+
+/// Tells what a log is of; of a crash record, how the process ended; of a run, every command with sender and answer, and every
+/// event, in the order of their ticks.
 ///
 /// # Errors
 /// The file is no log.
 pub fn show(path: &Path) -> Result<(), Box<dyn Error>> {
     let log = Log::open(path)?;
-    let run = log.run();
-    println!(
-        "scene {}, robot {}, configuration {:016x}, {}",
-        run.scene,
-        log.robot().name,
-        run.config_hash,
-        run.software
-    );
+    head(&log);
     let mut crash = None;
     log.each_attachment(|name, bytes| {
         if name == crate::run::CRASH_TEXT {
@@ -42,12 +172,33 @@ pub fn show(path: &Path) -> Result<(), Box<dyn Error>> {
     if let Some(text) = crash {
         println!("{text}");
     }
-    for topic in TOPICS.iter().filter(|t| t.type_name == "CommandTaken") {
-        log.each_record(topic, |taken: &CommandTaken| {
-            println!("tick {:8}  {}", taken.header.tick, line(taken, topic.writer.name()));
-        })?;
+    let mut lines: Vec<(u64, String)> = Vec::new();
+    for topic in TOPICS {
+        let process = topic.writer.name();
+        match topic.type_name {
+            "CommandTaken" => {
+                log.each_record(topic, |taken: &CommandTaken| {
+                    lines.push((taken.header.tick, line(taken, process)));
+                })?;
+            }
+            "Event" if topic.name.starts_with("events/") => {
+                let words = words_of(&log);
+                log.each_record(topic, |event: &Event| {
+                    let text = words.sentence(event.code, event.detail);
+                    lines.push((event.header.tick, format!("{process}: {text}")));
+                })?;
+            }
+            _ => {}
+        }
     }
+    lines.sort_by_key(|(tick, _)| *tick);
+    lines.iter().for_each(|(tick, line)| println!("tick {tick:8}  {line}"));
     Ok(())
+}
+
+/// Words of the events of a log.
+fn words_of(log: &Log) -> Words {
+    Words { joints: log.robot().joints.clone(), ..Words::default() }
 }
 
 /// Who wanted what, and the answer.
@@ -73,7 +224,7 @@ fn line(taken: &CommandTaken, process: &str) -> String {
         (20, _) => format!("refused: {} ms old", taken.about / 1_000_000),
         (23, _) => "refused: its sender has lost the command lease".into(),
         (30, _) => format!("refused: field {} must lie in {:?}", taken.about, taken.limits),
-        (33, Some(code)) => format!("refused: {code:?} ({})", taken.detail),
+        (33, Some(code)) => format!("refused: {}", Words::default().sentence(code as u64, taken.detail)),
         (code, _) => format!("refused: reason {code}"),
     };
     format!("{process}: {name}, from {sender}: {answer}")

@@ -4,15 +4,22 @@
 #[macro_use(println, eprintln)]
 extern crate terminal;
 
+mod config_command;
 mod fault_table;
+mod log_command;
+mod param_command;
 mod run_command;
+mod shipped;
+mod sim_command;
 mod study;
+mod topic_command;
+mod words;
 
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use cli::run::Order;
 use daemon::Commands;
 use fieldbus::Address;
@@ -20,6 +27,7 @@ use ipc::{Mode, Space};
 use messages::Process;
 use messages::command::Domain;
 use realtime::{CountingAllocator, Grade, Stop};
+use run_command::Results;
 
 /// Counts what control cycles allocate: nothing, after they are armed.
 #[global_allocator]
@@ -27,11 +35,11 @@ static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 /// Walking control for biped robots: plan, stabilize, drive the joints, guard, record.
 #[derive(Parser)]
-#[command(version, about)]
+#[command(name = "gangwerk", version = env!("GANGWERK_VERSION"), about)]
 struct Arguments {
     #[command(subcommand)]
     task: Option<Task>,
-    /// Configuration directory; default: the one of the source tree.
+    /// Configuration directory; default: see `gangwerk config where`.
     #[arg(long, global = true, value_name = "DIR")]
     config: Option<PathBuf>,
 }
@@ -39,8 +47,9 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Task {
     /// Run a scene with all processes: broker, watchdog, simulated robot, logger, planner, stabilizer, joint loop.
+    #[command(after_help = cli::exit::HELP)]
     Run {
-        /// Name of a file in config/scenes, without .toml.
+        /// Name of a scene, see `gangwerk scene list`, or path of a scene file.
         scene: String,
         /// Simulated time: every process waits for the others, and two runs are bit for bit the same.
         #[arg(long)]
@@ -51,9 +60,9 @@ enum Task {
         /// No simulated robot: somebody else is at the far end of the bus, a robot or a replay.
         #[arg(long)]
         no_robot: bool,
-        /// Where log and pictures go.
-        #[arg(long, value_name = "DIR", default_value = "runs/latest")]
-        out: PathBuf,
+        /// Where log and pictures go; default: runs/latest, or where this user may write instead.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
         /// No log and no pictures.
         #[arg(long)]
         no_log: bool,
@@ -63,6 +72,9 @@ enum Task {
         /// Log, but draw no pictures.
         #[arg(long)]
         no_plots: bool,
+        /// End with the figures of the log as one JSON object on standard output, instead of a table and pictures.
+        #[arg(long, conflicts_with = "no_log")]
+        json: bool,
         /// Where the processes meet; a second robot needs another one.
         #[arg(long, value_name = "DIR", default_value_os_t = ipc::default_dir())]
         dir: PathBuf,
@@ -70,8 +82,9 @@ enum Task {
     /// Emergency stop: cut the motor supply of a robot at once. See `gangwerk estop --help`.
     Estop,
     /// Run a scene in one process, as fast as possible.
+    #[command(after_help = cli::exit::HELP)]
     Sim {
-        /// Name of a file in config/scenes, without .toml.
+        /// Name of a scene, see `gangwerk scene list`, or path of a scene file.
         scene: String,
         /// End with one JSON object on standard output.
         #[arg(long)]
@@ -82,22 +95,35 @@ enum Task {
         /// Write the traffic of the bus: candump log, or MCAP if it ends in .mcap.
         #[arg(long, value_name = "FILE")]
         can: Option<PathBuf>,
+        /// Frames of classic CAN on the bus, instead of those of CAN FD.
+        #[arg(long)]
+        classic: bool,
     },
     /// Look at the topics of a running robot, or send it commands.
     Topic {
         #[command(subcommand)]
-        what: TopicTask,
+        what: topic_command::TopicTask,
         /// Where the processes meet.
         #[arg(long, global = true, value_name = "DIR", default_value_os_t = ipc::default_dir())]
         dir: PathBuf,
     },
-    /// Parameters of the running stabilizer: list, read, set.
+    /// Parameters of a running robot: list, read, set, write to a file.
     Param {
         #[command(subcommand)]
-        what: ParamTask,
+        what: param_command::ParamTask,
         /// Where the processes meet.
         #[arg(long, global = true, value_name = "DIR", default_value_os_t = ipc::default_dir())]
         dir: PathBuf,
+    },
+    /// The configuration that is taken, or a copy of the built-in one.
+    Config {
+        #[command(subcommand)]
+        what: config_command::ConfigTask,
+    },
+    /// Scenes that can be walked.
+    Scene {
+        #[command(subcommand)]
+        what: config_command::SceneTask,
     },
     /// Traffic of the joint loop's bus: record, replay, look at it, hold it against a log.
     Can {
@@ -112,10 +138,10 @@ enum Task {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
-    /// What a log holds besides the walk, or a log without an end made whole.
+    /// What a log holds: overview, commands and events, tables, differences; or a log without an end made whole.
     Log {
         #[command(subcommand)]
-        what: LogTask,
+        what: log_command::LogTask,
     },
     /// Feed the recorded inputs of processes to their real steps: every record they wrote comes out again, bit for bit, or the
     /// first field that differs is named.
@@ -196,6 +222,16 @@ enum Task {
     LatencyEnd { way: String, dir: PathBuf, core: String },
     /// What this machine gives to real time, what is missing, and how to get it.
     Doctor,
+    /// Completions for a shell, for example: gangwerk completions bash >~/.local/share/bash-completion/completions/gangwerk
+    Completions {
+        /// Which shell.
+        shell: clap_complete::Shell,
+    },
+    /// Write man pages, one for each command.
+    Man {
+        /// Directory for them, for example ~/.local/share/man/man1; it is made.
+        dir: PathBuf,
+    },
     /// One process of a run; `gangwerk run` starts them.
     #[command(hide = true)]
     Broker(Place),
@@ -213,18 +249,16 @@ enum Task {
     Lowlevel(Place),
 }
 
-#[derive(Subcommand)]
-enum LogTask {
-    /// What it is of; every command with its sender and its answer; of a crash record, how and where the process ended.
-    Show {
-        /// An MCAP file.
-        log: PathBuf,
-    },
-    /// Give a log its end and index that the death of its logger cost: all that is whole is kept.
-    Repair {
-        /// An MCAP file.
-        log: PathBuf,
-    },
+impl Task {
+    /// Whether it only tells something. What moves a robot or guards it does not end because nobody reads any more.
+    fn only_tells(&self) -> bool {
+        use Task::{
+            Broker, Controller, Faults, Latency, Logger, Lowlevel, Planner, Run, SimBackend, Watchdog,
+        };
+        let moves = matches!(self, Run { .. } | Faults(_) | Latency { .. } | Self::LatencyEnd { .. });
+        let guards = matches!(self, Broker(_) | Controller(_) | Logger(_) | Lowlevel(_) | Planner(_));
+        !(moves || guards || matches!(self, SimBackend(_) | Watchdog(_)))
+    }
 }
 
 #[derive(clap::Args)]
@@ -234,65 +268,6 @@ struct Place {
     run: PathBuf,
 }
 
-#[derive(Subcommand)]
-enum ParamTask {
-    /// The parameters of all processes of a running robot: value, unit, range, meaning, default.
-    List,
-    /// The value of one.
-    Get {
-        /// Name of the parameter.
-        name: String,
-    },
-    /// Another value, from the next cycle of its process on; refused if it is fixed at start.
-    Set {
-        /// Name of the parameter.
-        name: String,
-        /// In its unit and range.
-        #[arg(allow_negative_numbers = true)]
-        value: f64,
-        /// Take the command lease from whoever holds it.
-        #[arg(long)]
-        take_over: bool,
-    },
-}
-
-#[derive(Subcommand)]
-enum TopicTask {
-    /// All topics and all commands.
-    List,
-    /// Print records as they come.
-    Echo {
-        /// Name of the topic.
-        topic: String,
-        /// Only one.
-        #[arg(long)]
-        once: bool,
-    },
-    /// How often a topic is written.
-    Hz {
-        /// Name of the topic.
-        topic: String,
-        /// For how long to count \[s\].
-        #[arg(long, default_value_t = 2.0)]
-        seconds: f64,
-    },
-    /// Send a command and tell its answer, for example: walk/velocity forward=0.3
-    ///
-    /// Who moves the robot holds the command lease: a walk goes on for as long as this program runs and ends with it.
-    Pub {
-        /// Name of the command.
-        command: String,
-        /// field=number ...
-        fields: Vec<String>,
-        /// For a walk without an end: stop after so many seconds; without it, at Ctrl-C.
-        #[arg(long = "for", value_name = "SECONDS")]
-        seconds: Option<f64>,
-        /// Take the command lease from whoever holds it.
-        #[arg(long)]
-        take_over: bool,
-    },
-}
-
 fn main() -> ExitCode {
     // Before anything else, and without it.
     if let Some(code) = cli::estop::main(std::env::args_os()) {
@@ -300,6 +275,11 @@ fn main() -> ExitCode {
     }
     tracing_subscriber::fmt().with_writer(|| terminal::Quiet).without_time().with_target(false).init();
     let arguments = Arguments::parse();
+    config::embed(shipped::files());
+    // A result that nobody reads any more (`| head`) ends a command quietly; a robot goes on.
+    if arguments.task.as_ref().is_some_and(Task::only_tells) {
+        realtime::end_with_reader();
+    }
     match perform(arguments) {
         Ok(code) => code,
         Err(error) => {
@@ -310,52 +290,45 @@ fn main() -> ExitCode {
 }
 
 fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
-    let config = config::root(arguments.config.as_deref());
+    let asked = arguments.config.as_deref();
+    let config = || config::find(asked).map(|found| found.dir);
+    let done = |result: Result<(), Box<dyn Error>>| result.map(|()| ExitCode::SUCCESS);
     let task = arguments.task.unwrap_or(Task::Run {
         scene: "demo".into(),
         lockstep: false,
         bus: Address::Shared,
         no_robot: false,
-        out: "runs/latest".into(),
+        out: None,
         no_log: false,
         no_plots: false,
+        json: false,
         rt: None,
         dir: ipc::default_dir(),
     });
     match task {
-        Task::Run { scene, lockstep, bus, no_robot, out, no_log, no_plots, rt, dir } => {
+        Task::Run { scene, lockstep, bus, no_robot, out, no_log, no_plots, json, rt, dir } => {
             let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
-            let log = (!no_log).then(|| out.join(format!("{scene}.mcap")));
+            let config = config()?;
+            let log = match no_log {
+                true => None,
+                false => {
+                    Some(run_command::place(out)?.join(format!("{}.mcap", config::scenes::name(&scene))))
+                }
+            };
             let (robot, rt_required) = (!no_robot, rt.is_some());
             let order = Order { mode, scene, method: None, config, bus, robot, dir, log, rt_required };
-            run_command::run(order, no_plots)
+            run_command::run(order, Results::of(json, no_plots))
         }
         Task::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
-        Task::Sim { scene, json, log, can } => sim(&config, &scene, json, log, can),
-        Task::Topic { what, dir } => {
-            realtime::end_with_reader();
-            match what {
-                TopicTask::List => cli::topic::list(),
-                TopicTask::Echo { topic, once } => cli::topic::echo(&dir, &topic, once.then_some(1))?,
-                TopicTask::Hz { topic, seconds } => cli::topic::hz(&dir, &topic, seconds)?,
-                TopicTask::Pub { command, fields, seconds, take_over } => {
-                    let order = cli::operator::Order { command, fields, seconds, take_over };
-                    cli::operator::publish(&dir, &order)?;
-                }
-            }
-            Ok(ExitCode::SUCCESS)
+        Task::Sim { scene, json, log, can, classic } => {
+            sim_command::run(&config()?, &scene, json, log.as_deref(), can.as_deref(), classic)
         }
-        Task::Param { what, dir } => {
-            realtime::end_with_reader();
-            match what {
-                ParamTask::List => cli::param::list(&dir)?,
-                ParamTask::Get { name } => cli::param::get(&dir, &name)?,
-                ParamTask::Set { name, value, take_over } => cli::param::set(&dir, &name, value, take_over)?,
-            }
-            Ok(ExitCode::SUCCESS)
-        }
+        Task::Topic { what, dir } => done(topic_command::run(&dir, what)),
+        Task::Param { what, dir } => done(param_command::run(&dir, what)),
+        Task::Config { what } => done(config_command::run(asked, what)),
+        Task::Scene { what: config_command::SceneTask::List } => done(config_command::scenes(&config()?)),
         Task::Can { what } => {
-            cli::can::run(&config, what)?;
+            cli::can::run(&config()?, what)?;
             Ok(ExitCode::SUCCESS)
         }
         Task::Plot { log, out } => {
@@ -363,21 +336,15 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             draw(&log, &out)?;
             Ok(ExitCode::SUCCESS)
         }
-        Task::Log { what } => {
-            realtime::end_with_reader();
-            match what {
-                LogTask::Show { log } => cli::log::show(&log)?,
-                LogTask::Repair { log } => println!("{}", cli::log::mend(&log)?),
-            }
-            Ok(ExitCode::SUCCESS)
-        }
+        Task::Log { what } => log_command::run(what),
         Task::Replay { log, process } => cli::replay::main(&log, process.as_deref()),
         Task::Stability { log, out, friction, json } => {
             let out = out.unwrap_or_else(|| log.with_extension(""));
-            study::stability(&config, &log, &out, friction, json)
+            study::stability(&config()?, &log, &out, friction, json)
         }
-        Task::Study { what, json } => study::run(&config, what, json),
+        Task::Study { what, json } => study::run(&config()?, what, json),
         Task::Scorecard { only, quick, seed, json, out } => {
+            let config = config()?;
             let order = studies::scorecard::Order { config: &config, only: only.as_deref(), quick, seed };
             cli::scorecard::main(&order, json, out.as_deref())?;
             Ok(ExitCode::SUCCESS)
@@ -393,6 +360,8 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             Ok(ExitCode::SUCCESS)
         }
         Task::Doctor => Ok(doctor()),
+        Task::Completions { shell } => done(words::completions(shell, Arguments::command())),
+        Task::Man { dir } => done(words::man_pages(&dir, Arguments::command())),
         process => daemon(process),
     }
 }
@@ -443,30 +412,6 @@ fn last_words(dir: &std::path::Path, process: Process) -> Result<(), Box<dyn Err
 /// Live commands of these domains, through the broker.
 fn commands(name: &str, domains: &[Domain], space: &Space) -> Result<Commands, String> {
     Ok(Box::new(broker::Client::start(name, domains, space)?))
-}
-
-fn sim(
-    config: &std::path::Path,
-    scene: &str,
-    json: bool,
-    log: Option<PathBuf>,
-    can: Option<PathBuf>,
-) -> Result<ExitCode, Box<dyn Error>> {
-    let (setup, choice) = cli::choose::load(config, scene, !json)?;
-    let bar = if json {
-        indicatif::ProgressBar::hidden()
-    } else {
-        indicatif::ProgressBar::new(setup.scene.duration as u64)
-    };
-    let mut figures = cli::sim::run(&setup, log.as_deref(), can.as_deref(), |t| bar.set_position(t as u64))?;
-    figures.depth_reason = choice.map(|choice| choice.reason());
-    bar.finish_and_clear();
-    if json {
-        println!("{}", serde_json::to_string(&figures)?);
-    } else {
-        println!("{}", cli::figures::table(&figures));
-    }
-    Ok(ExitCode::SUCCESS)
 }
 
 fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Error>> {

@@ -25,6 +25,10 @@ pub struct Order {
     pub fields: Vec<String>,
     /// A walk without an end: stop after so many seconds.
     pub seconds: Option<f64>,
+    /// Send it again so often \[1/s\].
+    pub rate: Option<f64>,
+    /// Send it so many times.
+    pub times: Option<u64>,
     /// Take the command lease from whoever holds it.
     pub take_over: bool,
 }
@@ -35,6 +39,8 @@ const TRIES: u32 = 5;
 const TOO_OLD: u8 = 20;
 /// Longest time until a skill begins to move the robot \[ns\].
 const BEGIN: u64 = 5 * clock::SECOND;
+/// Most commands per second; the broker refuses what is far more.
+const MOST_PER_SECOND: f64 = 100.0;
 /// Between two looks at what the robot does, and between two signs of life.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -75,6 +81,11 @@ pub fn publish(dir: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
     if order.seconds.is_some_and(|s| !(s.is_finite() && s > 0.0)) {
         return Err("--for: a number of seconds above 0 is needed".into());
     }
+    if order.rate.is_some_and(|hz| !(hz > 0.0 && hz <= MOST_PER_SECOND)) {
+        return Err(
+            format!("--rate: a number above 0 and up to {MOST_PER_SECOND} per second is needed").into()
+        );
+    }
     let mut client = connect(dir, "gangwerk topic pub")?;
     if matches!(command, Command::EmergencyStop) {
         // Nothing else comes first.
@@ -85,6 +96,9 @@ pub fn publish(dir: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
     client.subscribe(&[Domain::Walk, Domain::System])?;
     let process = give(&mut client, &command, order.take_over)?;
     println!("{} accepted by {process}", command.name());
+    if order.rate.is_some() || order.times.is_some() {
+        return repeat(&mut client, &stop, order, &command);
+    }
     if command.is_unbounded() {
         let end = match order.seconds {
             Some(seconds) => format!("stops after {seconds} s or at Ctrl-C"),
@@ -96,6 +110,34 @@ pub fn publish(dir: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
         println!("the robot is on its way: this program stays until it stands; Ctrl-C stops it");
         let mut skill = Skill::watch(dir)?;
         accompany(&mut client, &stop, order.seconds, || skill.is_done())?;
+    }
+    Ok(())
+}
+
+/// Sends a command that was accepted once again and again, as often and as many times as is ordered; a walk without an end
+/// that goes on until Ctrl-C is stopped then.
+fn repeat(
+    client: &mut StreamClient,
+    stop: &Stop,
+    order: &Order,
+    command: &Command,
+) -> Result<(), Box<dyn Error>> {
+    let period = (1e9 / order.rate.unwrap_or(1.0)) as u64;
+    let (begun, times) = (clock::now(), order.times.unwrap_or(u64::MAX));
+    for n in 1..times {
+        // Signs of life between two of them: the lease does not last for long.
+        while clock::now() < begun + n * period && !stop.asked() {
+            client.ping()?;
+            let left = (begun + n * period).saturating_sub(clock::now());
+            clock::sleep_until(clock::now() + left.min(LOOK.as_nanos() as u64));
+        }
+        if stop.asked() {
+            if command.is_unbounded() {
+                println!("walk/stop accepted by {}", give(client, &Command::Stop, false)?);
+            }
+            break;
+        }
+        println!("{} accepted by {}", command.name(), give(client, command, false)?);
     }
     Ok(())
 }
@@ -152,7 +194,7 @@ impl Skill {
 
     fn is_done(&mut self) -> bool {
         let Some(state) = self.state.latest() else { return false };
-        let moves = !matches!(GaitState::from(state.gait), GaitState::Idle | GaitState::Standing);
+        let moves = !GaitState::from(state.gait).rests();
         self.begun |= moves || clock::now() > self.since + BEGIN;
         self.begun && !moves
     }

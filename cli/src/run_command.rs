@@ -1,11 +1,12 @@
 //! `gangwerk run`: a run, its results and its exit code, with nothing printed but through the console.
 
 use std::error::Error;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use cli::run::Order;
+use cli::exit::Exit;
+use cli::run::{Order, Outcome};
 use config::Setup;
 use realtime::{Stop, clock};
 use terminal::Console;
@@ -13,39 +14,82 @@ use terminal::Console;
 /// How long the terminal may take for what is left to say when a run has ended.
 const LAST_WORDS: Duration = Duration::from_secs(2);
 
-/// A run, with nothing printed but through the console: a paused terminal holds up neither robot nor end.
-pub(crate) fn run(mut order: Order, no_plots: bool) -> Result<ExitCode, Box<dyn Error>> {
-    if let Some(directory) = order.log.as_ref().and_then(|log| log.parent()) {
-        std::fs::create_dir_all(directory)
-            .map_err(|e| format!("{}: {e}; choose another place with --out", directory.display()))?;
+/// Where log and pictures go: what was asked for, else `runs/latest`, else where this user's programs keep such things.
+///
+/// # Errors
+/// Neither can be made.
+pub(crate) fn place(asked: Option<PathBuf>) -> Result<PathBuf, String> {
+    let made = |dir: &Path| {
+        // A directory of somebody else's may be there already: only a file in it shows.
+        let probe = dir.join(format!(".gangwerk-{}", std::process::id()));
+        std::fs::create_dir_all(dir)?;
+        std::fs::File::create(&probe).and_then(|_| std::fs::remove_file(&probe))
+    };
+    let told =
+        |dir: &Path, e: &std::io::Error| format!("{}: {e}; choose another place with --out", dir.display());
+    if let Some(dir) = asked {
+        return made(&dir).map_err(|e| told(&dir, &e)).map(|()| dir);
     }
+    let here = PathBuf::from("runs/latest");
+    let Err(error) = made(&here) else { return Ok(here) };
+    let variable = |name| std::env::var_os(name).map(PathBuf::from).filter(|dir| dir.is_absolute());
+    let state = variable("XDG_STATE_HOME").or_else(|| Some(variable("HOME")?.join(".local/state")));
+    let own = state.map(|dir| dir.join("gangwerk/latest")).filter(|dir| made(dir).is_ok());
+    let own = own.ok_or_else(|| told(&here, &error))?;
+    eprintln!("{}: {error}; log and pictures go to {}", here.display(), own.display());
+    Ok(own)
+}
+
+/// What is made of the log of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Results {
+    /// Its figures, for other programs.
+    Json,
+    /// Its figures, for people.
+    Table,
+    /// The same and pictures.
+    Pictures,
+}
+
+impl Results {
+    /// As the command line asks for them.
+    pub(crate) fn of(json: bool, no_plots: bool) -> Self {
+        match (json, no_plots) {
+            (true, _) => Self::Json,
+            (false, true) => Self::Table,
+            (false, false) => Self::Pictures,
+        }
+    }
+}
+
+/// A run, with nothing printed but through the console: a paused terminal holds up neither robot nor end.
+pub(crate) fn run(mut order: Order, wanted: Results) -> Result<ExitCode, Box<dyn Error>> {
     let (setup, choice) = cli::choose::load(&order.config, &order.scene, true)?;
     order.method = choice.map(|choice| choice.method);
     // First of all that starts a thread: one with signals of its own would be where Ctrl-C ends everything.
     let stop = Stop::on_signals()?;
     let console = Console::start(Some((setup.scene.duration * 10.0) as u64), clock::now)?;
     terminal::divert(&console);
-    let code = run_on(&order, &setup, no_plots, stop, &console).unwrap_or_else(|error| {
+    let exit = run_on(&order, &setup, wanted, stop, &console).unwrap_or_else(|error| {
         console.say(format!("error: {error}"));
-        ExitCode::FAILURE
+        Exit::Error
     });
     console.flush(LAST_WORDS);
-    Ok(code)
+    Ok(exit.into())
 }
 
 fn run_on(
     order: &Order,
     setup: &Setup,
-    no_plots: bool,
+    wanted: Results,
     stop: Stop,
     console: &Console,
-) -> Result<ExitCode, Box<dyn Error>> {
+) -> Result<Exit, Box<dyn Error>> {
     let outcome = cli::run::run(order, stop, console)?;
-    let incomplete = outcome.missing > 0 || outcome.log_broken;
     // Results: what the log says, and whether that is all of the run.
     let mut told = true;
     if let Some(log) = order.log.as_ref().filter(|_| order.robot) {
-        let text = results(log, setup, incomplete, no_plots, console);
+        let text = results(log, setup, &outcome, wanted, console);
         told = text.map_err(|error| console.say(format!("error: {error}"))).is_ok_and(|text| {
             // A paused terminal is no reason to call the run a failure; a full disk under the results is.
             console.result(text, LAST_WORDS) || outcome.interrupted
@@ -55,32 +99,45 @@ fn run_on(
     for (process, cause) in &outcome.lost {
         console.say(format!("{} {cause}", process.name()));
     }
+    if let Some(ms) = outcome.late_ms.filter(|_| order.robot) {
+        console.say(format!(
+            "this machine was too slow for real time: the joint loop came up to {ms:.1} ms late, and its motor supply was cut \
+             or the robot stopped, as a real one's would; take --lockstep, which needs no real time, or see `gangwerk doctor`"
+        ));
+    }
     if outcome.log_broken {
         console.say("the log is not complete: its logger failed");
     } else if outcome.missing > 0 {
         console.say(format!("the log is not complete: {} records are missing", outcome.missing));
     }
     let failed = !outcome.lost.is_empty() || outcome.log_broken || !told;
-    Ok(match (failed, outcome.interrupted) {
-        (true, _) => ExitCode::FAILURE,
-        (false, true) => ExitCode::from(130),
-        (false, false) => ExitCode::SUCCESS,
-    })
+    let exit = if failed { Exit::Error } else { Exit::of(&outcome.ending, outcome.interrupted) };
+    if matches!(exit, Exit::Fell | Exit::NotDone) {
+        let (by, at) = outcome.ending.end();
+        let refused = outcome.ending.refused;
+        console
+            .say(format!("ended by {by}, at {at:.3} s; commands of the scene that were refused: {refused}"));
+    }
+    Ok(exit)
 }
 
 /// Figures of a log, and the names of its pictures.
 fn results(
     log: &Path,
     setup: &Setup,
-    incomplete: bool,
-    no_plots: bool,
+    outcome: &Outcome,
+    wanted: Results,
     console: &Console,
 ) -> Result<String, Box<dyn Error>> {
-    let mut text = cli::figures::table(&cli::run::figures_of(log, setup)?);
-    if incomplete {
+    let figures = cli::run::figures_of(log, setup)?.ended(&outcome.ending);
+    if wanted == Results::Json {
+        return Ok(serde_json::to_string(&figures)?);
+    }
+    let mut text = cli::figures::table(&figures);
+    if outcome.missing > 0 || outcome.log_broken {
         text += "\nINCOMPLETE: records are missing from the log, and these figures are of the others";
     }
-    if !no_plots {
+    if wanted == Results::Pictures {
         let pictures = cli::plot::run(log, log.parent().unwrap_or(log))?;
         text += &pictures.written.iter().map(|path| format!("\n{}", path.display())).collect::<String>();
         pictures.skipped.iter().for_each(|reason| console.say(format!("not drawn: {reason}")));

@@ -4,20 +4,25 @@ use std::error::Error;
 use std::path::Path;
 
 use config::Setup;
+use logger::Origin;
 use messages::topics::{
     CONTROLLER_STATE, EVENTS_CONTROLLER, EVENTS_LOWLEVEL, EVENTS_PLANNER, EVENTS_SIM_BACKEND,
     EVENTS_WATCHDOG, JOINT_TARGETS, PARAMETERS_CONTROLLER, PARAMETERS_PLANNER, PLAN, POWER, SENSORS,
     SIM_STATE,
 };
-use messages::{Event, EventCode, Header, Process, Record, Topic};
+use messages::{Event, EventCode, GaitState, Header, Process, Record, Topic};
 use recording::Recorder;
 
 use crate::can::record::Traffic;
 use crate::chain::{Chain, Cycle};
+use crate::ending::Ending;
+use crate::exit::Exit;
 use crate::figures::{Figures, Gatherer};
 
-/// Runs a scene to its end, or until the robot has fallen and lies still; writes a log, and the traffic of the bus, if
-/// asked to.
+/// \[s\] For so long a run of a simulated robot goes on after it fell: it then lies still.
+pub const AFTER_FALL: f64 = 2.0;
+
+/// Runs a scene to its end, or until [`AFTER_FALL`] after a fall; writes a log, and the traffic of the bus, if asked to.
 ///
 /// `progress` is told the simulated time \[s\] once per simulated second.
 ///
@@ -28,19 +33,23 @@ pub fn run(
     log: Option<&Path>,
     traffic: Option<&Path>,
     mut progress: impl FnMut(f64),
-) -> Result<Figures, Box<dyn Error>> {
+) -> Result<(Figures, Exit), Box<dyn Error>> {
     let mut chain = Chain::new(setup)?;
-    let mut traffic = traffic.map(Traffic::create).transpose()?;
+    let mut traffic = traffic.map(|path| Traffic::create(path, Some(&setup.robot.layout))).transpose()?;
     if let Some(traffic) = &mut traffic {
         traffic.write(chain.answer())?; // where the joints are before the first cycle
     }
     let mut record = log.map(|path| LogWriter::create(path, setup, &chain)).transpose()?;
-    let mut gatherer = Gatherer::default();
+    let (mut gatherer, mut ending) = (Gatherer::default(), Ending::default());
     let cycles = (setup.scene.duration / setup.scene.cycle).round() as u64;
     let per_second = (1.0 / setup.scene.cycle).round() as u64;
     let begun = realtime::clock::processor_time();
     for i in 1..=cycles {
         let cycle = chain.step();
+        let time = i as f64 * setup.scene.cycle;
+        cycle.events.iter().for_each(|&(_, code, detail)| ending.tell(time, code, detail));
+        ending.refused += cycle.refused;
+        ending.see(time, cycle.sensors.power == 1, gait(cycle));
         gatherer.add(&cycle.sim_state, &cycle.controller_state);
         if let Some(record) = &mut record {
             record.write(cycle)?;
@@ -52,6 +61,9 @@ pub fn run(
         if i % per_second == 0 {
             progress(i as f64 * setup.scene.cycle);
         }
+        if ending.fell().is_some_and(|fell| time > fell + AFTER_FALL) {
+            break;
+        }
     }
     let cpu = (realtime::clock::processor_time() - begun) as f64 * 1e-9;
     if let Some(record) = record {
@@ -60,7 +72,13 @@ pub fn run(
     if let Some(traffic) = traffic {
         traffic.finish()?;
     }
-    Ok(gatherer.figures(setup, cpu, log.map(|p| p.display().to_string())))
+    let figures = gatherer.figures(setup, cpu, log.map(|p| p.display().to_string()));
+    Ok((figures.ended(&ending), Exit::of(&ending, false)))
+}
+
+/// Where in a walk the robot is; the simulation knows of a fall that the robot does not notice.
+fn gait(cycle: &Cycle) -> GaitState {
+    if cycle.sim_state.fallen == 1 { GaitState::Fallen } else { cycle.controller_state.gait.into() }
 }
 
 /// Writes what the logger would write.
@@ -80,7 +98,8 @@ const REPORTERS: [(Process, &Topic); 5] = [
 
 impl LogWriter {
     fn create(path: &Path, setup: &Setup, chain: &Chain) -> Result<Self, Box<dyn Error>> {
-        let mut record = Self { recorder: logger::recorder(path, setup)?, last: Header::default() };
+        let origin = Origin { commit: crate::COMMIT.into(), simulated: true, clock: None };
+        let mut record = Self { recorder: logger::recorder(path, setup, &origin)?, last: Header::default() };
         record.all(EventCode::Started)?;
         let [planner, stabilizer] = chain.parameters();
         record.put(&PARAMETERS_PLANNER, planner)?;

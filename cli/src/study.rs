@@ -103,10 +103,10 @@ pub(super) enum Task {
         /// Whose frames they carry.
         #[arg(long, default_value = "lola")]
         robot: String,
-        /// Bus cycle \[ms\].
+        /// Bus cycle, in ms.
         #[arg(long, value_name = "MS", default_value_t = 3.5)]
         cycle: f64,
-        /// How long \[s\]; cyclictest runs as long before, and again beside it.
+        /// How long, in s; cyclictest runs as long before, and again beside it.
         #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=3600))]
         seconds: u64,
     },
@@ -136,7 +136,7 @@ pub(super) enum Task {
         /// The scene that is run.
         #[arg(long, default_value = "walk_60s")]
         scene: String,
-        /// How long cyclictest runs \[s\]; 0: not at all.
+        /// How long cyclictest runs, in s; 0: not at all.
         #[arg(long, default_value_t = 20)]
         cyclictest: u64,
         /// Where the log goes.

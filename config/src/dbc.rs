@@ -20,12 +20,11 @@
 use std::path::Path;
 
 use can_dbc::{ByteOrder, Dbc, MessageId, MultiplexIndicator, ValueType};
-use messages::MAX_FRAMES;
 use messages::layout::{Carries, Layout, MAX_NODES, Message, Signal};
+use messages::{MAX_FRAMES, nearest};
 
 use crate::error::{ConfigError, Problem};
 use crate::file::{self, Hash};
-use crate::section::nearest;
 
 /// The node that is lowlevel.
 const PC: &str = "PC";

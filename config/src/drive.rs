@@ -9,11 +9,12 @@ use drives::{
     Ankle, AnkleGeometry, Elasticity, Friction, HarmonicFriction, JointControl, Knee, KneeGeometry, Motor,
     OutOfDomain, ScrewFriction, Transmission,
 };
+use messages::nearest;
 
 use crate::brake::Brake;
 use crate::joint_control;
 use crate::robot::{Joint, joint_index};
-use crate::section::{NOT_NEGATIVE, POSITIVE, Section, nearest};
+use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 
 /// One motor with everything between its terminals and its joints.
 #[derive(Clone, Debug)]

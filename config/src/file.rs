@@ -1,12 +1,28 @@
-//! Where configuration lies, and what it was: lookup of the shipped directory and the hash that goes into every log.
+//! Files of a configuration: read from a directory or from the set inside the executable, and hashed for every log.
 
+use std::borrow::Cow;
+use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use crate::error::ConfigError;
 
-/// The configuration directory: the one asked for, else the one of the source tree this program was built from.
-pub fn root(asked: Option<&Path>) -> PathBuf {
-    asked.map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), Path::to_owned)
+/// Directory under which the set inside the executable is read, as if it lay on disk.
+pub const BUILT_IN: &str = "(built in)";
+
+/// A file of that set: its path below the configuration directory, and its bytes.
+pub type Embedded = (PathBuf, &'static [u8]);
+
+static EMBEDDED: OnceLock<Vec<Embedded>> = OnceLock::new();
+
+/// Makes `files` what [`BUILT_IN`] stands for in this program; the first call holds.
+pub fn embed(files: Vec<Embedded>) {
+    let _ = EMBEDDED.set(files);
+}
+
+/// Files of the set inside the executable; none in a program without one, such as a test.
+pub(crate) fn embedded() -> &'static [Embedded] {
+    EMBEDDED.get().map_or(&[], Vec::as_slice)
 }
 
 /// A file as it was read.
@@ -34,37 +50,61 @@ impl Hash {
 
 /// The text of a file; an error says what lies beside it instead.
 pub(crate) fn text(path: &Path, hash: &mut Hash) -> Result<String, ConfigError> {
-    let text = std::fs::read_to_string(path).map_err(|e| unreadable(path, &e))?;
-    hash.read(path, text.as_bytes());
-    Ok(text)
+    let bytes = include(path, hash)?;
+    String::from_utf8(bytes).map_err(|_| ConfigError::of_file(path, "cannot be read: is not UTF-8 text"))
 }
 
-/// Adds a file that another part reads to the hash.
-pub(crate) fn include(path: &Path, hash: &mut Hash) -> Result<(), ConfigError> {
-    hash.read(path, &std::fs::read(path).map_err(|e| unreadable(path, &e))?);
-    Ok(())
+/// The bytes of a file that another part makes sense of; they are added to the hash.
+pub(crate) fn include(path: &Path, hash: &mut Hash) -> Result<Vec<u8>, ConfigError> {
+    let bytes = bytes(path).map_err(|e| unreadable(path, &e))?;
+    hash.read(path, &bytes);
+    Ok(bytes.into_owned())
 }
 
-fn unreadable(path: &Path, e: &std::io::Error) -> ConfigError {
-    let hint = if e.kind() == std::io::ErrorKind::NotFound { neighbours(path) } else { String::new() };
+/// The bytes of a file on disk or of the set inside the executable.
+fn bytes(path: &Path) -> io::Result<Cow<'static, [u8]>> {
+    let Ok(name) = path.strip_prefix(BUILT_IN) else { return std::fs::read(path).map(Cow::Owned) };
+    let found = embedded().iter().find(|(file, _)| file == name);
+    found.map(|(_, bytes)| Cow::Borrowed(*bytes)).ok_or_else(|| io::ErrorKind::NotFound.into())
+}
+
+/// Whether there is such a file.
+pub(crate) fn exists(path: &Path) -> bool {
+    match path.strip_prefix(BUILT_IN) {
+        Ok(name) => embedded().iter().any(|(file, _)| file == name),
+        Err(_) => path.is_file(),
+    }
+}
+
+/// Names of the files with this ending in a directory, without it, in alphabetical order; none if there is no such directory.
+pub(crate) fn names(directory: &Path, ending: &str) -> Option<Vec<String>> {
+    let paths: Vec<PathBuf> = match directory.strip_prefix(BUILT_IN) {
+        Ok(within) => {
+            let all = embedded().iter().map(|(file, _)| file);
+            all.filter(|file| file.parent() == Some(within)).cloned().collect()
+        }
+        Err(_) => std::fs::read_dir(directory).ok()?.flatten().map(|entry| entry.path()).collect(),
+    };
+    let paths = paths.into_iter().filter(|path| path.extension().unwrap_or_default() == ending);
+    let mut names: Vec<String> =
+        paths.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect();
+    names.sort();
+    Some(names)
+}
+
+fn unreadable(path: &Path, e: &io::Error) -> ConfigError {
+    let hint = if e.kind() == io::ErrorKind::NotFound { neighbours(path) } else { String::new() };
     ConfigError::of_file(path, format!("cannot be read: {e}{hint}"))
 }
 
 fn neighbours(path: &Path) -> String {
-    let wanted = path.extension();
     let Some(directory) = path.parent() else { return String::new() };
     let directory = if directory.as_os_str().is_empty() { Path::new(".") } else { directory };
-    let Ok(entries) = std::fs::read_dir(directory) else {
-        return format!("; {} is no directory either, so check --config", directory.display());
-    };
-    let mut names: Vec<String> = entries
-        .flatten()
-        .map(|entry| entry.path())
-        .filter(|path| path.extension() == wanted)
-        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
-        .collect();
-    names.sort();
-    if names.is_empty() { String::new() } else { format!("; there is {}", names.join(", ")) }
+    match names(directory, &path.extension().unwrap_or_default().to_string_lossy()) {
+        None => format!("; {} is no directory either, so check --config", directory.display()),
+        Some(names) if names.is_empty() => String::new(),
+        Some(names) => format!("; there is {}", names.join(", ")),
+    }
 }
 
 #[cfg(test)]

@@ -197,11 +197,9 @@ pub fn find<'a>(entries: &'a [Entry], name: &str) -> Result<&'a Entry, String> {
     let full = entries.iter().find(|e| e.full_name() == name);
     let short = || entries.iter().find(|e| e.process == "controller" && e.name == name);
     full.or_else(short).ok_or_else(|| {
-        let near: Vec<_> =
-            entries.iter().map(Entry::full_name).filter(|n| n.contains(name) || name.contains(n)).collect();
-        let hint =
-            if near.is_empty() { String::new() } else { format!("did you mean {}? ", near.join(" or ")) };
-        format!("there is no parameter {name}; {hint}`gangwerk param list` shows them all")
+        let names: Vec<String> = entries.iter().map(Entry::full_name).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        messages::unknown("parameter", name, &names, "`gangwerk param list` shows them all")
     })
 }
 

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use drives::homing::HomeSwitch;
-use messages::MAX_JOINTS;
 use messages::layout::Layout;
+use messages::{MAX_JOINTS, nearest};
 
 use crate::acceleration;
 use crate::dbc;
@@ -310,8 +310,7 @@ impl Foot {
 pub(crate) fn joint_index(at: &Section<'_, '_>, key: &str, name: &str, joints: &[&str]) -> Option<usize> {
     let found = joints.iter().position(|joint| *joint == name);
     if found.is_none() && !name.is_empty() {
-        let hint =
-            section::nearest(name, joints).map_or(String::new(), |n| format!("; the nearest is `{n}`"));
+        let hint = nearest(name, joints).map_or(String::new(), |n| format!("; the nearest is `{n}`"));
         at.problem(key, format!("there is no joint `{name}`{hint}"));
     }
     found

@@ -91,14 +91,15 @@ impl Integrator {
 impl Scene {
     /// Reads a scene file.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
-        Self::load_hashed(path, &mut Hash::default())
+        let root = path.parent().and_then(Path::parent).unwrap_or(Path::new("."));
+        Self::load_hashed(path, root, &mut Hash::default())
     }
 
-    pub(crate) fn load_hashed(path: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
+    /// A scene file that may lie outside of the configuration directory `root`, in which its objects are.
+    pub(crate) fn load_hashed(path: &Path, root: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
         let text = file::text(path, hash)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut scene = section::read(path, &text, |top| Self::build(top, name))?;
-        let root = path.parent().and_then(Path::parent).unwrap_or(Path::new("."));
         terrain::find(&mut scene.objects, root, hash)?;
         Ok(scene)
     }

@@ -9,6 +9,7 @@ use std::cell::RefCell;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
+use messages::nearest;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -349,25 +350,4 @@ fn number_in(unit: &str, range: &RangeInclusive<f64>) -> String {
 /// `a`, `b` and `c`.
 pub(crate) fn listed(words: &[&str]) -> String {
     words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
-}
-
-/// The known word with the fewest edits between it and `word`.
-pub(crate) fn nearest<'w>(word: &str, known: &'w [impl AsRef<str>]) -> Option<&'w str> {
-    known.iter().map(AsRef::as_ref).min_by_key(|known| edits(word, known))
-}
-
-/// Levenshtein distance.
-fn edits(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, ca) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, cb) in b.iter().enumerate() {
-            let substituted = diagonal + usize::from(ca != *cb);
-            diagonal = row[j + 1];
-            row[j + 1] = substituted.min(row[j] + 1).min(row[j + 1] + 1);
-        }
-    }
-    row[b.len()]
 }

@@ -12,7 +12,9 @@
 
 use std::ops::RangeInclusive;
 
-use crate::section::{Section, nearest};
+use messages::nearest;
+
+use crate::section::Section;
 
 /// `[sensors]` of a scene. The default measures exactly.
 #[derive(Clone, Debug, Default, PartialEq)]

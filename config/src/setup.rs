@@ -3,13 +3,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use messages::Command;
+use messages::{Command, nearest};
 
 use crate::error::{ConfigError, Problem};
 use crate::file::Hash;
-use crate::section::{listed, nearest};
+use crate::section::listed;
 use crate::tolerance::Method;
-use crate::{Gait, Robot, Scene, System};
+use crate::{Gait, Robot, Scene, System, scenes};
 
 /// A scene, the robot and gait it names, and the run-time system; each fits the others.
 #[derive(Clone, Debug)]
@@ -30,11 +30,12 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Reads `scenes/SCENE.toml` in the configuration directory `root`, and all it names; see [`crate::root`].
+    /// Reads the scene of that name in the configuration directory `root`, or of that path, and all it names; see
+    /// [`crate::find`].
     pub fn load(root: &Path, scene: &str) -> Result<Self, ConfigError> {
         let mut hash = Hash::default();
-        let path = root.join("scenes").join(scene).with_extension("toml");
-        let scene = Scene::load_hashed(&path, &mut hash)?;
+        let path = scenes::locate(root, scene)?;
+        let scene = Scene::load_hashed(&path, root, &mut hash)?;
         let mut robot = Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut hash)?;
         if let Some(control) = scene.joint_control {
             robot.drives.iter_mut().for_each(|drive| drive.set_control(control));
@@ -42,7 +43,10 @@ impl Setup {
         let gait =
             Gait::load_hashed(&root.join("gaits").join(&scene.gait).with_extension("toml"), &mut hash)?;
         let system = System::load_hashed(&root.join("system.toml"), &mut hash)?;
-        let name = |path: &Path| path.strip_prefix(root).unwrap_or(path).display().to_string();
+        let name = |file: &Path| match file.strip_prefix(root) {
+            Err(_) if file == path => format!("scenes/{}.toml", scene.name),
+            inside => inside.unwrap_or(file).display().to_string(),
+        };
         let files = hash.1.into_iter().map(|(path, bytes)| (name(&path), bytes)).collect();
         let setup = Self { scene, robot, gait, system, hash: hash.0, files };
         let problems = setup.problems();

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::System;
 use crate::error::ConfigError;
+use crate::file::{BUILT_IN, embedded};
 
 /// What belongs to a configuration; sources and notes beside it do not.
 const PARTS: [&str; 6] = ["system.toml", "robots", "gaits", "scenes", "gears", "objects"];
@@ -12,13 +13,20 @@ const PARTS: [&str; 6] = ["system.toml", "robots", "gaits", "scenes", "gears", "
 const DEEPEST: u32 = 8;
 const MOST: u64 = 256 << 20;
 
-/// Copies the configuration directory `root` to `to`, which must not exist. Links are copied as what they lead to.
+/// Copies the configuration directory `root`, or the set inside the executable, to `to`, which must not exist. Links are
+/// copied as what they lead to.
 ///
 /// # Errors
 /// A file cannot be read or written, or there is more than any configuration has.
 pub fn snapshot(root: &Path, to: &Path) -> Result<(), ConfigError> {
     let mut left = MOST;
+    if let Some(parent) = to.parent() {
+        fs::create_dir_all(parent).map_err(|e| failed(parent, &e))?;
+    }
     fs::create_dir(to).map_err(|e| failed(to, &e))?;
+    if root == Path::new(BUILT_IN) {
+        return embedded().iter().try_for_each(|(name, bytes)| put(&to.join(name), bytes));
+    }
     for part in PARTS {
         let (from, to) = (root.join(part), to.join(part));
         if from.exists() {
@@ -34,6 +42,12 @@ pub fn snapshot(root: &Path, to: &Path) -> Result<(), ConfigError> {
         copy(&root.join(&system.tcp_keys), &to.join(&system.tcp_keys), DEEPEST, &mut left)?;
     }
     Ok(())
+}
+
+/// Writes a file of the set inside the executable.
+fn put(file: &Path, bytes: &[u8]) -> Result<(), ConfigError> {
+    let made = file.parent().map_or(Ok(()), fs::create_dir_all);
+    made.and_then(|()| fs::write(file, bytes)).map_err(|e| failed(file, &e))
 }
 
 fn copy(from: &Path, to: &Path, depth: u32, left: &mut u64) -> Result<(), ConfigError> {
@@ -59,7 +73,7 @@ fn beyond(path: &Path) -> ConfigError {
 }
 
 fn failed(path: &Path, e: &std::io::Error) -> ConfigError {
-    ConfigError::of_file(path, format!("cannot be copied for the run: {e}"))
+    ConfigError::of_file(path, format!("the configuration cannot be copied here: {e}"))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What lies on the ground of a scene: boxes and meshes, some of them in time.
 
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
@@ -36,6 +37,8 @@ pub enum Shape {
     Mesh {
         /// The file.
         file: PathBuf,
+        /// What it holds.
+        bytes: Arc<[u8]>,
         /// \[m\] One unit of the file.
         scale: f64,
     },
@@ -93,7 +96,7 @@ fn shape(row: &Section<'_, '_>) -> Shape {
                 row.problem("mesh", "must lie in the directory `objects` of the configuration");
             }
             let scale = if row.has("scale") { row.number("scale", "m", POSITIVE) } else { 1.0 };
-            Shape::Mesh { file, scale }
+            Shape::Mesh { file, bytes: Arc::default(), scale }
         }
         _ => {
             row.problem(
@@ -111,12 +114,12 @@ fn pose(row: &Section<'_, '_>) -> TerrainPose {
     TerrainPose { position: row.numbers("position", "m", PLACE), rotation: rotation.map(f64::to_radians) }
 }
 
-/// Makes the files of meshes those in `objects/` of the configuration directory `root`, and adds their bytes to `hash`.
+/// Reads the files of meshes in `objects/` of the configuration directory `root`, and adds their bytes to `hash`.
 pub(crate) fn find(objects: &mut [TerrainObject], root: &Path, hash: &mut Hash) -> Result<(), ConfigError> {
     for object in objects {
-        if let Shape::Mesh { file, .. } = &mut object.shape {
+        if let Shape::Mesh { file, bytes, .. } = &mut object.shape {
             *file = root.join("objects").join(&*file);
-            file::include(file, hash)?;
+            *bytes = file::include(file, hash)?.into();
         }
     }
     Ok(())

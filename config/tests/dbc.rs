@@ -1,6 +1,8 @@
 //! Layouts from DBC files: the shipped ones carry everything, and a broken one says what is wrong with it.
 
+use config::database::Database;
 use config::{Robot, dbc};
+use drives::cia402::{self, Fault, REFERENCED, State, VOLTAGE, WARNING};
 use messages::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
 use messages::layout::{Carries, Layout};
 use messages::{BusFrames, JointTargets, Sensors};
@@ -172,6 +174,66 @@ fn a_frame_of_the_cycle_before_is_late() {
                     "{}: nothing of them is used",
                     robot.name
                 );
+            }
+        }
+    }
+}
+
+/// What a signal can be, and its word in the DBC file.
+fn words(carries: Carries) -> Vec<(u16, &'static str)> {
+    let named = |pairs: &[(u16, &'static str)]| pairs.to_vec();
+    match carries {
+        Carries::Mode => named(&[(0, "off"), (1, "hold"), (2, "track"), (3, "stop"), (4, "home")]),
+        Carries::Supply => named(&[(0, "off"), (1, "on")]),
+        Carries::Control(_) => {
+            let text = ["disable voltage", "quick stop", "shutdown", "enable operation", "fault reset"];
+            cia402::WORDS.into_iter().zip(text).collect()
+        }
+        Carries::Error(_) => Fault::ALL.map(|f| (f as u16, f.text())).into_iter().chain([(0, "none")]).collect(),
+        Carries::Status(_) => {
+            let states = [
+                (State::NotReady, "not ready"),
+                (State::SwitchOnDisabled, "switch on disabled"),
+                (State::Ready, "ready"),
+                (State::SwitchedOn, "switched on"),
+                (State::OperationEnabled, "operation enabled"),
+                (State::QuickStop, "quick stop"),
+                (State::FaultReaction, "fault reaction"),
+                (State::Fault, "fault"),
+            ];
+            let bits = [0, WARNING, REFERENCED, WARNING | REFERENCED].map(|bits| bits | VOLTAGE);
+            let of = |(state, text)| bits.map(|bits| (cia402::status_of(state) | bits, text));
+            states.into_iter().flat_map(of).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Tools that read DBC files show words, and know when a message is missing.
+#[test]
+fn shipped_files_name_modes_states_and_errors_and_say_what_messages_are_and_how_often_they_come() {
+    for (robot, cycle) in robots().iter().zip([3.5e-3, 1.5e-3, 3.5e-3]) {
+        for (layout, file, cycle) in [(&robot.classic, "", cycle), (&robot.layout, "_fd", 1e-3)] {
+            let name = &robot.name;
+            let path = config::root(None).join(format!("robots/{name}/can/{name}{file}.dbc"));
+            let database = Database::load(&path).unwrap();
+            for m in &layout.messages {
+                let described = database.message(m.id).unwrap();
+                assert_eq!(described.cycle, Some(cycle), "{name}{file}: {}", m.name);
+                assert!(!described.comment.is_empty(), "{name}{file}: {} has no comment", m.name);
+                for signal in &m.signals {
+                    let fits = |value: &u16| u32::from(*value) < 1 << signal.bits.min(16);
+                    for (value, word) in words(signal.carries).into_iter().filter(|(value, _)| fits(value)) {
+                        let mut data = vec![0; m.len as usize];
+                        for bit in 0..signal.bits.min(16) {
+                            let at = (signal.start + bit) as usize;
+                            data[at / 8] |= ((value >> bit & 1) as u8) << (at % 8);
+                        }
+                        let said = described.carries(&data).find(|c| c.name == signal.name).unwrap();
+                        let begin = said.word.unwrap_or_default().split(',').next();
+                        assert_eq!(begin, Some(word), "{name}{file}: {} {value:#x}", signal.name);
+                    }
+                }
             }
         }
     }

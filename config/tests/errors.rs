@@ -168,7 +168,7 @@ fn missing_files() {
     let copy = Copy::new("missing");
     assert_eq!(
         text(&copy.scene("dmeo")),
-        "dmeo.toml: cannot be read: No such file or directory (os error 2); there is demo, stand"
+        "dmeo.toml: there is no scene `dmeo`; did you mean demo? `gangwerk scene list` shows them all"
     );
     let copy = copy.spoil("robots/lola/robot.toml", "lola.urdf", "lolita.urdf");
     assert_eq!(

@@ -31,7 +31,7 @@ fn a_box_moves() {
 #[test]
 fn meshes_are_files_of_the_configuration() {
     for (scene, of_file) in [("stairs", 1.0), ("uneven", 0.6)] {
-        let Shape::Mesh { file, scale } = &shipped(scene).objects[0].shape else { panic!() };
+        let Shape::Mesh { file, scale, .. } = &shipped(scene).objects[0].shape else { panic!() };
         assert!(file.is_file() && *scale == of_file, "{}", file.display());
     }
 }

@@ -1,6 +1,6 @@
 //! The process around the stabilizer: `gangwerk controller --run DIR`.
 
-use crate::Controller;
+use crate::{Controller, verdict};
 use config::Timeline;
 use daemon::{Connect, Daemon};
 use ipc::Mode;
@@ -8,7 +8,7 @@ use messages::command::Domain;
 use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, PARAMETERS_CONTROLLER, PLAN, PLANNER_TICK, SENSORS};
 use messages::{
     Command, ControllerState, Event, EventCode, Header, JointTargets, Live, Parameters, Plan, Process,
-    Reason, Sensors, Verdict,
+    Sensors,
 };
 use std::error::Error;
 use std::path::Path;
@@ -86,16 +86,6 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     }
     d.report(header, EventCode::Ended, 0);
     Ok(())
-}
-
-/// What the operator is answered: refused if the event that came of the command says so.
-fn verdict(told: Option<(EventCode, u64)>) -> Verdict {
-    match told {
-        Some((code @ (EventCode::HeadRefused | EventCode::CommandRefused), detail)) => {
-            Err(Reason::Event { code, detail })
-        }
-        _ => Ok(()),
-    }
 }
 
 /// Whether the planner has just fallen silent. The plan it left is walked to its end.

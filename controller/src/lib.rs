@@ -30,7 +30,7 @@ pub mod task_space;
 pub mod torso;
 mod watch;
 
-pub use stabilizer::Controller;
+pub use stabilizer::{Controller, verdict};
 
 #[cfg(test)]
 pub(crate) fn test_gains() -> config::gait::Control {

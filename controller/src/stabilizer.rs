@@ -7,11 +7,12 @@ use config::gait::Control;
 use config::parameters::STABILIZER;
 use config::{Gait, Robot};
 use messages::{
-    Command, ControllerState, EventCode, JointMode, JointTargets, MAX_JOINTS, Parameters, Plan, Sensors,
-    StartUp,
+    Command, ControllerState, EventCode, GaitState, JointMode, JointTargets, MAX_JOINTS, Parameters, Plan,
+    Reason, Sensors, StartUp, Verdict,
 };
 use multibody::ModelError;
 use nalgebra::{Matrix3, Vector3, Vector6};
+use std::f64::consts::FRAC_PI_2;
 
 use crate::arms::Arms;
 use crate::contact::Contact;
@@ -22,7 +23,7 @@ use crate::gaze::{Gaze, TorsoMotion};
 use crate::inverse_kinematics::{InverseKinematics, JointVector, TaskJacobian};
 use crate::task_space::TaskSpace;
 use crate::torso;
-use crate::watch::Watch;
+use crate::watch::{FALLING, Watch};
 
 /// Cycles that may be missed and are made good for, one after the other; the joint loop carries on meanwhile.
 const MISSED_CYCLES: u64 = 20;
@@ -172,7 +173,9 @@ impl Controller {
         let missed =
             if self.started { tick.saturating_sub(self.last_tick + 1).min(MISSED_CYCLES) } else { 0 };
         self.last_tick = tick;
-        if sensors.power == 0 {
+        let start_up = StartUp::from_number(sensors.start_up);
+        // Joints without supply, or held by a stop, follow no plan; nor is there one when they move again.
+        if sensors.power == 0 || start_up == StartUp::Stopped || self.watch.stopped().is_some() {
             self.plan.drop_all(tick);
         }
         // A plan that came in time is taken, if this process was stopped at its start.
@@ -182,7 +185,6 @@ impl Controller {
         let sensors = &sensors;
         let (angles, speeds) = (&sensors.joint_angle, &sensors.joint_speed);
         self.measured.update_motion(angles, speeds, &sensors.imu.angular_velocity);
-        let start_up = StartUp::from_number(sensors.start_up);
         // A joint that finds its angle moves by itself.
         let moves = matches!(start_up, StartUp::NotHomed | StartUp::Homing);
         if sensors.power == 0 || !self.started || moves {
@@ -212,7 +214,7 @@ impl Controller {
             let why = self.watch.check(sensors, &now, &estimate);
             self.events.add(why.map(|code| (code, 0)));
         }
-        if powered && !self.watch.stopped() {
+        if powered && self.watch.stopped().is_none() {
             self.stabilize(sensors, &now, &end, &estimate);
         } else {
             self.speed.fill(0.0);
@@ -260,7 +262,7 @@ impl Controller {
             reference.feet[0].position = [0.0, -half, 0.0, 0.0];
             reference.feet[1].position = [0.0, half, 0.0, 0.0];
             reference.load = [0.5; 2];
-            reference.torso.position = [std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2, 0.0];
+            reference.torso.position = [FRAC_PI_2, FRAC_PI_2, 0.0];
         }
         reference
     }
@@ -346,24 +348,39 @@ impl Controller {
         self.state.limited > before
     }
 
+    /// Where in a walk the robot is. Who lies, or was stopped, is in none.
+    fn gait(&self, sensors: &Sensors, t: f64, estimate: &Estimate) -> GaitState {
+        // Without a plan nobody watches the inclination; an IMU that says nothing yet is no fall.
+        let lies = (0..2).any(|i| (FRAC_PI_2 - estimate.angles[i]).abs() > FALLING);
+        match self.watch.stopped() {
+            Some(EventCode::Fallen) => GaitState::Fallen,
+            _ if self.plan.id() == 0 && lies => GaitState::Fallen,
+            Some(_) => GaitState::Halted,
+            None if StartUp::from_number(sensors.start_up) == StartUp::Stopped => GaitState::Halted,
+            None => self.plan.gait(t),
+        }
+    }
+
     fn report(&mut self, sensors: &Sensors, t: f64, now: &Desired, estimate: &Estimate) {
         self.targets.header = sensors.header;
         self.targets.mode = match (self.plan.id(), self.watch.stopped()) {
-            (_, true) => JointMode::Stop,
+            (_, Some(_)) => JointMode::Stop,
             (0, _) => JointMode::Hold,
             _ => JointMode::Track,
         } as u64;
         self.targets.angle = self.angle;
         self.targets.speed = self.speed.into();
+        let gait = self.gait(sensors, t, estimate);
         let s = &mut self.state;
         s.header = sensors.header;
         s.plan_id = self.plan.id();
         s.plan_time = t;
-        s.gait = self.plan.gait(t) as u64;
+        s.gait = gait as u64;
         s.contact = self.watch.contact().map(u64::from);
         s.phase = [0, 1].map(|foot| self.plan.plan().phase(foot, t) as u64);
         s.not_standing = u64::from(match StartUp::from_number(sensors.start_up) {
             StartUp::Off => sensors.power == 0,
+            _ if matches!(gait, GaitState::Fallen | GaitState::Halted) => true,
             other => !other.stands(),
         });
         s.origin = self.plan.plan().origin;
@@ -376,5 +393,15 @@ impl Controller {
             let m = self.modification.value.fixed_rows::<3>(3 * foot);
             s.modification[foot] = [m[0], -m[1], m[2]]; // z, s1, s0: s1 is minus roll, s0 is pitch (errata 2.4)
         }
+    }
+}
+
+/// What the operator is answered: refused if the event that came of the command says so.
+pub fn verdict(told: Option<(EventCode, u64)>) -> Verdict {
+    match told {
+        Some((code @ (EventCode::HeadRefused | EventCode::CommandRefused), detail)) => {
+            Err(Reason::Event { code, detail })
+        }
+        _ => Ok(()),
     }
 }

@@ -10,7 +10,7 @@ use crate::following::Desired;
 /// ends below [`LOADED`].
 const FIRM: f64 = 60.0;
 /// Inclination error \[rad\] from which the robot counts as falling: joints are brought to rest.
-const FALLING: f64 = 0.5;
+pub(crate) const FALLING: f64 = 0.5;
 /// Cycles without load on either foot, while the plan wants load, after which the robot counts as lifted.
 const LIFTED_CYCLES: u32 = 200;
 /// Cycles in a row that are bridged with the last good sensor data if a value is not finite.
@@ -23,7 +23,8 @@ pub(crate) struct Watch {
     good: Sensors,
     bad: u32,
     unloaded: u32,
-    stopped: bool,
+    /// Why the joints shall come to rest, if they shall.
+    why: Option<EventCode>,
     contact: [bool; 2],
 }
 
@@ -55,13 +56,13 @@ impl Watch {
 
     /// Begins anew, as with a supply that was switched on.
     pub(crate) fn restart(&mut self) {
-        self.stopped = false;
+        self.why = None;
         self.unloaded = 0;
     }
 
-    /// Whether the joints shall come to rest.
-    pub(crate) fn stopped(&self) -> bool {
-        self.stopped
+    /// Why the joints shall come to rest, until the supply was off; none: they need not.
+    pub(crate) fn stopped(&self) -> Option<EventCode> {
+        self.why
     }
 
     /// Stops for good if something is wrong; says why in that cycle.
@@ -83,8 +84,8 @@ impl Watch {
         } else {
             None
         };
-        let why = why.filter(|_| !self.stopped);
-        self.stopped |= why.is_some();
+        let why = why.filter(|_| self.why.is_none());
+        self.why = self.why.or(why);
         why
     }
 }

@@ -3,7 +3,7 @@
 //! Not a real-time process: it looks at all rings again and again under the ordinary scheduler. Nobody waits for it
 //! in real time; in lockstep the joint loop does not run further ahead than half a ring.
 
-use crate::{Follower, Logging, Open, Output, Parts, Pass, recorder};
+use crate::{Follower, Logging, Open, Origin, Output, Parts, Pass, recorder};
 use config::Setup;
 use ipc::{Bell, IpcError, Mode, Run, Space, Writer};
 use messages::topics::{EVENTS_LOGGER, ForType, LOG_TICK, with_type};
@@ -66,9 +66,9 @@ fn open(run: &Run, again: bool) -> Result<Open, String> {
     let setup = Setup::load(&run.config, &run.scene).map_err(|e| e.to_string())?;
     let parts = Parts::new(run.log.as_deref().ok_or("this run has no log")?);
     let before = if again { (1..).take_while(|&part| parts.path(part).exists()).count() as u32 } else { 0 };
-    let text = run.to_text();
+    let (text, origin) = (run.to_text(), Origin::of(run));
     Ok(Box::new(move |part| {
-        let mut recorder = recorder(&parts.path(before + part), &setup)?;
+        let mut recorder = recorder(&parts.path(before + part), &setup, &origin)?;
         recorder.attach(RUN, text.as_bytes())?;
         Ok(recorder)
     }))

@@ -1,7 +1,8 @@
-//! Poses of all links from the state of the simulated robot.
+//! Poses of all links from joint angles, and joint torques from motor currents.
 
 use config::Robot;
-use messages::SimState;
+use config::robot::Drive;
+use messages::{Joints, Sensors};
 use multibody::{Data, Frame, Model, ModelError};
 use nalgebra::UnitQuaternion;
 use recording::{Link, LinkPoses, Pose};
@@ -13,6 +14,7 @@ pub struct Kinematics {
     frames: Vec<Frame>,
     links: Vec<Link>,
     q: Vec<f64>,
+    drives: Vec<Drive>,
 }
 
 impl Kinematics {
@@ -30,11 +32,12 @@ impl Kinematics {
             .map(|(k, name)| {
                 let joint = frames[k].joint();
                 let first = carrier(joint).filter(|first| *first != k);
-                Link { name, parent: first.or_else(|| joint.and_then(|j| carrier(model.parent_joint(j)))) }
+                let parent = first.or_else(|| joint.and_then(|j| carrier(model.parent_joint(j))));
+                Link { name, parent, fixed: first.is_some() }
             })
             .collect();
         let (data, q) = (Data::new(&model), model.neutral());
-        Ok(Self { model, data, frames, links, q })
+        Ok(Self { model, data, frames, links, q, drives: robot.drives.clone() })
     }
 }
 
@@ -43,11 +46,11 @@ impl LinkPoses for Kinematics {
         &self.links
     }
 
-    fn poses(&mut self, state: &SimState, out: &mut [Pose]) {
-        self.q[..3].copy_from_slice(&state.position);
-        self.q[3..7].copy_from_slice(&state.orientation);
+    fn poses(&mut self, base: &Pose, joint_angle: &Joints, out: &mut [Pose]) {
+        self.q[..3].copy_from_slice(&base.position);
+        self.q[3..7].copy_from_slice(&base.orientation);
         let joints = self.q.len() - 7;
-        self.q[7..].copy_from_slice(&state.joint_angle[..joints]);
+        self.q[7..].copy_from_slice(&joint_angle[..joints]);
         self.model.forward_kinematics(&mut self.data, &self.q);
         for (frame, pose) in self.frames.iter().zip(out) {
             let world = self.model.frame_pose(&self.data, frame);
@@ -57,5 +60,29 @@ impl LinkPoses for Kinematics {
                 orientation: [turn.i, turn.j, turn.k, turn.w],
             };
         }
+    }
+
+    /// What the motors give to the joints, before friction of the gears and inertia of the rotors take their part.
+    fn torques(&mut self, sensors: &Sensors, out: &mut Joints) -> bool {
+        // A model without motors says nothing, or zeros where the bus knows no NaN.
+        let silent = |current: &f64| current.is_nan() || *current == 0.0;
+        if sensors.motor_current.iter().take(self.drives.len()).all(silent) {
+            return false;
+        }
+        out[..self.drives.len()].fill(0.0);
+        for (drive, current) in self.drives.iter().zip(sensors.motor_current) {
+            let of_joints = |values: &Joints| {
+                let mut own = [0.0; 3];
+                own.iter_mut().zip(&drive.joints).for_each(|(own, &j)| *own = values[j]);
+                own
+            };
+            let gear =
+                drive.transmission.at(of_joints(&sensors.joint_angle), of_joints(&sensors.joint_speed));
+            let ratio = gear.map_or([f64::NAN; 3], |gear| gear.ratio);
+            for (&j, ratio) in drive.joints.iter().zip(ratio) {
+                out[j] += ratio * drive.motor.torque(current);
+            }
+        }
+        true
     }
 }

@@ -20,4 +20,4 @@ pub use follow::{Follower, Source};
 pub use kinematics::Kinematics;
 pub use logging::{Logging, Pass};
 pub use output::{Open, Output, Parts};
-pub use robot::{CONFIG, recorder, robot_info};
+pub use robot::{CONFIG, Origin, recorder, robot_info};

@@ -2,8 +2,34 @@
 
 use crate::kinematics::Kinematics;
 use config::{Robot, Setup};
-use recording::{FootInfo, Recorder, RecordingError, RobotInfo, RunInfo};
+use ipc::Run;
+use messages::MAX_JOINTS;
+use recording::{FootInfo, LinkPoses, Pose, Recorder, RecordingError, RobotInfo, RunInfo, WallClock};
 use std::path::Path;
+
+/// Of a run what its configuration does not say.
+#[derive(Clone, Debug, Default)]
+pub struct Origin {
+    /// Git commit of the software; empty: unknown.
+    pub commit: String,
+    /// Whether the robot is a simulated one.
+    pub simulated: bool,
+    /// Where and when it began in real time; none in simulated time.
+    pub clock: Option<WallClock>,
+}
+
+impl Origin {
+    /// Of a run of this machine.
+    pub fn of(run: &Run) -> Self {
+        let host = || std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+        let clock = |[unix_ns, monotonic_ns]: [u64; 2]| WallClock {
+            unix_ns,
+            monotonic_ns,
+            host: host().trim().into(),
+        };
+        Self { commit: run.commit.clone(), simulated: run.robot, clock: run.started.map(clock) }
+    }
+}
 
 /// What a log says about a robot.
 pub fn robot_info(robot: &Robot) -> RobotInfo {
@@ -21,6 +47,7 @@ pub fn robot_info(robot: &Robot) -> RobotInfo {
         torso: robot.torso.clone(),
         imu: robot.imu,
         feet: [foot(&robot.feet[0]), foot(&robot.feet[1])],
+        odom: [0.0; 3],
     }
 }
 
@@ -28,18 +55,27 @@ pub fn robot_info(robot: &Robot) -> RobotInfo {
 pub const CONFIG: &str = "config/";
 
 /// Makes a log of a robot in a scene, with the poses of its links and the files of the configuration.
-pub fn recorder(path: &Path, setup: &Setup) -> Result<Recorder, RecordingError> {
+pub fn recorder(path: &Path, setup: &Setup, origin: &Origin) -> Result<Recorder, RecordingError> {
     let run = RunInfo {
         scene: setup.scene.name.clone(),
         config_hash: setup.hash,
         software: format!("gangwerk {}", env!("CARGO_PKG_VERSION")),
+        commit: origin.commit.clone(),
+        seed: setup.scene.seed,
+        cycle_ns: (setup.scene.cycle * 1e9).round() as u64,
+        clock: origin.clock.clone(),
     };
     let robot = &setup.robot;
-    let mut recorder = Recorder::create(path, &robot_info(robot), &run)?;
+    let mut kinematics = Kinematics::new(robot);
+    let mut info = robot_info(robot);
+    if let (true, Ok(kinematics)) = (origin.simulated, &mut kinematics) {
+        info.odom = between_soles(kinematics, &info, &robot.poses[&setup.scene.start_pose]);
+    }
+    let mut recorder = Recorder::create(path, &info, &run)?;
     for (name, bytes) in setup.files.iter() {
         recorder.attach(&format!("{CONFIG}{name}"), bytes)?;
     }
-    match Kinematics::new(robot) {
+    match kinematics {
         Ok(kinematics) => Ok(recorder.with_links(Box::new(kinematics))),
         // The log is worth having without pictures of links.
         Err(error) => {
@@ -47,4 +83,18 @@ pub fn recorder(path: &Path, setup: &Setup) -> Result<Recorder, RecordingError> 
             Ok(recorder)
         }
     }
+}
+
+/// \[m, m, rad\] Where odometry begins: in the middle of the soles, the torso being upright at the world's origin.
+fn between_soles(kinematics: &mut Kinematics, info: &RobotInfo, pose: &[f64]) -> [f64; 3] {
+    let mut angle = [0.0; MAX_JOINTS];
+    angle[..pose.len()].copy_from_slice(pose);
+    let mut links = vec![Pose::IDENTITY; kinematics.links().len()];
+    kinematics.poses(&Pose::IDENTITY, &angle, &mut links);
+    let sole = |foot: &FootInfo| {
+        let at = kinematics.links().iter().position(|link| link.name == foot.link);
+        at.map_or([0.0; 3], |at| links[at].place(foot.sole))
+    };
+    let [right, left] = [sole(&info.feet[0]), sole(&info.feet[1])];
+    [0.5 * (right[0] + left[0]), 0.5 * (right[1] + left[1]), 0.0]
 }

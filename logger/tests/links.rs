@@ -2,7 +2,7 @@
 
 use config::Robot;
 use logger::{Kinematics, robot_info};
-use messages::SimState;
+use messages::MAX_JOINTS;
 use multibody::{Data, Model};
 use recording::{LinkPoses, Pose};
 
@@ -45,18 +45,15 @@ fn poses_are_those_of_the_model() {
     let model = Model::from_urdf(&robot.urdf, &robot.torso, &names).unwrap();
     let mut data = Data::new(&model);
     let mut kinematics = Kinematics::new(&robot).unwrap();
-    let mut state = SimState { position: [1.0, 2.0, 3.0], ..SimState::default() };
     let (sin, cos) = 0.3f64.sin_cos();
-    state.orientation = [0.6 * sin, 0.0, 0.8 * sin, cos];
-    for (k, angle) in state.joint_angle[..names.len()].iter_mut().enumerate() {
-        *angle = 0.1 * (k as f64 + 1.0).sin();
-    }
+    let base = Pose { position: [1.0, 2.0, 3.0], orientation: [0.6 * sin, 0.0, 0.8 * sin, cos] };
+    let angles: [f64; MAX_JOINTS] = std::array::from_fn(|k| 0.1 * (k as f64 + 1.0).sin());
     let mut poses = vec![Pose::IDENTITY; kinematics.links().len()];
-    kinematics.poses(&state, &mut poses);
+    kinematics.poses(&base, &angles, &mut poses);
     let mut q = vec![0.0; model.nq()];
-    q[..3].copy_from_slice(&state.position);
-    q[3..7].copy_from_slice(&state.orientation);
-    q[7..].copy_from_slice(&state.joint_angle[..names.len()]);
+    q[..3].copy_from_slice(&base.position);
+    q[3..7].copy_from_slice(&base.orientation);
+    q[7..].copy_from_slice(&angles[..names.len()]);
     model.forward_kinematics(&mut data, &q);
     for (link, pose) in kinematics.links().iter().zip(&poses) {
         // Through a point off all axes, so that a wrong turn shows.
@@ -66,5 +63,5 @@ fn poses_are_those_of_the_model() {
             assert!((a - b).abs() < 1e-12, "{}: {a} {b}", link.name);
         }
     }
-    assert_eq!(poses[0].position, state.position);
+    assert_eq!(poses[0].position, base.position);
 }

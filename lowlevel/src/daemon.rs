@@ -87,9 +87,10 @@ struct Ports {
 
 /// Commands of this cycle: the scene's that are due, then live ones.
 fn take_commands(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, header: Header) {
-    while let Some(live) = p.timeline.due(header.tick).map(Live::of_scene).or_else(|| p.commands.accept()) {
-        joints.command(&live.command);
-        d.log.took(header, &live, &Ok(()));
+    while let Some(live) = p.timeline.due(header.tick).map(Live::of_scene).or_else(|| p.commands.next()) {
+        let verdict = joints.command(&live.command);
+        p.commands.answer(&live, verdict);
+        d.log.took(header, &live, &verdict);
     }
     d.log.left_out(header, p.commands.as_mut());
 }

@@ -3,7 +3,7 @@
 use config::{Robot, System};
 use messages::frames::{DriveCommand, Received, decode_sensors, encode_targets};
 use messages::{
-    BusCounters, BusFrames, Command, EventCode, Header, JointMode, JointTargets, Sensors, StartUp,
+    BusCounters, BusFrames, Command, EventCode, Header, JointMode, JointTargets, Sensors, StartUp, Verdict,
     WatchdogReset,
 };
 
@@ -107,8 +107,11 @@ impl JointLoop {
     }
 
     /// Takes a command of the domains system and joint, between [`JointLoop::receive`] and [`JointLoop::send`].
-    pub fn command(&mut self, command: &Command) {
-        self.start_up.command(command, &self.sensors);
+    ///
+    /// # Errors
+    /// Why it is refused.
+    pub fn command(&mut self, command: &Command) -> Verdict {
+        self.start_up.command(command, &self.sensors)
     }
 
     /// What went wrong on the bus so far.

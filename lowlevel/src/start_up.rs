@@ -12,7 +12,7 @@
 //! angle, but to find it out.
 
 use drives::cia402::{REFERENCED, State, Wanted, state_of};
-use messages::{Command, EventCode, Sensors, StartUp, Wrench};
+use messages::{Command, EventCode, Reason, Sensors, StartUp, Verdict, Wrench};
 
 /// Share of the weight on a foot up to which it counts as unloaded: nothing but what hangs on its sensor, and its offset.
 const UNLOADED: f64 = 0.15;
@@ -105,15 +105,22 @@ impl StartUpSequence {
     }
 
     /// Takes `system/reset`, `joint/home` and `joint/zero_force`; `sensors` as [`Self::receive`] left them.
-    pub fn command(&mut self, command: &Command, sensors: &Sensors) {
+    ///
+    /// # Errors
+    /// Why it does not do what it is told.
+    pub fn command(&mut self, command: &Command, sensors: &Sensors) -> Verdict {
         match command {
             Command::Reset => self.reset = RESET_CYCLES,
             Command::Home if self.state == StartUp::NotHomed => self.enter(StartUp::Homing),
             Command::Home if self.state == StartUp::Homing => {}
-            Command::Home => self.tell(EventCode::CommandRefused, command.address().1.into()),
-            Command::ZeroForce => self.begin_zero(sensors),
+            Command::Home => {
+                self.tell(EventCode::CommandRefused, command.address().1.into());
+                return Err(Reason::NotNow);
+            }
+            Command::ZeroForce => return self.begin_zero(sensors),
             _ => {}
         }
+        Ok(())
     }
 
     /// One cycle: `stopped` while a controlled stop is latched; a robot that stands goes on without the joints that it
@@ -187,14 +194,20 @@ impl StartUpSequence {
         self.event.get_or_insert((code, detail));
     }
 
-    fn begin_zero(&mut self, sensors: &Sensors) {
-        let load = heaviest(sensors);
-        if matches!(self.state, StartUp::Hanging | StartUp::Zeroed) && load < UNLOADED * self.weight {
+    fn begin_zero(&mut self, sensors: &Sensors) -> Verdict {
+        let (load, most) = (heaviest(sensors), UNLOADED * self.weight);
+        let verdict = match self.state {
+            StartUp::Hanging | StartUp::Zeroed if load < most => Ok(()),
+            StartUp::Hanging | StartUp::Zeroed | StartUp::Standing => Err(Reason::Loaded { load, most }),
+            _ => Err(Reason::NotNow),
+        };
+        if verdict.is_ok() {
             self.zero.sum = [[0.0; 6]; 2];
             self.zero.left = ZERO_CYCLES;
         } else {
             self.tell(EventCode::ZeroRefused, load as u64);
         }
+        verdict
     }
 
     /// Adds a reading, without any offset, to the mean; a load meanwhile ends it.

@@ -6,7 +6,7 @@ use lowlevel::JointLoop;
 use lowlevel::joint_loop::State;
 use messages::frames::{DriveCommand, decode_targets, encode_sensors};
 use messages::layout::Carries;
-use messages::{BusFrames, Command, EventCode, JointMode, JointTargets, Sensors, StartUp};
+use messages::{BusFrames, Command, EventCode, JointMode, JointTargets, Reason, Sensors, StartUp, Verdict};
 
 /// \[N\] Lola's weight.
 const WEIGHT: f64 = 60.885 * 9.81;
@@ -33,6 +33,8 @@ struct Rig {
     /// A joint whose local controller is not heard.
     mute: Option<usize>,
     events: Vec<(EventCode, u64)>,
+    /// To the command of the last cycle, if there was one.
+    answer: Option<Verdict>,
     tick: u64,
 }
 
@@ -64,6 +66,7 @@ impl Rig {
             mute: None,
             said,
             events: Vec::new(),
+            answer: None,
             tick: 0,
         };
         rig.cycles(3);
@@ -99,7 +102,7 @@ impl Rig {
         }
         self.tick += 1;
         self.seen = *self.loop_.receive(self.tick, self.tick * 1_000_000, Some(&answer));
-        command.iter().for_each(|command| self.loop_.command(command));
+        self.answer = command.map(|command| self.loop_.command(&command));
         let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
         targets.header.tick = self.tick;
         targets.angle = self.wanted;
@@ -195,6 +198,70 @@ fn a_joint_that_does_not_know_its_angle_keeps_all_drives_off_until_it_was_homed(
     assert_eq!(rig.events.len(), 2, "{:?}", rig.events);
     rig.cycle(Some(Command::Home));
     assert_eq!(rig.events.last(), Some(&(EventCode::CommandRefused, 0)), "homing is done");
+}
+
+/// Every command that the joint loop decides, in every state of the start-up.
+#[test]
+fn commands_are_answered_by_the_state_they_come_in() {
+    let hanging = |load: f64| {
+        let mut rig = Rig::on(0.0);
+        rig.load(load);
+        rig.cycles(3);
+        rig
+    };
+    let unknown = |home: bool| {
+        let mut rig = Rig::new(0.0);
+        (rig.known[HEAD], rig.said.power) = (false, 1);
+        rig.cycles(10);
+        rig.cycle(home.then_some(Command::Home));
+        rig.cycles(2);
+        rig
+    };
+    let zeroed = || {
+        let mut rig = Rig::on(0.0);
+        rig.cycle(Some(Command::ZeroForce));
+        rig.cycles(110);
+        rig
+    };
+    let stopped = || {
+        let mut rig = Rig::on(WEIGHT);
+        rig.fault = Some((KNEE, Fault::OverTemperature));
+        rig.cycles(5);
+        rig
+    };
+    let most = 0.15 * WEIGHT;
+    let loaded = |load: f64| Err(Reason::Loaded { load: 0.5 * load, most });
+    let (yes, not_now) = (Ok(()), Err(Reason::NotNow));
+    type State<'a> = (StartUp, &'a dyn Fn() -> Rig, Verdict, Verdict);
+    let table: [State; 8] = [
+        // State, how it is reached, answer to joint/home, answer to joint/zero_force.
+        (StartUp::Off, &|| Rig::new(0.0), not_now, not_now),
+        (StartUp::NotHomed, &|| unknown(false), yes, not_now),
+        (StartUp::Homing, &|| unknown(true), yes, not_now),
+        (StartUp::Hanging, &|| hanging(0.0), not_now, yes),
+        (StartUp::Hanging, &|| hanging(0.4 * WEIGHT), not_now, loaded(0.4 * WEIGHT)),
+        (StartUp::Zeroed, &zeroed, not_now, yes),
+        (StartUp::Standing, &|| Rig::on(WEIGHT), not_now, loaded(WEIGHT)),
+        (StartUp::Stopped, &stopped, not_now, not_now),
+    ];
+    for (state, reach, home, zero) in table {
+        for (command, wanted) in [(Command::Home, home), (Command::ZeroForce, zero), (Command::Reset, yes)] {
+            let mut rig = reach();
+            assert_eq!(rig.state(), state);
+            rig.cycle(Some(command));
+            let found = rig.answer.expect("there was a command");
+            match (found, wanted) {
+                (Err(Reason::Loaded { load: a, most: b }), Err(Reason::Loaded { load, most })) => {
+                    assert!((a - load).abs() < 0.1 && (b - most).abs() < 0.5, "{state:?}: {a} N, {b} N");
+                }
+                _ => assert_eq!(found, wanted, "{state:?}, {}", command.name()),
+            }
+            let refusals = rig.events.iter().filter(|(code, _)| {
+                matches!(code, EventCode::CommandRefused | EventCode::ZeroRefused)
+            });
+            assert_eq!(refusals.count(), usize::from(found.is_err()), "{state:?}, {}", command.name());
+        }
+    }
 }
 
 #[test]

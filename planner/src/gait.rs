@@ -120,13 +120,14 @@ impl Planner {
             self.confirm(state);
         }
         let gait = self.gait_state(tick, state);
-        let held = gait == GaitState::Idle && state.is_some_and(|s| s.not_standing == 1);
+        let down = state.filter(|s| s.not_standing == 1).and_then(|_| not_standing(gait));
         for command in commands.iter().take(MAX_COMMANDS) {
-            let answer = if held && walks(command) {
-                self.event(EventCode::NotStanding, u64::from(command.address().1));
-                Err(Reason::NotStanding)
-            } else {
-                self.take(command, gait)
+            let answer = match down.filter(|_| walks(command)) {
+                Some(reason) => {
+                    self.event(EventCode::NotStanding, u64::from(command.address().1));
+                    Err(reason)
+                }
+                None => self.take(command, gait),
             };
             self.answers.push(answer);
         }
@@ -174,6 +175,7 @@ impl Planner {
             return state.map_or(GaitState::Idle, |s| match GaitState::from(s.gait) {
                 GaitState::Starting | GaitState::Walking | GaitState::Stopping => GaitState::Walking,
                 GaitState::Idle | GaitState::Standing => GaitState::Idle,
+                down @ (GaitState::Fallen | GaitState::Halted) => down,
             });
         }
         if tick >= plan.start_tick + self.active.end_cycle {
@@ -437,6 +439,17 @@ impl Planner {
         if self.events.len() < MAX_EVENTS {
             self.events.push((code, detail));
         }
+    }
+}
+
+/// Why no walking command is taken in this state from a robot that does not stand.
+fn not_standing(gait: GaitState) -> Option<Reason> {
+    let event = |code| Some(Reason::Event { code, detail: 0 });
+    match gait {
+        GaitState::Idle => Some(Reason::NotStanding),
+        GaitState::Fallen => event(EventCode::Fallen),
+        GaitState::Halted => event(EventCode::SafeStop),
+        GaitState::Standing | GaitState::Starting | GaitState::Walking | GaitState::Stopping => None,
     }
 }
 

@@ -20,7 +20,7 @@ pub fn known(setup: &Setup) -> Result<Obstacles, Box<dyn Error>> {
     for object in setup.scene.objects.iter().filter(|o| o.known) {
         let mesh = match &object.shape {
             Shape::Box(size) => Mesh::cuboid(*size)?,
-            Shape::Mesh { file, scale } => Mesh::read(file, *scale)?,
+            Shape::Mesh { file, bytes, scale } => Mesh::parse(file, bytes, *scale)?,
         };
         let pose = Pose::new(object.pose.position, object.pose.rotation);
         let place = |v: Vector3<f64>| <[f64; 3]>::from(pose.rotation * v + pose.position - begin);

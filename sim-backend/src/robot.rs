@@ -23,6 +23,8 @@ use crate::terrain;
 
 /// Tilt of the torso \[rad\] from which a robot counts as fallen; it is also fallen below half its initial height.
 const FALLEN_TILT: f64 = std::f64::consts::FRAC_PI_4;
+/// Share of its initial height below which a fallen robot's torso lies on the ground.
+const LYING: f64 = 0.25;
 
 /// Cycles without their frames that are made good for at most: by then every drive has come to rest by itself.
 const MOST_OVERWRITTEN: u64 = 100;
@@ -59,6 +61,8 @@ pub struct SimBackend {
     cycles: u64,
     initial_height: f64,
     fallen: bool,
+    /// It lies on the ground, or its numbers are lost: nothing moves any more.
+    lies: bool,
     /// Pushes by command, besides those of the scene: force and when it ends \[s\].
     push: Option<(PushCommand, f64)>,
     sensors: Sensors,
@@ -113,6 +117,7 @@ impl SimBackend {
             injector: Injector::new(&scene.bus_faults, &robot.layout, scene.cycle, scene.seed)?,
             cycles: 0,
             fallen: false,
+            lies: false,
             push: None,
             sensors: Sensors::default(),
             frames: BusFrames::default(),
@@ -181,7 +186,8 @@ impl SimBackend {
 
     /// One bus cycle: follows the newest targets, lets time pass, answers with what the sensors see.
     ///
-    /// A fallen robot stays as it fell: only soles meet the ground in this model.
+    /// A robot that falls goes on falling until its torso meets the ground, and stays there at rest: only soles have a
+    /// contact in this model.
     pub fn step(&mut self, frames: Option<&BusFrames>, power: Option<&Power>) -> (&BusFrames, &SimState) {
         let powered = self.power.step(power);
         // Off and without a reason: the watchdog has seen a reset edge.
@@ -238,7 +244,9 @@ impl SimBackend {
         if let Some(crane) = &mut self.crane {
             outside.rope = Some(crane.step(&self.state, dt));
         }
-        if !self.fallen {
+        let told = self.event.filter(|_| self.fallen);
+        let fell_before = self.fallen;
+        if !self.lies {
             outside.powered = powered;
             [outside.off, outside.braked, outside.held] = self.begin_cycle(frames, powered);
             self.last_good.copy_from_slice(&self.state);
@@ -260,6 +268,10 @@ impl SimBackend {
         }
         if self.measure(&snapshot, &outside, powered) {
             encode_sensors(&self.robot.layout, &self.sensors, &mut self.frames);
+        }
+        if fell_before {
+            // Sensors out of range and contacts that are not found say nothing new of a robot on its way down.
+            self.event = self.event.filter(|(code, _)| *code == EventCode::Diverged).or(told);
         }
     }
 
@@ -311,6 +323,7 @@ impl SimBackend {
             self.state.copy_from_slice(&self.last_good);
             self.event = Some((EventCode::Diverged, lost as u64));
             self.fallen = true;
+            self.come_to_rest();
         }
         let unit = orientation(&self.state);
         self.state[3..7].copy_from_slice(unit.coords.as_slice());
@@ -361,6 +374,22 @@ impl SimBackend {
             self.fallen = true;
             self.event = Some((EventCode::Fallen, 0));
         }
+        if self.fallen && !self.lies && self.state[2] < LYING * self.initial_height {
+            self.come_to_rest();
+        }
+    }
+
+    /// The ground takes all motion.
+    fn come_to_rest(&mut self) {
+        let layout = self.plant.layout();
+        for moving in [layout.speed(), layout.rotor_speed(), layout.current()] {
+            self.state[moving].fill(0.0);
+        }
+        for (goal, drive) in self.goals.iter_mut().zip(&mut self.drives) {
+            goal.speed = 0.0;
+            *drive = Drive::resting(goal.angle);
+        }
+        self.lies = true;
     }
 
     /// What the sensors see, and the truth beside it; false if a reading is no number and must not go on the bus.

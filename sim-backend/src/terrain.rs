@@ -18,7 +18,7 @@ pub fn environment(scene: &Scene) -> Result<Environment, Box<dyn Error>> {
 fn object(o: &TerrainObject) -> Result<Object, Box<dyn Error>> {
     let mesh = match &o.shape {
         Shape::Box(size) => Mesh::cuboid(*size)?,
-        Shape::Mesh { file, scale } => Mesh::read(file, *scale)?,
+        Shape::Mesh { file, bytes, scale } => Mesh::parse(file, bytes, *scale)?,
     };
     let later: Vec<(f64, Pose)> = o.poses.iter().map(|(time, p)| (*time, pose(p))).collect();
     let schedule = Schedule::new(o.appears, o.vanishes, pose(&o.pose), &later);

@@ -7,7 +7,7 @@ use std::path::Path;
 use config::scene::Integrator;
 use config::tolerance::Method;
 use config::{Robot, Setup};
-use fieldbus::load::{Rates, cycle_time};
+use fieldbus::load::{BIT_RATE, DATA_BIT_RATE, Rates, cycle_time};
 use messages::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
 use messages::layout::{Carries, Layout};
 use messages::{BusFrames, Sensors};
@@ -20,8 +20,8 @@ use crate::scorecard::walk;
 /// one line per leg leaves room for.
 const ROBOTS: [(&str, f64); 3] = [("lola", 0.0035), ("johnnie", 0.0015), ("archie", 0.0035)];
 /// Classic CAN, and CAN FD with the usual data rate.
-const CLASSIC: Rates = Rates { nominal: 1e6, data: None };
-const FD: Rates = Rates { nominal: 1e6, data: Some(5e6) };
+const CLASSIC: Rates = Rates { nominal: BIT_RATE, data: None };
+const FD: Rates = Rates { nominal: BIT_RATE, data: Some(DATA_BIT_RATE) };
 /// \[s\] Cycle that CAN FD is to allow.
 const FD_CYCLE: f64 = 0.001;
 /// Walks, whose joint laws hear their targets and tell their angles by the bus, and the cycles they are walked with.

@@ -38,6 +38,8 @@ pub struct Cycle {
     pub sim_state: SimState,
     /// `events/PROCESS`
     pub events: Vec<(Process, EventCode, u64)>,
+    /// Commands that were refused.
+    pub refused: u64,
 }
 
 /// The processes of a scene, each a library's step.
@@ -171,6 +173,7 @@ impl Chain {
         let runs = |process: Process| !stopped.contains(&process);
         self.elapsed += 1;
         self.cycle.events.clear();
+        self.cycle.refused = 0;
         self.cycle.plan = None;
         if runs(Process::Lowlevel) {
             self.tick += 1;
@@ -212,6 +215,7 @@ impl Chain {
         take_due(&mut self.walk, self.tick, &mut self.due);
         let seen = (self.tick > 1).then_some(&c.controller_state);
         let output = self.planner.step(self.tick, self.dt, seen, &self.due);
+        c.refused += output.answers.iter().filter(|answer| answer.is_err()).count() as u64;
         if let Some(plan) = output.plan {
             *self.plan = *plan;
             self.plan.header = c.sensors.header;
@@ -223,8 +227,10 @@ impl Chain {
     fn stabilize(&mut self) {
         let c = &mut self.cycle;
         take_due(&mut self.head, self.tick, &mut self.due);
-        let said = self.due.iter().filter_map(|command| self.controller.command(command));
-        c.events.extend(said.map(|(code, detail)| (Process::Controller, code, detail)));
+        for (code, detail) in self.due.iter().filter_map(|command| self.controller.command(command)) {
+            c.refused += u64::from(controller::verdict(Some((code, detail))).is_err());
+            c.events.push((Process::Controller, code, detail));
+        }
         let (targets, state) = self.controller.step(&c.sensors, (self.plan.id > 0).then_some(&*self.plan));
         (c.joint_targets, c.controller_state) = (*targets, *state);
         let told = std::iter::from_fn(|| self.controller.take_event());
@@ -234,7 +240,8 @@ impl Chain {
     /// Second half of the joint loop's cycle.
     fn drive_joints(&mut self) {
         take_due(&mut self.joint, self.tick, &mut self.due);
-        self.due.iter().for_each(|command| self.joint_loop.command(command));
+        // Nobody waits for an answer; a refusal is told as an event.
+        self.due.iter().for_each(|command| _ = self.joint_loop.command(command));
         self.reset = *self.joint_loop.send(Some(&self.cycle.joint_targets), None).1;
     }
 
@@ -249,7 +256,10 @@ impl Chain {
         };
         self.cycle.power = *self.watchdog.step(&inputs);
         self.skipped = 0;
-        let event = watchdog::supply_event(before, self.watchdog.supply());
+        let after = self.watchdog.supply();
+        let refused = self.due.iter().filter(|c| watchdog::verdict(c, before, after).is_err());
+        self.cycle.refused += refused.count() as u64;
+        let event = watchdog::supply_event(before, after);
         self.cycle.events.extend(event.map(|(code, detail)| (Process::Watchdog, code, detail)));
     }
 
@@ -263,6 +273,7 @@ impl Chain {
             {
                 let refused = (EventCode::CommandRefused, u64::from(command.address().1));
                 c.events.push((Process::SimBackend, refused.0, refused.1));
+                c.refused += 1;
             }
         }
         self.answered = true;

@@ -9,6 +9,7 @@ use config::Setup;
 use messages::{ControllerState, GaitState, MAX_JOINTS, SimState};
 use serde::Serialize;
 
+use crate::ending::Ending;
 use landing::Landing;
 use way::Way;
 
@@ -30,6 +31,12 @@ pub struct Figures {
     pub depth_reason: Option<String>,
     /// Whether the robot fell.
     pub fell: bool,
+    /// What ended the walk: `done`, `asked`, `fell`, `power_off: REASON`, `stopped: REASON`.
+    pub ended_by: String,
+    /// \[s\] When.
+    pub ended_at: f64,
+    /// Commands of the scene that were refused.
+    pub commands_refused: u64,
     /// \[s\] Simulated time.
     pub duration_s: f64,
     /// \[m\] Way of the torso from the first to the last periodic step.
@@ -80,10 +87,24 @@ pub struct Figures {
     pub log: Option<String>,
 }
 
+impl Figures {
+    /// The same of a run that ended like this.
+    pub fn ended(self, ending: &Ending) -> Self {
+        let (by, ended_at) = ending.end();
+        Self {
+            fell: ending.fell().is_some(),
+            ended_by: by.to_string(),
+            ended_at,
+            commands_refused: ending.refused,
+            ..self
+        }
+    }
+}
+
 /// Gathers [`Figures`].
 #[derive(Clone, Debug, Default)]
 pub struct Gatherer {
-    fell: bool,
+    ending: Ending,
     time: f64,
     error_max: [f64; 2],
     error_square: [f64; 2],
@@ -102,8 +123,9 @@ pub struct Gatherer {
 impl Gatherer {
     /// One cycle.
     pub fn add(&mut self, sim: &SimState, state: &ControllerState) {
-        self.fell |= sim.fallen == 1;
         self.time = sim.time;
+        let gait = if sim.fallen == 1 { GaitState::Fallen } else { state.gait.into() };
+        self.ending.see(sim.time, sim.power == 1, gait);
         let [x, y, z, w] = sim.orientation;
         let heading = (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z));
         self.end_pose = [sim.position[0], sim.position[1], heading];
@@ -157,7 +179,10 @@ impl Gatherer {
             robot: scene.robot.clone(),
             depth: format!("type {}, {:?} x {}", scene.depth, scene.integrator, scene.substeps),
             depth_reason: None,
-            fell: self.fell,
+            fell: false,
+            ended_by: String::new(),
+            ended_at: 0.0,
+            commands_refused: 0,
             duration_s: self.time,
             distance_m: periodic.distance,
             mean_speed_m_s: if periodic.span > 0.0 { periodic.distance / periodic.span } else { 0.0 },
@@ -182,6 +207,7 @@ impl Gatherer {
             real_time_factor: if cpu_s > 0.0 { self.time / cpu_s } else { 0.0 },
             log,
         }
+        .ended(&self.ending)
     }
 }
 
@@ -190,7 +216,9 @@ pub fn table(f: &Figures) -> String {
     let milli = |x: [f64; 2]| format!("{:.1}, {:.1} mrad", 1e3 * x[0], 1e3 * x[1]);
     let rows = [
         ("scene", format!("{} ({}, {})", f.scene, f.robot, f.depth)),
+        ("ended by", format!("{}, at {:.3} s", f.ended_by, f.ended_at)),
         ("fell", if f.fell { "yes".into() } else { "no".into() }),
+        ("commands refused", f.commands_refused.to_string()),
         ("duration", format!("{:.1} s, {} steps", f.duration_s, f.steps)),
         ("walking speed", format!("{:.3} m/s = {:.2} km/h", f.mean_speed_m_s, 3.6 * f.mean_speed_m_s)),
         ("inclination error, max", milli(f.inclination_error_max_rad)),

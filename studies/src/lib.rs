@@ -18,7 +18,7 @@
 //! | [`bus_faults`] | what does a walking robot do when the bus fails? |
 //! | [`cycles`] | how well did the processes of a run keep real time? |
 //!
-//! They work on [`chain`], all steps in one process, and judge by [`figures`]; [`second`] replays a part of it.
+//! They work on [`chain`], all steps in one process, and judge by [`figures`] and [`ending`]; [`second`] replays a part of it.
 
 pub mod accuracy;
 pub mod arm_swing;
@@ -27,6 +27,7 @@ pub mod bus_faults;
 pub mod chain;
 pub mod cycles;
 pub mod depth;
+pub mod ending;
 pub mod figures;
 pub mod figures_of_thesis;
 pub mod limits;

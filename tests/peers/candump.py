@@ -41,6 +41,7 @@ def by_python_can(directory):
         if found != row:
             sys.exit(f"python-can reads {found}, written was {row}")
     print(f"python-can: {len(messages)} frames as written")
+    other_forms(directory, messages)
     # Once more by their writer; it writes no class of error frames and no length of remote ones, so these stay ours.
     ours = (directory / "ours.log").read_text().splitlines(keepends=True)
     with can.CanutilsLogWriter(directory / "python.log") as writer:
@@ -49,6 +50,29 @@ def by_python_can(directory):
     theirs = (directory / "python.log").read_text().splitlines(keepends=True)
     merged = [o if "1" in row[4:6] else t for row, o, t in zip(rows, ours, theirs)]
     (directory / "theirs.log").write_text("".join(merged))
+
+
+def other_forms(directory, messages):
+    """The same frames as python-can's ASC, TRC and BLF logs, and the rows that are in them: times from 0, channels by
+    number. Its TRC holds classic frames with data only; of error frames it keeps when and where."""
+    with can.BLFWriter(directory / "python.blf") as blf:
+        for message in messages:
+            message.channel = int(message.channel.removeprefix("vcan"))
+            blf.on_message_received(message)
+    plain = [m for m in messages if not (m.is_fd or m.is_remote_frame or m.is_error_frame)]
+    for form, writer, kept in [("asc", can.ASCWriter, messages), ("trc", can.TRCWriter, plain)]:
+        rows = []
+        with writer(directory / f"python.{form}") as log:
+            for message in kept:
+                log.on_message_received(message)
+                row = listed(message)
+                row[:2] = [str(round((message.timestamp - kept[0].timestamp) * 1e6)), f"can{message.channel}"]
+                if message.is_error_frame:
+                    row[-2:] = ["8", "0" * 16]
+                rows.append(" ".join(row) + "\n")
+        (directory / f"python.{form}.txt").write_text("".join(rows))
+    for message in messages:
+        message.channel = f"vcan{message.channel}"
 
 
 def by_log2asc(directory, asc):

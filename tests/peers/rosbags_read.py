@@ -4,7 +4,7 @@ usage: rosbags_read.py LOG [EXPECTED]
 
 EXPECTED holds per line a channel and all scalars of one message. Checks that every channel decodes with two
 independent readers, that both find the same numbers, that standard messages are those of a ROS 2 distribution, and
-that the frames of /tf are one tree. Ends with status 1 at the first difference.
+that the frames of /tf and /tf_static are one tree. Ends with status 1 at the first difference.
 """
 
 import sys
@@ -23,6 +23,10 @@ STANDARD = {
     "/foot/right/wrench": "geometry_msgs/msg/WrenchStamped",
     "/foot/left/wrench": "geometry_msgs/msg/WrenchStamped",
     "/tf": "tf2_msgs/msg/TFMessage",
+    "/tf_static": "tf2_msgs/msg/TFMessage",
+    "/truth/tf": "tf2_msgs/msg/TFMessage",
+    "/truth/markers": "visualization_msgs/msg/MarkerArray",
+    "/rosout": "rcl_interfaces/msg/Log",
     "/markers": "visualization_msgs/msg/MarkerArray",
     "/robot_description": "std_msgs/msg/String",
 }
@@ -71,7 +75,7 @@ def with_rosbags(path):
         check_types(reader)
         for connection, time, raw in reader.messages():
             message = reader.deserialize(raw, connection.msgtype)
-            if connection.topic == "/tf":
+            if connection.topic in ("/tf", "/tf_static", "/truth/tf"):
                 for t in message.transforms:
                     frames[t.child_frame_id].add(t.header.frame_id)
             yield connection.topic, time, scalars(message, [])

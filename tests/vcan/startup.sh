@@ -19,11 +19,11 @@ shorter() {
 led() {
     shorter
     walk startup startup --lockstep --bus canfd:vcan0-8 || because "gangwerk ended with $?: $(tail -n 5 "$work/startup/said")" || return 1
-    grep -oE 'tick +[0-9]+  (lowlevel: (NotHomed|Homed|ForceZeroed)|standing: ready).*|^fell .*' "$work/startup/said" >"$work/led"
+    grep -oE 'lowlevel: (a joint does not know|all joints know|the force sensors read zero)|standing: ready|^fell +[a-z]+' "$work/startup/said" >"$work/led"
     sed 's/^/        /' "$work/led"
-    wanted='NotHomed Homed ForceZeroed standing: fell no'
-    found=$(sed -E -e 's/^tick +[0-9]+  (lowlevel: )?//' -e 's/^fell +/fell /' -e 's/ (ready|\().*//' "$work/led" | tr '\n' ' ')
-    [ "$found" = "$wanted " ] || because "not $wanted, but $found"
+    wanted='a joint does not know, all joints know, the force sensors read zero, standing: ready, fell no, '
+    found=$(sed -E -e 's/^lowlevel: //' -e 's/^fell +/fell /' -e 's/$/,/' "$work/led" | tr '\n' ' ')
+    [ "$found" = "$wanted" ] || because "not $wanted, but $found"
 }
 
 same() {

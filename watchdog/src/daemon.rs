@@ -5,13 +5,13 @@
 //! woken by the joint loop's sign of life, it answers each tick.
 
 use crate::estop::EmergencyStop;
-use crate::{Inputs, Supply, Watchdog, supply_event};
+use crate::{Inputs, Supply, Watchdog, supply_event, verdict};
 use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, StopLine, Writer};
 use messages::command::Domain;
 use messages::topics::{POWER, WATCHDOG_RESET};
-use messages::{Command, EventCode, Header, Live, Power, Process, Reason, Verdict, WatchdogReset};
+use messages::{Command, EventCode, Header, Live, Power, Process, WatchdogReset};
 use realtime::{Period, Schedule, clock};
 use std::error::Error;
 use std::path::Path;
@@ -99,16 +99,6 @@ fn real_time(d: &mut Daemon, guard: &mut Guard) {
         }
         d.end(guard.now(), verdict.skipped());
     }
-}
-
-/// Answer to the operator: a reset or an enable that has had no effect is refused.
-fn verdict(command: &Command, before: Supply, after: Supply) -> Verdict {
-    let done = match command {
-        Command::Reset => after == Supply::Ready || after == Supply::On && before != Supply::On,
-        Command::Enable => after == Supply::On,
-        _ => true,
-    };
-    if done { Ok(()) } else { Err(Reason::NotNow) }
 }
 
 struct Guard {

@@ -14,7 +14,7 @@
 //! floods the line, gives no edge. The supply's relay is closed only while `toggle` moves, so a dead watchdog is off too;
 //! and it closes only once for each value of `arming`, so a stopped one that goes on leaves it open.
 
-use messages::{Command, EventCode, Power, WatchdogReset};
+use messages::{Command, EventCode, Power, Reason, Verdict, WatchdogReset};
 
 /// Watchdog cycles without a command after which the next one counts as an edge.
 pub const PAUSE: u32 = 250;
@@ -40,6 +40,16 @@ pub fn supply_event(before: Supply, after: Supply) -> Option<(EventCode, u64)> {
         (Supply::Ready | Supply::Off(_), Supply::On) => Some((EventCode::PowerOn, 0)),
         _ => None,
     }
+}
+
+/// Answer to the operator: a reset or an enable that has had no effect is refused.
+pub fn verdict(command: &Command, before: Supply, after: Supply) -> Verdict {
+    let done = match command {
+        Command::Reset => after == Supply::Ready || after == Supply::On && before != Supply::On,
+        Command::Enable => after == Supply::On,
+        _ => true,
+    };
+    if done { Ok(()) } else { Err(Reason::NotNow) }
 }
 
 /// What one cycle of the watchdog sees.

@@ -68,6 +68,8 @@ impl Rig {
             bus: "shm".into(),
             robot: true,
             log: None,
+            commit: String::new(),
+            started: None,
         };
         run.save().unwrap();
         let own = Space::open(&dir, Process::Lowlevel).unwrap();

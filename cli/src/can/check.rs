@@ -25,7 +25,7 @@ use super::file;
 /// What to compare.
 #[derive(clap::Args)]
 pub struct Order {
-    /// A candump log or an MCAP file of the bus, from the begin of the run on.
+    /// A candump log, ASC, TRC or MCAP file of the bus, from the begin of the run on.
     pub recording: PathBuf,
     /// The log of the run.
     #[arg(long, value_name = "MCAP")]

@@ -44,6 +44,13 @@ impl Decoder {
         self.owners.message(self.layout(), frame)
     }
 
+    /// Name of the message of an identifier on a line.
+    pub(super) fn name(&self, line: u32, id: u32) -> Option<String> {
+        let layout = self.layout();
+        let node = self.owners.nodes(layout, line, id).next()?;
+        layout.find(node as u32, id).map(|i| layout.messages[i].name.clone())
+    }
+
     /// Whether a frame goes the way asked for; error frames and unknown ones come from the line.
     pub(super) fn goes(&self, frame: &Captured, only: Option<Only>) -> bool {
         let to_drives = self.message(frame).is_some_and(|m| m.to_drives);

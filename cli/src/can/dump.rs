@@ -6,7 +6,7 @@ use std::path::Path;
 use fieldbus::candump_line;
 use fieldbus::capture::Captured;
 
-use super::decoder::{Decoder, signals};
+use super::dictionary::{Dictionary, Meaning, Source};
 use super::{Only, file, source};
 
 /// What to print.
@@ -14,13 +14,13 @@ use super::{Only, file, source};
 pub struct Order {
     /// A recording, or interfaces: can0 or can0,can1 or vcan0-8.
     pub source: String,
-    /// Robot whose frames these are: prints what they carry.
-    #[arg(long, value_name = "NAME")]
-    pub robot: Option<String>,
+    /// Whose frames these are.
+    #[command(flatten)]
+    pub words: Source,
     /// Only one direction; needs --robot.
     #[arg(long, requires = "robot")]
     pub only: Option<Only>,
-    /// End after this time \[s\]; interfaces only.
+    /// End after this time, in s; interfaces only.
     #[arg(long, value_name = "S", value_parser = source::seconds)]
     pub seconds: Option<f64>,
     /// Leave broken lines out, and tell how many.
@@ -33,20 +33,20 @@ pub struct Order {
 /// # Errors
 /// The source cannot be read.
 pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
-    let decoder = order.robot.as_deref().map(|name| Decoder::load(config, name)).transpose()?;
-    let mut page = Page { decoder, only: order.only, unknown: 0, wrong_length: 0 };
+    let dictionary = order.words.load(config)?;
+    let mut page = Page { dictionary, only: order.only, unknown: 0, wrong_length: 0 };
     if source::is_file(&order.source) {
         let capture = file::read(Path::new(&order.source), order.lenient)?;
-        if let Some(decoder) = &mut page.decoder {
-            capture.frames.iter().for_each(|frame| decoder.learn(frame));
+        if let Some(dictionary) = &mut page.dictionary {
+            capture.frames.iter().for_each(|frame| dictionary.learn(frame));
         }
         capture.frames.iter().for_each(|frame| page.print(&capture.lines[frame.line as usize], frame));
     } else {
         let names = source::names(&order.source)?;
         source::listen(&names, order.seconds, |frame| {
             if let Some(frame) = frame {
-                if let Some(decoder) = &mut page.decoder {
-                    decoder.learn(frame);
+                if let Some(dictionary) = &mut page.dictionary {
+                    dictionary.learn(frame);
                 }
                 page.print(&names[frame.line as usize], frame);
             }
@@ -55,7 +55,7 @@ pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
     }
     if page.unknown + page.wrong_length > 0 {
         eprintln!(
-            "{} frames with identifiers that the robot's DBC file does not know, {} of another length than their message",
+            "{} frames with identifiers that the DBC file does not know, {} of another length than their message",
             page.unknown, page.wrong_length
         );
     }
@@ -63,7 +63,7 @@ pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
 }
 
 struct Page {
-    decoder: Option<Decoder>,
+    dictionary: Option<Dictionary>,
     only: Option<Only>,
     unknown: u64,
     wrong_length: u64,
@@ -73,21 +73,23 @@ impl Page {
     fn print(&mut self, name: &str, frame: &Captured) {
         let mut text = String::new();
         candump_line::write(&mut text, name, 0, frame);
-        let Some(decoder) = &self.decoder else { return println!("{text}") };
-        if !decoder.goes(frame, self.only) {
+        let Some(dictionary) = &self.dictionary else { return println!("{text}") };
+        if !dictionary.goes(frame, self.only) {
             return;
         }
-        match decoder.message(frame) {
-            _ if frame.is_error() => println!("{text}  error frame"),
-            None => {
+        if frame.is_error() {
+            return println!("{text}  error frame");
+        }
+        match dictionary.meaning(frame) {
+            Meaning::Unknown => {
                 self.unknown += 1;
                 println!("{text}  unknown");
             }
-            Some(m) if u32::from(frame.len) != m.len => {
+            Meaning::WrongLength(name, len) => {
                 self.wrong_length += 1;
-                println!("{text}  {}: {} bytes, but its message has {}", m.name, frame.len, m.len);
+                println!("{text}  {name}: {} bytes, but its message has {len}", frame.len);
             }
-            Some(m) => print!("{text}  {}\n{}", m.name, signals(m, frame)),
+            Meaning::Known(name, signals) => print!("{text}  {name}\n{signals}"),
         }
     }
 }

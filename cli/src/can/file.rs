@@ -1,12 +1,13 @@
-//! Recordings on disk: candump logs and MCAP, told apart by the ending of their names.
+//! Recordings on disk: MCAP, by the ending of its name, and text, by what stands in it; written are MCAP and candump logs.
 
 use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-use fieldbus::candump::{self, Strictness};
+use fieldbus::candump;
 use fieldbus::capture::{Capture, Captured, Form, Way};
+use fieldbus::text_log::{self, Strictness};
 use recording::End;
 use recording::traffic::{CanFrame, TrafficWriter, read_traffic};
 
@@ -15,15 +16,28 @@ fn is_mcap(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"))
 }
 
-/// Reads a recording, in the order of time; what a lenient reader leaves out is told on standard error.
+/// Reads a recording, in the order of time; what a lenient reader leaves out, and steps of the clock, are told on standard
+/// error.
 pub(super) fn read(path: &Path, lenient: bool) -> Result<Capture, Box<dyn Error>> {
-    if is_mcap(path) {
-        return read_mcap(path, lenient);
-    }
     let strictness = if lenient { Strictness::Lenient } else { Strictness::Strict };
-    let (capture, broken) = candump::read(path, strictness)?;
-    if broken.count > 0 {
-        eprintln!("left out: {broken}");
+    let capture = if is_mcap(path) {
+        read_mcap(path, lenient)?
+    } else {
+        let (capture, broken) = text_log::read(path, strictness)?;
+        if broken.count > 0 {
+            eprintln!("left out: {broken}");
+        }
+        capture
+    };
+    if let Some(first) = capture.steps.first() {
+        let most = capture.steps.iter().map(|step| step.back_ns).max().unwrap_or(0) as f64 * 1e-9;
+        let at = capture.frames[first.at].time_ns as f64 * 1e-9;
+        eprintln!(
+            "{}: the clock was put back, {} times, by up to {most:.6} s, first to {at:.6} s: there the order of the file \
+             counts, and the time between the frames is not known",
+            path.display(),
+            capture.steps.len(),
+        );
     }
     Ok(capture)
 }

@@ -2,8 +2,10 @@
 
 pub mod check;
 mod decoder;
+mod dictionary;
 pub mod dump;
 mod file;
+mod load_picture;
 pub mod record;
 pub mod replay;
 mod source;
@@ -29,7 +31,7 @@ pub enum Task {
     Check(check::Order),
     /// Write a recording as another file: candump log, or MCAP if it ends in .mcap.
     Convert {
-        /// A candump log or an MCAP file.
+        /// A candump log, ASC, TRC or an MCAP file.
         from: PathBuf,
         /// The other one.
         to: PathBuf,

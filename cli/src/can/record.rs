@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use fieldbus::capture::{Captured, Form};
 use ipc::{Reader, Run, Space};
+use messages::layout::Layout;
 use messages::topics::{BUS_RX, BUS_TX};
 use messages::{BusFrames, Process};
 use realtime::{Stop, clock};
@@ -29,7 +30,7 @@ pub struct Order {
     pub interfaces: String,
     /// Candump log, or MCAP if it ends in .mcap; an existing file is overwritten.
     pub file: PathBuf,
-    /// End after this time \[s\].
+    /// End after this time, in s.
     #[arg(long, value_name = "S", value_parser = source::seconds)]
     pub seconds: Option<f64>,
     /// Only one direction; needs --robot.
@@ -118,17 +119,19 @@ impl Sorted<'_> {
 /// The frames of bus cycles as a recording: an interface `shmN` for each node.
 pub struct Traffic {
     writer: Writer,
+    form: Form,
     /// Frames so far.
     pub count: u64,
 }
 
 impl Traffic {
-    /// Makes the file; an existing one is overwritten.
+    /// Makes the file, for frames of this layout or, if none is known, of CAN FD; an existing one is overwritten.
     ///
     /// # Errors
     /// It cannot be made.
-    pub fn create(path: &Path) -> Result<Self, Box<dyn Error>> {
-        Ok(Self { writer: Writer::create(path, &[])?, count: 0 })
+    pub fn create(path: &Path, layout: Option<&Layout>) -> Result<Self, Box<dyn Error>> {
+        let form = if layout.is_some_and(Layout::is_classic) { Form::CLASSIC } else { SHARED_MEMORY };
+        Ok(Self { writer: Writer::create(path, &[])?, form, count: 0 })
     }
 
     /// Appends one direction of a cycle, at the stamp of its header.
@@ -137,7 +140,7 @@ impl Traffic {
     /// The file can no longer be written.
     pub fn write(&mut self, frames: &BusFrames) -> Result<(), Box<dyn Error>> {
         for frame in frames.as_slice() {
-            let captured = Captured::of(frame, frames.header.stamp_ns, SHARED_MEMORY);
+            let captured = Captured::of(frame, frames.header.stamp_ns, self.form);
             self.writer.write(&format!("shm{}", frame.line), &captured)?;
             self.count += 1;
         }
@@ -160,7 +163,7 @@ fn shared_memory(order: &Order) -> Result<(), Box<dyn Error>> {
     let space = Space::open(&run.dir, Process::Observer)?;
     let mut to: Reader<BusFrames> = space.reader(&BUS_TX)?;
     let mut from: Reader<BusFrames> = space.reader(&BUS_RX)?;
-    let mut traffic = Traffic::create(&order.file)?;
+    let mut traffic = Traffic::create(&order.file, None)?;
     eprintln!("listening on the bus of scene {}; Ctrl-C ends it", run.scene);
     let end = order.seconds.map(|s| clock::now() + (s * 1e9) as u64);
     // By tick, and what was told before what was answered.

@@ -2,7 +2,7 @@
 //!
 //! | how | when a frame is sent |
 //! |---|---|
-//! | original timing | its time after the first one, slept absolutely: lateness does not add up |
+//! | original timing | its time after the first one, slept absolutely: lateness does not add up; none across a step of the clock |
 //! | `--speed X` | the same, X times as fast |
 //! | `--as-fast-as-consumed` | the answers to a cycle as soon as the peer's SYNC of this cycle was seen on the line |
 
@@ -28,7 +28,7 @@ const PATIENCE: u64 = 10 * clock::SECOND;
 /// What to replay and how.
 #[derive(clap::Args)]
 pub struct Order {
-    /// A candump log or an MCAP file.
+    /// A candump log, ASC, TRC or an MCAP file.
     pub file: PathBuf,
     /// Play what was recorded on A on the interface B; without it every frame goes to the interface of its name.
     #[arg(long, value_name = "A=B")]
@@ -64,15 +64,15 @@ fn speed(text: &str) -> Result<f64, String> {
 /// # Errors
 /// The recording is broken, an interface cannot be used, nobody consumes.
 pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
-    let mut capture = file::read(&order.file, order.lenient)?;
+    let capture = file::read(&order.file, order.lenient)?;
     let mut decoder = order.robot.as_deref().map(|name| Decoder::load(config, name)).transpose()?;
     if let Some(decoder) = &mut decoder {
         capture.frames.iter().for_each(|frame| decoder.learn(frame));
-        if !order.as_fast_as_consumed {
-            capture.frames.retain(|frame| decoder.goes(frame, order.only));
-        }
     }
-    if capture.frames.is_empty() {
+    let goes = |frame: &Captured| decoder.as_ref().is_none_or(|decoder| decoder.goes(frame, order.only));
+    let frames: Vec<(&Captured, u64)> =
+        capture.frames.iter().zip(capture.elapsed()).filter(|(frame, _)| goes(frame)).collect();
+    if frames.is_empty() {
         return Err(format!("{}: no frame of it goes that way", order.file.display()).into());
     }
     let names = mapped(&capture, &order.map)?;
@@ -93,7 +93,7 @@ pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    timed(&capture, &player, order.speed, &stop)
+    timed(&frames, &player, order.speed, &stop)
 }
 
 /// The interface of this machine for every line of the recording.
@@ -112,13 +112,13 @@ fn mapped(capture: &Capture, map: &[String]) -> Result<Vec<String>, Box<dyn Erro
     Ok(names)
 }
 
-/// Every frame at its time.
-fn timed(capture: &Capture, player: &Player, speed: f64, stop: &Stop) -> Result<(), Box<dyn Error>> {
-    let first = capture.frames.first().map_or(0, |frame| frame.time_ns);
+/// Every frame at its time \[ns\] after the first one.
+fn timed(frames: &[(&Captured, u64)], player: &Player, speed: f64, stop: &Stop) -> Result<(), Box<dyn Error>> {
     let begun = clock::now();
     let (mut sent, mut latest) = (0u64, 0u64);
-    for frame in &capture.frames {
-        let due = begun + ((frame.time_ns - first) as f64 / speed) as u64;
+    let first = frames.first().map_or(0, |(_, elapsed)| *elapsed);
+    for (frame, elapsed) in frames {
+        let due = begun + ((elapsed - first) as f64 / speed) as u64;
         if !sleep_until(due, stop) {
             break;
         }
@@ -307,7 +307,7 @@ mod tests {
 
     #[test]
     fn maps_of_interfaces_name_what_is_wrong() {
-        let capture = Capture { lines: vec!["vcan0".into(), "vcan1".into()], frames: Vec::new() };
+        let capture = Capture { lines: vec!["vcan0".into(), "vcan1".into()], ..Capture::default() };
         let names = |map: &[&str]| {
             mapped(&capture, &map.iter().map(|m| m.to_string()).collect::<Vec<_>>())
                 .map_err(|e| e.to_string())

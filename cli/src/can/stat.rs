@@ -1,33 +1,39 @@
 //! `gangwerk can stat`: what is how often, how regularly, and how much of the lines it takes.
 
 use std::error::Error;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use fieldbus::bits;
 use fieldbus::capture::{BASE_BITS, Captured, ERROR, EXTENDED, EXTENDED_BITS, REMOTE};
-use fieldbus::cycles::counter;
+use fieldbus::clock_steps::ClockSteps;
+use fieldbus::load::{BIT_RATE, DATA_BIT_RATE};
+use fieldbus::load_course::LoadCourse;
 use fieldbus::statistics::{BitRates, Row, Statistics};
 use serde::Serialize;
 
-use super::decoder::Decoder;
-use super::{file, source};
+use super::dictionary::{Dictionary, Source};
+use super::{file, load_picture, source};
 
 /// What to count.
 #[derive(clap::Args)]
 pub struct Order {
     /// A recording, or interfaces: can0 or can0,can1 or vcan0-8.
     pub source: String,
-    /// Robot whose frames these are: names messages, and finds gaps in their counters.
-    #[arg(long, value_name = "NAME")]
-    pub robot: Option<String>,
-    /// Bit rate \[bit/s\] of classic CAN and of the arbitration of CAN FD.
-    #[arg(long, default_value_t = 1e6, value_parser = rate)]
+    /// Whose frames these are.
+    #[command(flatten)]
+    pub words: Source,
+    /// Bit rate in bit/s of classic CAN and of the arbitration of CAN FD.
+    #[arg(long, default_value_t = BIT_RATE, value_parser = rate)]
     pub bitrate: f64,
-    /// Bit rate \[bit/s\] of the data of CAN FD.
-    #[arg(long, default_value_t = 4e6, value_parser = rate)]
+    /// Bit rate in bit/s of the data of CAN FD.
+    #[arg(long, default_value_t = DATA_BIT_RATE, value_parser = rate)]
     pub data_bitrate: f64,
-    /// End after this time \[s\]; interfaces only.
+    /// End after this time, in s; interfaces only.
     #[arg(long, value_name = "S", value_parser = source::seconds)]
     pub seconds: Option<f64>,
+    /// Draw the load of the lines over time into this file.
+    #[arg(long, value_name = "FILE")]
+    pub png: Option<PathBuf>,
     /// One JSON object on standard output instead of tables.
     #[arg(long)]
     pub json: bool,
@@ -46,7 +52,9 @@ fn rate(text: &str) -> Result<f64, String> {
 /// All figures.
 #[derive(Serialize)]
 struct Report {
+    /// As far as it is known: what passed while the clock was put back is not.
     seconds: f64,
+    clock_steps: usize,
     bitrate: f64,
     data_bitrate: f64,
     lines: Vec<Line>,
@@ -82,68 +90,105 @@ struct Message {
 /// Counts and prints.
 ///
 /// # Errors
-/// The source cannot be read.
+/// The source cannot be read, or the picture not be written.
 pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
-    let mut decoder = order.robot.as_deref().map(|name| Decoder::load(config, name)).transpose()?;
     let rates = BitRates { nominal: order.bitrate, data: order.data_bitrate };
-    let mut statistics = Statistics::new(rates);
+    let mut count = Count {
+        dictionary: order.words.load(config)?,
+        statistics: Statistics::new(rates),
+        course: LoadCourse::default(),
+        rates,
+        clock_steps: 0,
+    };
     let names = if source::is_file(&order.source) {
         let capture = file::read(Path::new(&order.source), order.lenient)?;
-        if let Some(decoder) = &mut decoder {
-            capture.frames.iter().for_each(|frame| decoder.learn(frame));
+        if let Some(dictionary) = &mut count.dictionary {
+            capture.frames.iter().for_each(|frame| dictionary.learn(frame));
         }
-        capture.frames.iter().for_each(|frame| statistics.add(frame, count(decoder.as_ref(), frame)));
+        let mut steps = capture.steps.iter().map(|step| step.at).peekable();
+        for (i, frame) in capture.frames.iter().enumerate() {
+            count.add(frame, steps.next_if_eq(&i).is_some());
+        }
         capture.lines
     } else {
         let names = source::names(&order.source)?;
+        let (mut clock, mut stretch) = (ClockSteps::default(), 0);
         source::listen(&names, order.seconds, |frame| {
             if let Some(frame) = frame {
-                if let Some(decoder) = &mut decoder {
-                    decoder.learn(frame);
+                if let Some(dictionary) = &mut count.dictionary {
+                    dictionary.learn(frame);
                 }
-                statistics.add(frame, count(decoder.as_ref(), frame));
+                let now = clock.stretch(frame.line, frame.time_ns);
+                count.add(frame, now > stretch);
+                stretch = now.max(stretch);
             }
             Ok(())
         })?;
         names
     };
-    let report = report(&statistics, &names, decoder.as_ref(), rates);
+    if let Some(png) = &order.png {
+        load_picture::figure(&count.course, &names, &order.source).save(png)?;
+        eprintln!("{}", png.display());
+    }
+    let report = count.report(&names);
     println!("{}", if order.json { serde_json::to_string(&report)? } else { table(&report) });
     Ok(())
 }
 
-fn count(decoder: Option<&Decoder>, frame: &Captured) -> Option<(u64, u32)> {
-    counter(decoder?.message(frame)?, frame)
+/// What was counted so far.
+struct Count {
+    dictionary: Option<Dictionary>,
+    statistics: Statistics,
+    course: LoadCourse,
+    rates: BitRates,
+    clock_steps: usize,
 }
 
-fn report(statistics: &Statistics, names: &[String], decoder: Option<&Decoder>, rates: BitRates) -> Report {
-    let seconds = statistics.seconds();
-    let line = |(line, total): (u32, &fieldbus::statistics::LineTotal)| Line {
-        interface: names[line as usize].clone(),
-        frames: total.count,
-        error_frames: total.errors,
-        bytes: total.bytes,
-        load: Some(statistics.load(total)).filter(|load| load.is_finite()),
-    };
-    let message = |(line, id, row): (u32, u32, &Row)| Message {
-        interface: names[line as usize].clone(),
-        id: identifier(id),
-        name: name(decoder, line, id),
-        frames: row.count,
-        rate: if row.span > 0.0 { 1.0 / row.mean() } else { 0.0 },
-        period_min: row.shortest,
-        period_mean: row.mean(),
-        period_max: row.longest,
-        bytes: row.bytes,
-        missing: row.missing,
-        repeated: row.repeated,
-    };
-    Report {
-        seconds,
-        bitrate: rates.nominal,
-        data_bitrate: rates.data,
-        lines: statistics.lines().map(line).collect(),
-        messages: statistics.rows().map(message).collect(),
+impl Count {
+    /// One more frame; `put_back`: before it the clock was put back.
+    fn add(&mut self, frame: &Captured, put_back: bool) {
+        if put_back {
+            self.statistics.clock_was_put_back();
+            self.clock_steps += 1;
+        }
+        let counter = self.dictionary.as_ref().and_then(|dictionary| dictionary.counter(frame));
+        self.statistics.add(frame, counter);
+        if !frame.is_error() {
+            let occupied = bits::of(frame).seconds(self.rates.nominal, self.rates.data);
+            self.course.add(frame.line, self.statistics.elapsed_ns(), occupied);
+        }
+    }
+
+    fn report(&self, names: &[String]) -> Report {
+        let line = |(line, total): (u32, &fieldbus::statistics::LineTotal)| Line {
+            interface: names[line as usize].clone(),
+            frames: total.count,
+            error_frames: total.errors,
+            bytes: total.bytes,
+            load: Some(self.statistics.load(total)).filter(|load| load.is_finite()),
+        };
+        let name = |line, id| self.dictionary.as_ref().map_or_else(String::new, |words| words.name(line, id));
+        let message = |(line, id, row): (u32, u32, &Row)| Message {
+            interface: names[line as usize].clone(),
+            id: identifier(id),
+            name: name(line, id),
+            frames: row.count,
+            rate: if row.span > 0.0 { 1.0 / row.mean() } else { 0.0 },
+            period_min: row.shortest,
+            period_mean: row.mean(),
+            period_max: row.longest,
+            bytes: row.bytes,
+            missing: row.missing,
+            repeated: row.repeated,
+        };
+        Report {
+            seconds: self.statistics.seconds(),
+            clock_steps: self.clock_steps,
+            bitrate: self.rates.nominal,
+            data_bitrate: self.rates.data,
+            lines: self.statistics.lines().map(line).collect(),
+            messages: self.statistics.rows().map(message).collect(),
+        }
     }
 }
 
@@ -155,17 +200,6 @@ fn identifier(id: u32) -> String {
         _ if id & EXTENDED != 0 => format!("{:08X}{remote}", id & EXTENDED_BITS),
         _ => format!("{:03X}{remote}", id & BASE_BITS),
     }
-}
-
-fn name(decoder: Option<&Decoder>, line: u32, id: u32) -> String {
-    let Some(decoder) = decoder else { return String::new() };
-    if id & ERROR != 0 {
-        return "error frame".into();
-    }
-    let layout = decoder.layout();
-    let node = decoder.owners.nodes(layout, line, id).next();
-    let message = node.and_then(|node| layout.find(node as u32, id));
-    message.map_or_else(|| "unknown".into(), |i| layout.messages[i].name.clone())
 }
 
 fn table(r: &Report) -> String {
@@ -204,6 +238,9 @@ fn table(r: &Report) -> String {
         "\nover {:.3} s at {} bit/s, data of CAN FD at {} bit/s; stuff bits counted, error frames not\n",
         r.seconds, r.bitrate, r.data_bitrate
     );
+    if r.clock_steps > 0 {
+        text += &format!("the clock was put back {} times: what passed meanwhile is not counted\n", r.clock_steps);
+    }
     for l in &r.lines {
         let load = l.load.map_or("-".into(), |load| format!("{:.1} %", 100.0 * load));
         text += &format!(

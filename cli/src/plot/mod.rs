@@ -4,6 +4,7 @@
 
 mod forces;
 mod inclination;
+mod margin;
 mod paths;
 mod redundant;
 mod strip;
@@ -29,9 +30,10 @@ pub struct Pictures {
 type Draw = fn(&Walk) -> Result<Figure, String>;
 
 /// File names, and who draws them.
-const PICTURES: [(&str, Draw); 7] = [
+const PICTURES: [(&str, Draw); 8] = [
     ("inclination.png", inclination::draw),
     ("zmp.png", zmp::draw),
+    ("margin.png", margin::draw),
     ("foot_forces.png", forces::draw),
     ("joint_tracking.png", tracking::draw),
     ("redundant_joints.png", redundant::draw),
@@ -47,7 +49,12 @@ pub fn run(log: &Path, out: &Path) -> Result<Pictures, String> {
     })?;
     let mut pictures = Pictures::default();
     for (name, draw) in PICTURES {
-        match draw(&walk) {
+        // A chart of something that the log does not hold would show nothing but its axes.
+        let drawn = draw(&walk).and_then(|figure| match figure.empty_chart() {
+            Some(title) => Err(format!("the log holds nothing for \"{title}\"")),
+            None => Ok(figure),
+        });
+        match drawn {
             Ok(figure) => {
                 let path = out.join(name);
                 figure.save(&path)?;
@@ -62,6 +69,7 @@ pub fn run(log: &Path, out: &Path) -> Result<Pictures, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use synthetic::Part;
 
     fn directory(name: &str) -> PathBuf {
         let directory = std::env::temp_dir().join(format!("gangwerk-plot-{name}-{}", std::process::id()));
@@ -73,7 +81,7 @@ mod tests {
     fn a_walk_gives_all_pictures() {
         let out = directory("walk");
         let log = out.join("walk.mcap");
-        synthetic::write(&log, true);
+        synthetic::write(&log, &[]);
         let pictures = run(&log, &out).expect("pictures");
         assert_eq!(pictures.skipped, Vec::<String>::new());
         assert_eq!(pictures.written.len(), PICTURES.len());
@@ -93,10 +101,32 @@ mod tests {
     fn a_log_without_links_has_no_stick_figures() {
         let out = directory("no-links");
         let log = out.join("walk.mcap");
-        synthetic::write(&log, false);
+        synthetic::write(&log, &[Part::Links]);
         let pictures = run(&log, &out).expect("pictures");
         assert_eq!(pictures.skipped.len(), 1);
         assert!(pictures.skipped[0].starts_with("stick_figures.png: "), "{:?}", pictures.skipped);
+        std::fs::remove_dir_all(out).expect("temporary directory");
+    }
+
+    /// A real robot's log knows no truth, a scene of type 1 no tracking errors: a sentence instead of an empty chart.
+    #[test]
+    fn what_a_log_does_not_hold_is_said_and_not_drawn() {
+        let out = directory("parts");
+        let log = out.join("walk.mcap");
+        for (part, names) in [
+            (Part::Truth, &["stick_figures.png: the log has no poses"][..]),
+            (Part::Tracking, &["joint_tracking.png: every joint is where its target is"]),
+            (Part::Sensors, &["foot_forces.png: the log has no sensor records", "redundant_joints.png: "]),
+            (Part::Margin, &["margin.png: no foot ever carries load"]),
+            (Part::Inclination, &["inclination.png: the log holds nothing for \"φ_x"]),
+        ] {
+            synthetic::write(&log, &[part]);
+            let pictures = run(&log, &out).expect("pictures");
+            assert_eq!(pictures.skipped.len(), names.len(), "{part:?}: {:?}", pictures.skipped);
+            for (said, wanted) in pictures.skipped.iter().zip(names) {
+                assert!(said.starts_with(wanted), "{part:?}: {said}");
+            }
+        }
         std::fs::remove_dir_all(out).expect("temporary directory");
     }
 

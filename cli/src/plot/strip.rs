@@ -7,7 +7,7 @@ use super::walk::{Walk, seconds};
 use drawing::color::{BLACK, BLUE, GREY, LIGHT, VERMILION};
 use drawing::{Chart, Color, Figure, Pen, Point};
 use messages::GaitState;
-use recording::{FrameTree, Pose};
+use recording::{FrameTree, Log, Pose};
 use std::collections::HashMap;
 
 /// \[s\] Time between two figures.
@@ -109,13 +109,13 @@ struct Skeleton<'a> {
 
 impl<'a> Skeleton<'a> {
     fn new(walk: &'a Walk, tree: &'a FrameTree) -> Self {
-        let mut world: HashMap<&str, Pose> = HashMap::from([("world", Pose::IDENTITY)]);
+        let mut world: HashMap<&str, Pose> = HashMap::from([(Log::ODOM, Pose::IDENTITY)]);
         let mut parents = Vec::new();
         for t in &tree.transforms {
             if let Some(parent) = world.get(t.parent.as_str()).copied() {
                 world.insert(&t.child, parent.then(&t.pose));
                 let sensor = t.child == "imu" || t.child.ends_with("_force_sensor");
-                if t.parent != "world" && !sensor {
+                if t.parent != Log::ODOM && !sensor {
                     parents.push((t.child.as_str(), t.parent.as_str()));
                 }
             }

@@ -2,7 +2,7 @@
 
 use messages::record::Wrench;
 use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE};
-use messages::{ControllerState, GaitState, Header, Sensors, SimState};
+use messages::{ControllerState, GaitState, Header, Joints, Sensors, SimState};
 use recording::{FootInfo, Link, LinkPoses, Pose, Recorder, RobotInfo, RunInfo};
 use std::path::Path;
 
@@ -71,17 +71,19 @@ fn pace(t: f64) -> Pace {
     Pace { com: [x, sway, 0.88 + 0.005 * (15.7 * t).sin()], zmp: [x, 0.9 * y], feet, load }
 }
 
+/// Behind the joints: soles in the torso frame \[m\], right and left.
+const SOLES: usize = 8;
+
 /// Two-link legs by the law of cosines.
 struct Sticks(Vec<Link>);
 impl LinkPoses for Sticks {
     fn links(&self) -> &[Link] {
         &self.0
     }
-    fn poses(&mut self, state: &SimState, out: &mut [Pose]) {
-        let torso = Pose { position: state.position, orientation: state.orientation };
-        out[0] = torso;
+    fn poses(&mut self, torso: &Pose, joint_angle: &Joints, out: &mut [Pose]) {
+        out[0] = *torso;
         for (foot, thigh) in [(0, 1), (1, 4)] {
-            let sole = state.feet[foot];
+            let sole = torso.place(std::array::from_fn(|k| joint_angle[SOLES + 3 * foot + k]));
             let hip = torso.place([0.0, sole[1], -0.1]);
             let ankle = [sole[0], sole[1], sole[2] + 0.1];
             let (dx, dz) = (ankle[0] - hip[0], ankle[2] - hip[2]);
@@ -102,8 +104,20 @@ impl LinkPoses for Sticks {
     }
 }
 
-/// Writes the walk; `links`: with the poses of links.
-pub(super) fn write(path: &Path, links: bool) {
+/// What a log may be without.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Part {
+    Links,
+    Truth,
+    Sensors,
+    Tracking,
+    Margin,
+    Inclination,
+}
+
+/// Writes the walk without some parts.
+pub(super) fn write(path: &Path, without: &[Part]) {
+    let with = |part: Part| !without.contains(&part);
     let foot = |side: &str| FootInfo {
         link: format!("{side}_foot"),
         sole: [0.0, 0.0, -0.1],
@@ -119,21 +133,38 @@ pub(super) fn write(path: &Path, links: bool) {
         torso: "torso".into(),
         imu: [0.0; 3],
         feet: [foot("right"), foot("left")],
+        odom: [0.0; 3],
     };
-    let run = RunInfo { scene: "synthetic".into(), config_hash: 1, software: "0.1.0".into() };
+    let run =
+        RunInfo { scene: "synthetic".into(), config_hash: 1, software: "0.1.0".into(), ..RunInfo::default() };
     let mut recorder = Recorder::create(path, &robot, &run).expect("log");
-    if links {
-        let tree =
-            LINKS.iter().map(|(name, parent)| Link { name: (*name).into(), parent: *parent }).collect();
+    if with(Part::Links) {
+        let tree = LINKS
+            .iter()
+            .map(|(name, parent)| Link { name: (*name).into(), parent: *parent, fixed: false })
+            .collect();
         recorder = recorder.with_links(Box::new(Sticks(tree)));
     }
     for tick in 0..(DURATION * 1000.0) as u64 {
         let t = tick as f64 * 1e-3;
         let header = Header { tick, stamp_ns: tick * 1_000_000, epoch: 1 };
-        let (sensors, controller, state) = records(header, t);
-        recorder.write(&SENSORS, &sensors).expect("log");
+        let (sensors, mut controller, state) = records(header, t);
+        if !with(Part::Tracking) {
+            controller.tracking_error = Default::default();
+        }
+        if !with(Part::Margin) {
+            controller.zmp_margin = f64::NAN;
+        }
+        if !with(Part::Inclination) {
+            controller.inclination_error = [f64::NAN; 2];
+        }
         recorder.write(&CONTROLLER_STATE, &controller).expect("log");
-        recorder.write(&SIM_STATE, &state).expect("log");
+        if with(Part::Sensors) {
+            recorder.write(&SENSORS, &sensors).expect("log");
+        }
+        if with(Part::Truth) {
+            recorder.write(&SIM_STATE, &state).expect("log");
+        }
     }
     recorder.finish().expect("log");
 }
@@ -165,11 +196,21 @@ fn records(header: Header, t: f64) -> (Sensors, ControllerState, SimState) {
         controller.tracking_error[joint] = 0.3 * wobble(joint as f64);
         sensors.joint_angle[joint] = 20.0 * wobble(joint as f64);
     }
+    let torso = Pose {
+        position: [pace.com[0] - 0.02, pace.com[1], 1.0],
+        orientation: [0.0, 0.02, 0.0, 0.02f64.mul_add(-0.02, 1.0).sqrt()],
+    };
+    sensors.imu.orientation = torso.orientation;
+    for (foot, [x, y, z, _]) in pace.feet.into_iter().enumerate() {
+        let sole = Pose::moved([x, y, z]).seen_from(&torso).position;
+        sensors.joint_angle[SOLES + 3 * foot..][..3].copy_from_slice(&sole);
+    }
     let state = SimState {
         header,
         time: t,
-        position: [pace.com[0] - 0.02, pace.com[1], 1.0],
-        orientation: [0.0, 0.02, 0.0, 0.02f64.mul_add(-0.02, 1.0).sqrt()],
+        position: torso.position,
+        orientation: torso.orientation,
+        joint_angle: sensors.joint_angle,
         com: pace.com,
         foot_wrench: share.map(|s| Wrench { force: [0.0, 0.0, WEIGHT * s], moment: [0.0; 3] }),
         feet: pace.feet,

@@ -2,11 +2,9 @@
 //!
 //! - `tape.rs`: the log, topic by topic, in the order of writing; notices what is missing.
 //! - `parts.rs`: one process each: which record goes into which step.
-//! - `fields.rs`: names the field in which two records differ.
 //!
 //! A replay begins where the process began, with the configuration in the log. It is exact or says why it cannot be.
 
-mod fields;
 mod parts;
 mod problem;
 mod tape;

@@ -11,8 +11,8 @@ use messages::topics::{ForType, with_type};
 use messages::{CommandTaken, CycleInputs, Event, EventCode, Header, Process, Record, TOPICS, Topic};
 use recording::{End, Log, cdr, channel_name, definition};
 
-use super::fields::first_difference;
 use super::problem::Problem;
+use crate::fields::first_difference;
 
 /// Messages read ahead.
 const AHEAD: usize = 4096;

@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
 use config::Setup;
+use ipc::Run;
+use logger::Origin;
 use messages::topics::{ForType, with_type};
 use messages::{Process, Record, TOPICS, Topic};
 use realtime::black_box::{Entry, Left};
@@ -24,6 +26,7 @@ pub const TEXT: &str = "crash";
 /// Where crash records go.
 pub(super) struct Crashes {
     setup: Setup,
+    origin: Origin,
     place: PathBuf,
     console: Console,
     writing: Vec<JoinHandle<()>>,
@@ -31,24 +34,31 @@ pub(super) struct Crashes {
 
 impl Crashes {
     /// Beside the log; a run without a log leaves them among the temporary files.
-    pub(super) fn new(setup: &Setup, log: Option<&Path>, console: &Console) -> Self {
+    pub(super) fn new(setup: &Setup, run: &Run, console: &Console) -> Self {
+        let log = run.log.as_deref();
         let beside = log.and_then(Path::parent).filter(|dir| !dir.as_os_str().is_empty());
         let place = match (beside, log) {
             (Some(dir), _) => dir.into(),
             (None, Some(_)) => PathBuf::from("."),
             (None, None) => std::env::temp_dir(),
         };
-        Self { setup: setup.clone(), place, console: console.clone(), writing: Vec::new() }
+        Self {
+            setup: setup.clone(),
+            origin: Origin::of(run),
+            place,
+            console: console.clone(),
+            writing: Vec::new(),
+        }
     }
 
     /// Saves what a dead process left. `seen`: what was found out about it while it lived.
     pub(super) fn save(&mut self, memory: &File, process: Process, cause: &Cause, seen: &str) {
         let Ok(left) = Left::of(memory) else { return }; // died before it had one
         let text = report(process, cause, seen, &left, clock::now());
-        let path = self.place.join(format!("crash-{}-{}.mcap", process.name(), clock::unix_ms()));
-        let (setup, console) = (self.setup.clone(), self.console.clone());
+        let path = self.place.join(format!("crash-{}-{}.mcap", process.name(), clock::unix_ns() / 1_000_000));
+        let (setup, origin, console) = (self.setup.clone(), self.origin.clone(), self.console.clone());
         // Not here: who looks after the others has no time for it.
-        let write = move || match write(&path, &setup, &text, &left.entries) {
+        let write = move || match write(&path, (&setup, &origin), &text, &left.entries) {
             Ok(()) => console.say(format!("{}: its last seconds are in {}", process.name(), path.display())),
             Err(error) => console.say(format!("{}: its last seconds are lost: {error}", process.name())),
         };
@@ -61,8 +71,13 @@ impl Crashes {
     }
 }
 
-fn write(path: &Path, setup: &Setup, text: &str, entries: &[Entry]) -> Result<(), RecordingError> {
-    let mut recorder = logger::recorder(path, setup)?;
+fn write(
+    path: &Path,
+    (setup, origin): (&Setup, &Origin),
+    text: &str,
+    entries: &[Entry],
+) -> Result<(), RecordingError> {
+    let mut recorder = logger::recorder(path, setup, origin)?;
     recorder.attach(TEXT, text.as_bytes())?;
     for entry in entries {
         let Some(topic) = TOPICS.get(entry.kind as usize) else { continue };

@@ -4,7 +4,7 @@
 //! - `course.rs`: when the run ends and what is done before: the answer to Ctrl-C, to deaths, to standing; pure.
 //! - `pulse.rs`: who hangs; pure; told by `hearing.rs`. `backoff.rs`: when who died is started again; pure.
 //! - `crash.rs`: what a dead process leaves. `manager.rs`: what a service manager hears.
-//! - `view.rs`: what the operator sees.
+//! - `view.rs`: what the operator sees; `tally.rs`: what comes again and again.
 
 mod backoff;
 mod course;
@@ -13,6 +13,7 @@ mod hearing;
 mod manager;
 mod pulse;
 mod supervisor;
+mod tally;
 mod view;
 
 use std::error::Error;
@@ -29,6 +30,7 @@ use messages::{ControllerState, Process, SimState};
 use realtime::{Stop, clock};
 use terminal::Console;
 
+use crate::ending::Ending;
 use crate::figures::{Figures, Gatherer};
 
 pub use crash::TEXT as CRASH_TEXT;
@@ -41,7 +43,7 @@ const OPEN_FILES: u64 = 1024;
 pub struct Order {
     /// Lockstep or real time.
     pub mode: Mode,
-    /// Name of the scene.
+    /// Name of the scene, or path of its file.
     pub scene: String,
     /// How it is simulated, if it leaves that open: [`crate::choose`].
     pub method: Option<Method>,
@@ -91,8 +93,12 @@ impl std::fmt::Display for Cause {
 pub struct Outcome {
     /// Processes that died or hung before their time, also those that were started again.
     pub lost: Vec<(Process, Cause)>,
-    /// Whether somebody asked for the end.
+    /// Whether a signal asked for the end.
     pub interrupted: bool,
+    /// Longest delay of the joint loop \[ms\], if the supply was cut or the robot was stopped because this machine was late.
+    pub late_ms: Option<f64>,
+    /// How the walk ended.
+    pub ending: Ending,
     /// Records missing from the log.
     pub missing: u64,
     /// Whether the logger says that the log is not complete, because its disk failed.
@@ -119,7 +125,9 @@ pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<
     let config = space.dir().join(ipc::CONFIG);
     let _ = std::fs::remove_dir_all(&config); // of a run that was killed
     config::snapshot(&order.config, &config)?;
-    let setup = Setup::load(&config, &order.scene)?.with_method(order.method)?;
+    config::scenes::add(&order.scene, &config)?;
+    let scene = theirs.scene.name;
+    let setup = Setup::load(&config, &scene)?.with_method(order.method)?;
     if setup.hash != theirs.hash {
         return Err(format!(
             "{}: changed while the run was starting; start it again",
@@ -131,12 +139,14 @@ pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<
     let run = Run {
         dir: space.dir().into(),
         mode: order.mode,
-        scene: order.scene.clone(),
+        scene,
         method: order.method.map(|method| method.to_string()),
         config,
         bus: order.bus.to_string(),
         robot: order.robot,
         log: order.log.clone(),
+        commit: crate::COMMIT.into(),
+        started: (order.mode == Mode::RealTime).then(|| [clock::unix_ns(), clock::now()]),
     };
     run.save()?;
     let outcome = supervisor::supervise(run, space, &setup, order.rt_required, stop, console)?;

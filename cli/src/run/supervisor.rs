@@ -54,7 +54,7 @@ pub(super) fn supervise(
         children: Vec::new(),
         restarts: [(Process::Broker, Backoff::default()), (Process::Logger, Backoff::default())],
         pulse: Pulse::default(),
-        crashes: Crashes::new(setup, run.log.as_deref(), console),
+        crashes: Crashes::new(setup, &run, console),
         memories: Vec::new(),
         manager: Manager::new(),
         outcome: Outcome::default(),
@@ -67,11 +67,18 @@ pub(super) fn supervise(
         stop,
     };
     let result = supervisor.start(setup).and_then(|()| supervisor.watch(&mut view));
+    view.update();
+    supervisor.outcome.ending = view.ending.clone();
     // Whatever became of it: nobody is left alive, and what was said last is heard.
     supervisor.manager.stopping();
+    view.update();
+    view.end();
     supervisor.end();
     view.update();
+    view.sum_up();
     supervisor.outcome.missing = view.missing();
+    // In simulated time nobody is late.
+    supervisor.outcome.late_ms = view.late_ms().filter(|_| supervisor.run.mode == Mode::RealTime);
     result.map(|()| std::mem::take(&mut supervisor.outcome))
 }
 
@@ -210,14 +217,17 @@ impl Supervisor {
                 self.space.clear_dead();
                 cleared = now;
             }
-            seen.asked = self.stop.taken() || operator.received().any(|c| c == Command::End);
+            let signal = self.stop.taken();
+            self.outcome.interrupted |= signal;
+            seen.asked = signal || operator.received().any(|c| c == Command::End);
+            seen.finished |= self.outcome.lost.is_empty() && view.lies();
             seen.passed = witness.as_ref().is_some_and(|witness| witness.statistics().connected);
             seen.stands = view.standing();
             match self.course.step(now, seen) {
                 Act::GoOn => {}
                 Act::Stand => {
                     self.manager.stopping();
-                    self.outcome.interrupted = true;
+                    view.ending.asked = true;
                     self.console.say(
                         "asked to end: the robot stops and stands first; once more: emergency stop, and the end at once",
                     );
@@ -232,9 +242,13 @@ impl Supervisor {
                     for line in crate::estop::report(&crate::estop::stop_own(&self.run.dir)) {
                         self.console.say(line);
                     }
+                    view.ending.unfinished = true;
                     return Ok(());
                 }
-                Act::Finish => return Ok(()),
+                Act::Finish => {
+                    view.ending.unfinished |= view.ending.asked && !view.standing();
+                    return Ok(());
+                }
             }
         }
     }

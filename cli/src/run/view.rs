@@ -3,11 +3,17 @@
 use std::error::Error;
 
 use config::Setup;
-use drives::cia402::Fault;
 use ipc::{Reader, Space};
-use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE, Topic};
-use messages::{ControllerState, Event, EventCode, GaitState, Process, Sensors, SimState, StartUp};
+use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE, STATS_LOWLEVEL, TOPICS, Topic};
+use messages::{
+    CommandTaken, ControllerState, CycleStats, Event, EventCode, GaitState, Process, Record, Sensors,
+    SimState, StartUp, Words,
+};
 use terminal::Console;
+
+use super::tally::Tally;
+use crate::ending::Ending;
+use crate::sim::AFTER_FALL;
 
 /// What the operator sees.
 pub(super) struct View {
@@ -15,11 +21,22 @@ pub(super) struct View {
     sim: Reader<SimState>,
     sensors: Reader<Sensors>,
     events: Vec<(Process, Reader<Event>)>,
-    joints: Vec<String>,
+    stats: Reader<CycleStats>,
+    words: Words,
+    tally: Tally,
+    /// The run comes to its end.
+    ends: bool,
+    /// The supply was cut, or the robot was stopped, because processes came too late.
+    late: bool,
     start_up: StartUp,
     console: Console,
     gait: GaitState,
     missing: u64,
+    taken: Vec<Reader<CommandTaken>>,
+    /// \[s\] Bus cycle.
+    cycle: f64,
+    /// How the walk ends.
+    pub(super) ending: Ending,
 }
 
 impl View {
@@ -34,10 +51,21 @@ impl View {
             sim: space.reader(&SIM_STATE)?,
             sensors: space.reader(&SENSORS)?,
             events: Process::ALL.into_iter().map(events).collect::<Result<_, _>>()?,
-            joints: setup.robot.joints.iter().map(|joint| joint.name.clone()).collect(),
+            stats: space.reader(&STATS_LOWLEVEL)?,
+            words: crate::topic::words(setup),
+            tally: Tally::default(),
+            ends: false,
+            late: false,
             start_up: StartUp::Off,
             gait: GaitState::Idle,
             missing: 0,
+            taken: TOPICS
+                .iter()
+                .filter(|t| t.type_name == CommandTaken::NAME)
+                .map(|t| space.reader(t))
+                .collect::<Result<_, _>>()?,
+            cycle: setup.scene.cycle,
+            ending: Ending::default(),
             console,
         })
     }
@@ -49,14 +77,13 @@ impl View {
 
     /// Whether the robot stands, or nobody can tell.
     pub(super) fn standing(&mut self) -> bool {
-        self.state
-            .latest()
-            .is_none_or(|s| matches!(GaitState::from(s.gait), GaitState::Standing | GaitState::Idle))
+        self.state.latest().is_none_or(|s| GaitState::from(s.gait).rests())
     }
 
     /// One look.
     pub(super) fn update(&mut self) {
         self.tell_events();
+        self.judge();
         self.tell_start_up();
         let Some(sim) = self.sim.latest() else { return };
         let (t, [x, y, _]) = (sim.time, sim.position);
@@ -73,48 +100,87 @@ impl View {
         }
     }
 
+    /// Whether the robot still does what it is told to.
+    fn judge(&mut self) {
+        for taken in &mut self.taken {
+            while let Some(taken) = taken.follow() {
+                self.ending.refused += u64::from(taken.origin == 0 && taken.refused != 0);
+            }
+        }
+        let (Some(sensors), Some(state)) = (self.sensors.latest(), self.state.latest()) else { return };
+        let fallen = self.sim.latest().is_some_and(|sim| sim.fallen == 1);
+        let gait = if fallen { GaitState::Fallen } else { state.gait.into() };
+        self.ending.see(sensors.header.tick as f64 * self.cycle, sensors.power == 1, gait);
+    }
+
+    /// Whether the simulated robot has fallen, so long ago that it lies still.
+    pub(super) fn lies(&mut self) -> bool {
+        let fell = self.ending.fell();
+        self.sim.latest().is_some_and(|sim| fell.is_some_and(|fell| sim.time > fell + AFTER_FALL))
+    }
+
     /// Where the start-up is, and what the operator does next.
     fn tell_start_up(&mut self) {
         let Some(sensors) = self.sensors.latest() else { return };
         let (now, tick) = (StartUp::from_number(sensors.start_up), sensors.header.tick);
         if self.start_up != now {
             self.start_up = now;
-            self.console.say(format!("tick {tick:6}  {}", now.advice()));
+            if !self.ends {
+                let time = tick as f64 * self.cycle;
+                self.console.say(format!("{time:7.3} s  {}", now.advice()));
+            }
         }
     }
 
     /// Everything that is no routine.
     fn tell_events(&mut self) {
-        let mut lines = Vec::new();
         for (process, events) in &mut self.events {
             while let Some(e) = events.follow() {
                 let code = EventCode::from_number(e.code).unwrap_or(EventCode::None);
+                self.ending.tell(e.header.tick as f64 * self.cycle, code, e.detail);
                 if code == EventCode::LogDropped {
                     self.missing += e.detail;
                 }
-                if !matches!(code, EventCode::Started | EventCode::Ended | EventCode::PlanActive) {
-                    let detail = match code {
-                        EventCode::PowerOff | EventCode::SafeStop => {
-                            format!("{:?}", EventCode::from_number(e.detail).unwrap_or(EventCode::None))
-                        }
-                        EventCode::DriveTripped | EventCode::DriveHeld => {
-                            let (joint, error) =
-                                (self.joints.get((e.detail & 0xFFFF) as usize), e.detail >> 16);
-                            let text = Fault::from_code(error as u16).map_or("", Fault::text);
-                            format!("{}: error {error:#06x} {text}", joint.map_or("?", String::as_str))
-                        }
-                        EventCode::EmergencyStop => {
-                            format!("asked for by pid {} of user {}", e.detail as u32, e.detail >> 32)
-                        }
-                        EventCode::NotHomed | EventCode::DriveNotEnabled => {
-                            self.joints.get(e.detail as usize).cloned().unwrap_or_default()
-                        }
-                        _ => e.detail.to_string(),
-                    };
-                    lines.push(format!("tick {:6}  {}: {code:?} ({detail})", e.header.tick, process.name()));
+                if matches!(code, EventCode::Started | EventCode::Ended | EventCode::PlanActive) {
+                    continue;
+                }
+                if self.ends && *process == Process::Watchdog && code == EventCode::PowerOff {
+                    continue; // the joint loop ended first, as it should
+                }
+                self.late |= is_of_lateness(code, e.detail);
+                let sentence = self.words.sentence(e.code, e.detail);
+                if let Some(text) = self.tally.tell(*process, &sentence) {
+                    let time = e.header.tick as f64 * self.cycle;
+                    self.console.say(format!("{time:7.3} s  {}: {text}", process.name()));
                 }
             }
         }
-        lines.into_iter().for_each(|line| self.console.say(line));
+    }
+
+    /// The end of a run: from now on it is normal that the supply goes off.
+    pub(super) fn end(&mut self) {
+        self.ends = true;
+    }
+
+    /// What was told once and came more often.
+    pub(super) fn sum_up(&mut self) {
+        self.tally.summary().for_each(|line| self.console.say(line));
+    }
+
+    /// Longest delay of the joint loop \[ms\], if the supply was cut or the robot was stopped because this machine was late.
+    pub(super) fn late_ms(&mut self) -> Option<f64> {
+        let most = self.stats.latest().map_or(0, |s| s.lateness_ns[3].max(s.execution_ns[3]));
+        self.late.then_some(most as f64 * 1e-6)
+    }
+}
+
+/// Whether a supply that was cut, or a stop, has its cause in processes that came too late.
+fn is_of_lateness(code: EventCode, detail: u64) -> bool {
+    use EventCode::{PowerOff, ResetMissed, SafeStop, TargetsStale, TooManyOverruns, WatchdogSilent};
+    let cause = EventCode::from_number(detail).unwrap_or(EventCode::None);
+    match code {
+        PowerOff | SafeStop => matches!(cause, ResetMissed | TooManyOverruns | TargetsStale | WatchdogSilent),
+        WatchdogSilent => true,
+        _ => false,
     }
 }

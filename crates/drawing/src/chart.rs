@@ -2,6 +2,7 @@
 
 use crate::canvas::{Anchor, Canvas, Letters, Pen, Pixel};
 use crate::color::{BLACK, Color, GREY, LIGHT};
+use crate::peaks;
 use crate::text::{self, Weight};
 use crate::ticks::{powers, ticks};
 
@@ -36,6 +37,7 @@ pub struct Chart {
     logarithmic: bool,
     height: f32,
     least_height: f64,
+    robust: bool,
 }
 
 const LEFT: f32 = 120.0;
@@ -44,7 +46,7 @@ const TOP: f32 = 62.0;
 const BOTTOM: f32 = 78.0;
 
 const LABEL: Letters = Letters { color: BLACK, size: 21.0, weight: Weight::Regular };
-const TICK: Letters = Letters { color: GREY, size: 19.0, weight: Weight::Regular };
+pub(crate) const TICK: Letters = Letters { color: GREY, size: 19.0, weight: Weight::Regular };
 const TITLE: Letters = Letters { color: BLACK, size: 22.0, weight: Weight::Bold };
 
 impl Chart {
@@ -59,6 +61,7 @@ impl Chart {
             logarithmic: false,
             height: 300.0,
             least_height: 0.0,
+            robust: false,
         }
     }
 
@@ -72,6 +75,23 @@ impl Chart {
     pub fn at_least(mut self, y_units: f64) -> Self {
         self.least_height = y_units;
         self
+    }
+
+    /// The y axis shows what the lines do all but a hundredth of their time, and half as much again; peaks beyond are cut
+    /// off, marked at the edge, and their values written there.
+    pub fn robust(mut self) -> Self {
+        self.robust = true;
+        self
+    }
+
+    /// Its title, and whether nothing would be seen but the axes.
+    pub(crate) fn emptiness(&self) -> (&str, bool) {
+        let seen = |points: &[Point]| points.iter().any(|p| p[0].is_finite() && p[1].is_finite());
+        let empty = !self.marks.iter().any(|mark| match mark {
+            Mark::Line { points, .. } | Mark::Dots { points, .. } | Mark::Area { outline: points, .. } => seen(points),
+            Mark::Note { .. } | Mark::Label { .. } => false,
+        });
+        (&self.title, empty)
     }
 
     /// Both axes in the same scale, for maps; the height follows from the data.
@@ -174,11 +194,21 @@ impl Chart {
             return range.map(|[lo, hi]| if lo <= hi { [lo - 0.25, hi + 0.25] } else { [0.0, 1.0] });
         }
         let [x, y] = range.map(|[lo, hi]| if lo <= hi { [lo, hi] } else { [0.0, 1.0] });
+        let y = if self.robust { peaks::cut(y, self.line_values(), self.least_height) } else { y };
         let x = if x[0] == x[1] { [x[0] - 0.5, x[1] + 0.5] } else { x };
         let least = self.least_height.max(1e-9 * y[0].abs().max(y[1].abs())).max(1e-12);
         let (middle, half) = ((y[0] + y[1]) / 2.0, ((y[1] - y[0]) / 2.0).max(least / 2.0) * 1.08);
         let room = if self.equal { 0.02 * (x[1] - x[0]) } else { 0.0 };
         [[x[0] - room, x[1] + room], [middle - half - room, middle + half + room]]
+    }
+
+    /// All y of lines.
+    fn line_values(&self) -> Vec<f64> {
+        let lines = self.marks.iter().filter_map(|mark| match mark {
+            Mark::Line { points, .. } => Some(points),
+            _ => None,
+        });
+        lines.flatten().map(|p| p[1]).filter(|y| y.is_finite()).collect()
     }
 
     /// Height of the whole chart on a figure of that width, both in pixels.
@@ -204,6 +234,13 @@ impl Chart {
             self.draw_mark(canvas, &view, mark);
         }
         canvas.clip(None);
+        if self.robust {
+            let lines = self.marks.iter().filter_map(|mark| match mark {
+                Mark::Line { points, pen } => Some((points.as_slice(), pen.color)),
+                _ => None,
+            });
+            peaks::draw(canvas, &view, lines);
+        }
         self.draw_frame(canvas, &view);
         self.draw_legend(canvas, &view);
     }
@@ -297,13 +334,13 @@ impl Chart {
 }
 
 /// Units to pixels.
-struct View {
-    ranges: [[f64; 2]; 2],
-    pixels: [Pixel; 2],
+pub(crate) struct View {
+    pub(crate) ranges: [[f64; 2]; 2],
+    pub(crate) pixels: [Pixel; 2],
 }
 
 impl View {
-    fn place(&self, p: Point) -> Pixel {
+    pub(crate) fn place(&self, p: Point) -> Pixel {
         let share = |k: usize| ((p[k] - self.ranges[k][0]) / (self.ranges[k][1] - self.ranges[k][0])) as f32;
         let [[left, top], [right, bottom]] = self.pixels;
         [left + share(0) * (right - left), bottom + share(1) * (top - bottom)]

@@ -29,6 +29,11 @@ impl Figure {
         self
     }
 
+    /// Title of the first chart in which nothing would be seen.
+    pub fn empty_chart(&self) -> Option<&str> {
+        self.charts.iter().map(Chart::emptiness).find(|(_, empty)| *empty).map(|(title, _)| title)
+    }
+
     /// Draws everything into a PNG file.
     pub fn save(&self, path: &Path) -> Result<(), String> {
         let heights: Vec<f32> = self.charts.iter().map(|c| c.full_height(WIDTH)).collect();

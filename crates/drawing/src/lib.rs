@@ -3,11 +3,14 @@
 mod canvas;
 mod chart;
 pub mod color;
+mod difference;
 mod figure;
+mod peaks;
 mod text;
 mod ticks;
 
 pub use canvas::Pen;
 pub use chart::{Chart, Point};
 pub use color::Color;
+pub use difference::difference;
 pub use figure::Figure;

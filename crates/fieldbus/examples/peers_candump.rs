@@ -1,8 +1,9 @@
 //! Writes `ours.log`, one frame of every form, and `ours.txt`, what stands in it, into a directory; with a second
 //! argument reads that candump log instead and prints what stands in it. Used by `tests/peers/candump.sh`.
 
-use fieldbus::candump::{self, Strictness};
+use fieldbus::candump;
 use fieldbus::capture::{Capture, Captured, ERROR, EXTENDED, FD_LENGTHS, Form, REMOTE};
+use fieldbus::text_log::{self, Strictness};
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
@@ -16,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             candump::write(std::fs::File::create(directory.join("ours.log"))?, &capture)?;
             std::fs::write(directory.join("ours.txt"), listed(&capture))?;
         }
-        [_, log] => print!("{}", listed(&candump::read(Path::new(log), Strictness::Strict)?.0)),
+        [_, log] => print!("{}", listed(&text_log::read(Path::new(log), Strictness::Strict)?.0)),
         _ => return Err("usage: peers_candump DIRECTORY [LOG]".into()),
     }
     Ok(())

@@ -1,5 +1,6 @@
 //! Recorded traffic: what was on which line, and when.
 
+use crate::clock_steps::{ClockStep, ClockSteps};
 use messages::Frame;
 
 /// Bit of an identifier: 29 bits long (CAN_EFF_FLAG of SocketCAN).
@@ -96,8 +97,10 @@ impl Captured {
 pub struct Capture {
     /// Names of the interfaces; [`Captured::line`] counts them.
     pub lines: Vec<String>,
-    /// In the order of time.
+    /// In the order of time, but for [`Capture::steps`].
     pub frames: Vec<Captured>,
+    /// Where the clock was put back meanwhile.
+    pub steps: Vec<ClockStep>,
 }
 
 impl Capture {
@@ -111,16 +114,32 @@ impl Capture {
     }
 
     /// Puts the frames in the order of time; frames of one instant stay as they are. A recorder of several interfaces
-    /// reads one after the other, so what it writes is in order within each interface only.
+    /// reads one after the other, so what it writes is in order within each interface only. Where the time of an interface
+    /// goes back, its clock was: there the order of the file counts, and [`Capture::steps`] says where.
     pub fn sort(&mut self) {
-        self.frames.sort_by_key(|frame| frame.time_ns);
+        let mut clock = ClockSteps::default();
+        let mut keyed: Vec<(usize, Captured)> =
+            self.frames.drain(..).map(|frame| (clock.stretch(frame.line, frame.time_ns), frame)).collect();
+        keyed.sort_by_key(|(stretch, frame)| (*stretch, frame.time_ns));
+        let step = |at: usize| ClockStep {
+            at,
+            back_ns: keyed[at - 1].1.time_ns.saturating_sub(keyed[at].1.time_ns),
+        };
+        self.steps = (1..keyed.len()).filter(|&i| keyed[i].0 != keyed[i - 1].0).map(step).collect();
+        self.frames.extend(keyed.into_iter().map(|(_, frame)| frame));
     }
 
-    /// \[s\] From the first frame to the last.
-    pub fn seconds(&self) -> f64 {
-        match (self.frames.first(), self.frames.last()) {
-            (Some(first), Some(last)) => last.time_ns.saturating_sub(first.time_ns) as f64 * 1e-9,
-            _ => 0.0,
-        }
+    /// \[ns\] Time of each frame since the first one. Across a step of the clock no time is known to have passed, and none
+    /// is counted.
+    pub fn elapsed(&self) -> impl Iterator<Item = u64> {
+        let mut steps = self.steps.iter().map(|step| step.at).peekable();
+        let (mut before, mut elapsed) = (self.frames.first().map_or(0, |first| first.time_ns), 0);
+        self.frames.iter().enumerate().map(move |(i, frame)| {
+            if steps.next_if_eq(&i).is_none() {
+                elapsed += frame.time_ns.saturating_sub(before);
+            }
+            before = frame.time_ns;
+            elapsed
+        })
     }
 }

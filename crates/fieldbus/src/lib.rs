@@ -2,17 +2,21 @@
 //!
 //! Layouts of frames are data: `config/robots/NAME/can/*.dbc`, read by `config`, used by [`messages::frames`].
 //!
-//! - [`capture`]: recorded traffic. [`candump`]: the files of can-utils. [`bits`]: how long a frame occupies its line.
-//! - [`address`]: which bus a run uses. [`lines`]: one end of all lines of a robot. [`load`]: how full they are.
+//! - [`capture`]: recorded traffic; [`clock_steps`]: where its clock was put back. [`text_log`]: files of it, as [`candump`],
+//!   [`asc`] or [`trc`]. [`bits`]: how long a frame occupies its line.
+//! - [`address`]: which bus a run uses. [`lines`]: one end of all lines of a robot. [`load`]: how full they are;
+//!   [`load_course`]: over the time of a recording.
 //! - [`owners`], [`cycles`]: recorded frames by local controller and bus cycle. [`statistics`]: how often, how regular.
 //! - [`interface`]: interfaces by name, and what is wrong with them. [`tap`]: listening and playing, for tools.
 //! - [`injector`]: faults between the two ends; with [`error_counters`] and [`error_frame`], as CAN has them.
 
 pub mod address;
+pub mod asc;
 pub mod bits;
 pub mod candump;
 pub mod candump_line;
 pub mod capture;
+pub mod clock_steps;
 pub mod cycles;
 pub mod error_counters;
 pub mod error_frame;
@@ -20,9 +24,12 @@ pub mod injector;
 pub mod interface;
 pub mod lines;
 pub mod load;
+pub mod load_course;
 pub mod owners;
 pub mod statistics;
 pub mod tap;
+pub mod text_log;
+pub mod trc;
 
 pub use address::Address;
 pub use capture::{Capture, Captured, Form, Way};

@@ -6,6 +6,11 @@
 
 use messages::layout::{Layout, Message};
 
+/// \[bit/s\] Of arbitration, and of all of classic CAN, on the lines of these robots.
+pub const BIT_RATE: f64 = 1e6;
+/// \[bit/s\] Of the data of CAN FD there.
+pub const DATA_BIT_RATE: f64 = 5e6;
+
 /// Bit rates \[bit/s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rates {

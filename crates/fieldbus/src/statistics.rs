@@ -20,39 +20,39 @@ pub struct Row {
     pub count: u64,
     /// Payload \[B\].
     pub bytes: u64,
-    /// \[s\] From the first frame to the last.
+    /// Times between two frames that are known: not those across a step of the clock.
+    pub periods: u64,
+    /// \[s\] Sum of these.
     pub span: f64,
-    /// \[s\] Shortest time between two frames; 0 as long as there is but one.
+    /// \[s\] Shortest of them; 0 as long as there is none.
     pub shortest: f64,
-    /// \[s\] Longest time between two frames.
+    /// \[s\] Longest of them.
     pub longest: f64,
     /// Frames that are missing by their counters.
     pub missing: u64,
     /// Frames with the counter of the one before.
     pub repeated: u64,
-    first_ns: u64,
-    last_ns: u64,
+    /// Of the frame before; none across a step of the clock.
+    last_ns: Option<u64>,
     counter: Option<u64>,
 }
 
 impl Row {
-    /// \[s\] Mean time between two frames; 0 as long as there is but one.
+    /// \[s\] Mean time between two frames; 0 as long as none is known.
     pub fn mean(&self) -> f64 {
-        if self.count > 1 { self.span / (self.count - 1) as f64 } else { 0.0 }
+        if self.periods > 0 { self.span / self.periods as f64 } else { 0.0 }
     }
 
     fn add(&mut self, frame: &Captured, counter: Option<(u64, u32)>) {
-        if self.count == 0 {
-            self.first_ns = frame.time_ns;
-        } else {
-            let gap = frame.time_ns.saturating_sub(self.last_ns) as f64 * 1e-9;
-            self.shortest = if self.count == 1 { gap } else { self.shortest.min(gap) };
-            self.longest = self.longest.max(gap);
+        if let Some(last_ns) = self.last_ns.replace(frame.time_ns) {
+            let period = frame.time_ns.saturating_sub(last_ns) as f64 * 1e-9;
+            self.shortest = if self.periods == 0 { period } else { self.shortest.min(period) };
+            self.longest = self.longest.max(period);
+            self.span += period;
+            self.periods += 1;
         }
         self.count += 1;
         self.bytes += frame.payload().len() as u64;
-        self.last_ns = frame.time_ns;
-        self.span = self.last_ns.saturating_sub(self.first_ns) as f64 * 1e-9;
         if let Some((counter, bits)) = counter {
             let mask = (1 << bits) - 1;
             match self.counter.map(|last| counter.wrapping_sub(last) & mask) {
@@ -84,20 +84,22 @@ pub struct Statistics {
     rates: BitRates,
     rows: BTreeMap<(u32, u32), Row>,
     lines: BTreeMap<u32, LineTotal>,
-    first_ns: Option<u64>,
-    last_ns: u64,
+    /// \[ns\] Time before the last step of the clock.
+    before_ns: u64,
+    /// First and newest time \[ns\] behind it.
+    since: Option<(u64, u64)>,
 }
 
 impl Statistics {
     /// Nothing yet.
     pub fn new(rates: BitRates) -> Self {
-        Self { rates, rows: BTreeMap::new(), lines: BTreeMap::new(), first_ns: None, last_ns: 0 }
+        Self { rates, rows: BTreeMap::new(), lines: BTreeMap::new(), before_ns: 0, since: None }
     }
 
     /// One more frame, with the counter in it and the counter's bits if a layout knows them.
     pub fn add(&mut self, frame: &Captured, counter: Option<(u64, u32)>) {
-        self.first_ns.get_or_insert(frame.time_ns);
-        self.last_ns = self.last_ns.max(frame.time_ns);
+        let (_, newest) = self.since.get_or_insert((frame.time_ns, frame.time_ns));
+        *newest = frame.time_ns.max(*newest);
         let total = self.lines.entry(frame.line).or_default();
         if frame.is_error() {
             total.errors += 1;
@@ -109,9 +111,21 @@ impl Statistics {
         self.rows.entry((frame.line, frame.id)).or_default().add(frame, counter);
     }
 
-    /// \[s\] From the first frame to the last.
+    /// The clock was put back before the next frame: how much time passed is not known, and none is counted.
+    pub fn clock_was_put_back(&mut self) {
+        self.before_ns = self.elapsed_ns();
+        self.since = None;
+        self.rows.values_mut().for_each(|row| row.last_ns = None);
+    }
+
+    /// \[ns\] From the first frame to the newest, as far as it is known.
+    pub fn elapsed_ns(&self) -> u64 {
+        self.before_ns.saturating_add(self.since.map_or(0, |(first, newest)| newest - first))
+    }
+
+    /// \[s\] The same.
     pub fn seconds(&self) -> f64 {
-        self.first_ns.map_or(0.0, |first| self.last_ns.saturating_sub(first) as f64 * 1e-9)
+        self.elapsed_ns() as f64 * 1e-9
     }
 
     /// (line, identifier) and its frames, in this order.

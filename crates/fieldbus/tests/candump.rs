@@ -1,7 +1,9 @@
 //! Files of can-utils: what is written is read back the same, and what is broken is named.
 
-use fieldbus::candump::{self, CandumpError, Strictness};
+use fieldbus::candump;
 use fieldbus::capture::{ERROR, EXTENDED, FD_LENGTHS, REMOTE};
+use fieldbus::statistics::{BitRates, Statistics};
+use fieldbus::text_log::{self, Strictness, TextLogError};
 use fieldbus::{Capture, Captured, Form, Way, candump_line};
 use proptest::prelude::*;
 use std::path::PathBuf;
@@ -123,26 +125,83 @@ fn a_file_with_broken_lines_is_refused_and_all_of_them_counted() {
     bytes.extend([b'x'; 100_000]);
     bytes.extend(b"\n(0000000003.000000) can0 123#00"); // no line end: whole all the same
     let path = file(&bytes);
-    let refused = candump::read(&path, Strictness::Strict).unwrap_err();
+    let refused = text_log::read(&path, Strictness::Strict).unwrap_err();
     let said = refused.to_string();
-    let CandumpError::Broken(broken) = refused else { panic!("{said}") };
+    let TextLogError::Broken(broken) = refused else { panic!("{said}") };
     let lines = BROKEN.len() + 5;
-    // All of BROKEN, the time that goes back on can0 (but not can1), what is not text, what never ends.
-    assert_eq!((broken.count, broken.of, broken.first.len()), (BROKEN.len() + 3, lines + 1, 10));
+    // All of BROKEN, what is not text, what never ends; not the time that goes back on can0.
+    assert_eq!((broken.count, broken.of, broken.first.len()), (BROKEN.len() + 2, lines + 1, 10));
     assert!(said.contains("line 2: `garbage` is not a time"), "{said}");
     assert!(said.contains(&format!("and {} more", broken.count - 10)), "{said}");
-    let (capture, left_out) = candump::read(&path, Strictness::Lenient).unwrap();
-    assert_eq!((capture.frames.len(), left_out.count), (3, broken.count));
-    assert_eq!(capture.frames[0].line, 1, "can1 was earlier");
+    let (capture, left_out) = text_log::read(&path, Strictness::Lenient).unwrap();
+    assert_eq!((capture.frames.len(), left_out.count), (4, broken.count));
+    assert_eq!(capture.frames[2].line, 1, "the clock was put back, on can1, too");
     std::fs::remove_file(path).unwrap();
+}
+
+/// Every frame behind a step was thrown away until the clock had caught up: 5538 of 222,867.
+#[test]
+fn a_clock_that_was_put_back_costs_no_frame_and_is_told() {
+    // Frame k at k ms; after frames 40 and 60 the clock is put back by half a second.
+    let time = |k: u64| 10_000 + k - [40, 60].iter().filter(|step| k >= **step).count() as u64 * 500;
+    let line = |k: u64| format!("({:010}.{:03}000) can{} {k:03}#\n", time(k) / 1000, time(k) % 1000, k % 2);
+    let path = file((0..100).map(line).collect::<String>().as_bytes());
+    let (capture, broken) = text_log::read(&path, Strictness::Strict).unwrap();
+    std::fs::remove_file(path).unwrap();
+    assert_eq!((capture.frames.len(), broken.count), (100, 0));
+    let order: Vec<u32> = capture.frames.iter().map(|f| f.id).collect();
+    let written: Vec<u32> = (0..100).map(|k| k / 10 * 16 + k % 10).collect();
+    assert_eq!(order, written, "the order is that of the file");
+    assert_eq!(capture.steps.iter().map(|s| (s.at, s.back_ns)).collect::<Vec<_>>(), [(40, 499_000_000), (60, 499_000_000)]);
+    assert_eq!(capture.elapsed().last(), Some(97_000_000), "of two times nothing is known");
+    let mut statistics = Statistics::new(BitRates { nominal: 1e6, data: 5e6 });
+    for (i, frame) in capture.frames.iter().enumerate() {
+        if capture.steps.iter().any(|step| step.at == i) {
+            statistics.clock_was_put_back();
+        }
+        statistics.add(&Captured { id: 7, ..*frame }, None);
+    }
+    let rows: Vec<_> = statistics.rows().map(|(_, _, row)| (row.count, row.periods, row.longest)).collect();
+    // Each interface: 50 frames, 2 ms from one to the next but where the clock was put back.
+    assert!(rows.iter().all(|r| (r.0, r.1) == (50, 47) && (r.2 - 2e-3).abs() < 1e-12), "{rows:?}");
+    assert!((statistics.seconds() - 0.097).abs() < 1e-12);
+}
+
+/// Each line is a step: none is lost, and it takes no longer.
+#[test]
+fn a_clock_that_drifts_back_costs_no_frame() {
+    let lines = |k: u64| format!("({:010}.000000) can0 123#\n({:010}.500000) can1 123#\n", 30_000 - k, 30_000 - k);
+    let text: String = (0..20_000).map(lines).collect();
+    let (mut capture, broken) = candump::parse(text.as_bytes()).unwrap();
+    capture.sort();
+    assert_eq!((capture.frames.len(), broken.count, capture.steps.len()), (40_000, 0, 19_999));
+}
+
+/// The formats are told apart by what stands in the file; a binary one is named with the command that makes text of it.
+#[test]
+fn logs_of_other_tools_are_read_and_a_binary_one_is_named() {
+    for text in [
+        "date Sat Sep 30 15:06:13.191 2017\nbase hex  timestamps absolute\n 0.5 1  123  Rx   d 1 AB\n",
+        ";$FILEVERSION=1.1\n 1) 500.0 Rx 0123 1 AB\n",
+        "(0000000000.500000) can0 123#AB R\n",
+    ] {
+        let path = file(text.as_bytes());
+        let (capture, _) = text_log::read(&path, Strictness::Strict).unwrap();
+        std::fs::remove_file(path).unwrap();
+        assert_eq!(written(&capture), "(0000000000.500000) can0 123#AB R\n", "{text}");
+    }
+    let path = file(b"LOGG\x90\0\0\0");
+    let said = text_log::read(&path, Strictness::Lenient).unwrap_err().to_string();
+    std::fs::remove_file(path).unwrap();
+    assert!(said.contains("BLF") && said.contains("python3 -m can.logconvert"), "{said}");
 }
 
 #[test]
 fn an_empty_file_and_a_missing_one_are_told_apart() {
     let path = file(b"");
-    assert!(matches!(candump::read(&path, Strictness::Strict), Err(CandumpError::Empty(_))));
+    assert!(matches!(text_log::read(&path, Strictness::Strict), Err(TextLogError::Empty(_))));
     std::fs::remove_file(&path).unwrap();
-    assert!(matches!(candump::read(&path, Strictness::Strict), Err(CandumpError::Read(..))));
+    assert!(matches!(text_log::read(&path, Strictness::Strict), Err(TextLogError::Read(..))));
 }
 
 fn captured() -> impl Strategy<Value = Captured> {

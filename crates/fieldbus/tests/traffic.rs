@@ -120,7 +120,7 @@ fn ticks_are_told_from_their_low_bits() {
 
 #[test]
 fn gaps_periods_and_load_are_counted() {
-    let rates = BitRates { nominal: 1e6, data: 4e6 };
+    let rates = BitRates { nominal: 1e6, data: 5e6 };
     let mut statistics = Statistics::new(rates);
     let text = "\
 (0000000000.000000) can0 123#00AA

@@ -30,7 +30,7 @@ pub use error::IpcError;
 pub use queue::{Doorbell, MAX_MESSAGE, QueueReceiver, QueueSender, QueueWaiter};
 pub use reader::Reader;
 pub use run::{Mode, Run};
-pub use run_dir::{CONFIG, default_dir};
+pub use run_dir::{CONFIG, default_dir, wrong_dir};
 pub use space::Space;
 pub use stop_line::{Asker, Datagram, StopAnswer, StopButton, StopLine, StopName};
 pub use writer::Writer;

@@ -9,6 +9,8 @@
 //! config = /home/me/gangwerk/config
 //! bus = can:vcan0,vcan1      # or shm, canfd:..., sercos:...
 //! robot = simulated          # or elsewhere
+//! commit = 5c1f...           # of the software; empty: unknown
+//! started = 1763812800123456789 4711000000 # [ns] since 1970, and CLOCK_MONOTONIC at that instant; empty: simulated time
 //! log = /home/me/walk.mcap   # empty: no log
 //! ```
 
@@ -49,6 +51,10 @@ pub struct Run {
     pub robot: bool,
     /// Where the log goes; none: nowhere.
     pub log: Option<PathBuf>,
+    /// Git commit of the software; empty: unknown.
+    pub commit: String,
+    /// \[ns\] Wall time since 1970 and CLOCK_MONOTONIC, once, at the start; none in simulated time.
+    pub started: Option<[u64; 2]>,
 }
 
 impl Run {
@@ -63,6 +69,8 @@ impl Run {
             bus: "shm".into(),
             robot: true,
             log: None,
+            commit: String::new(),
+            started: None,
         }
     }
 
@@ -73,13 +81,16 @@ impl Run {
             Mode::RealTime => "real-time",
         };
         let log = self.log.as_deref().unwrap_or(Path::new(""));
+        let started = self.started.map_or(String::new(), |[unix, monotonic]| format!("{unix} {monotonic}"));
         format!(
-            "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nbus = {}\nrobot = {}\nlog = {}\n",
+            "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nbus = {}\nrobot = {}\ncommit = {}\n\
+             started = {started}\nlog = {}\n",
             self.scene,
             self.method.as_deref().unwrap_or_default(),
             self.config.display(),
             self.bus,
             if self.robot { "simulated" } else { "elsewhere" },
+            self.commit,
             log.display()
         )
     }
@@ -131,6 +142,11 @@ impl Run {
             other => return Err(wrong("robot", other, "simulated or elsewhere")),
         };
         let (method, log) = (value("method")?, value("log")?);
+        // Logs of earlier versions do not say these.
+        let (commit, started) = (value("commit").unwrap_or_default(), value("started").unwrap_or_default());
+        let number = |text: &str| text.parse().ok();
+        let started =
+            started.split_once(' ').and_then(|(unix, monotonic)| Some([number(unix)?, number(monotonic)?]));
         Ok(Self {
             dir: dir.into(),
             mode,
@@ -140,6 +156,8 @@ impl Run {
             bus: value("bus")?.into(),
             robot,
             log: (!log.is_empty()).then(|| log.into()),
+            commit: commit.into(),
+            started,
         })
     }
 

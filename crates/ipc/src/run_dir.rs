@@ -36,13 +36,25 @@ pub fn default_dir() -> PathBuf {
     session.map_or_else(|| format!("/dev/shm/gangwerk-{uid}").into(), |dir| dir.join("gangwerk"))
 }
 
+/// What is wrong with a run directory; none if it is one, or is not there.
+pub fn wrong_dir(path: &Path) -> Option<IpcError> {
+    let there = std::fs::symlink_metadata(path);
+    let missing = there.is_err_and(|e| e.kind() == std::io::ErrorKind::NotFound);
+    if missing { None } else { RunDir::open(path).err() }
+}
+
 impl RunDir {
     /// Opens it, after making it if it is not there.
     pub(crate) fn make(path: &Path) -> Result<Self, IpcError> {
         let made = std::fs::DirBuilder::new().recursive(true).mode(0o700).create(path);
         // Something else in its place is told by opening it, in better words.
         match made {
-            Err(e) if e.kind() != std::io::ErrorKind::AlreadyExists => Err(told(path, &e)),
+            Err(e) if e.kind() == std::io::ErrorKind::NotADirectory => {
+                Err(told(path, &"lies below something that is no directory: choose another one with --dir"))
+            }
+            Err(e) if e.kind() != std::io::ErrorKind::AlreadyExists => {
+                Err(told(path, &format!("cannot be made: {e}; choose another one with --dir")))
+            }
             _ => Self::open(path),
         }
     }

@@ -184,6 +184,8 @@ fn a_run_is_saved_and_loaded() {
         bus: "shm".into(),
         robot: true,
         log: None,
+        commit: "5c1f".into(),
+        started: Some([17, 4]),
     };
     run.save().unwrap();
     assert_eq!(Run::load(system.dir()).unwrap(), run);

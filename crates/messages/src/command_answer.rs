@@ -43,6 +43,13 @@ pub enum Reason {
     NotStanding,
     /// Nothing that can be done in the present state, for example to walk before `walk/stand`.
     NotNow,
+    /// A foot carries more than it may.
+    Loaded {
+        /// \[N\] the heavier foot's load.
+        load: f64,
+        /// \[N\] the most it may be.
+        most: f64,
+    },
     /// What an event tells more about.
     Event {
         /// Its code.
@@ -64,6 +71,7 @@ impl Reason {
             Self::NotStanding => 31,
             Self::NotNow => 32,
             Self::Event { .. } => 33,
+            Self::Loaded { .. } => 34,
         }
     }
 
@@ -85,6 +93,9 @@ impl Reason {
             Self::Limit { field, low, high } => limit(command, usize::from(field), low, high),
             Self::NotStanding => "the robot does not stand on its feet yet; walk/stand comes first".into(),
             Self::NotNow => not_now(command).into(),
+            Self::Loaded { load, most } => {
+                format!("{load:.0} N on a foot, at most {most:.0} N: the robot must hang, with its feet free")
+            }
             Self::Event { code, detail } => event(code, detail),
         }
     }
@@ -96,6 +107,10 @@ const fn not_now(command: &Command) -> &'static str {
         Command::Reset => {
             "no effect: the motor supply is on, the joint loop is silent, or it was given again too soon"
         }
+        Command::Home => {
+            "no joint waits for its angle: every one knows it, or the motor supply is off (system/reset and system/enable)"
+        }
+        Command::ZeroForce => "the drives are not on: system/reset and system/enable come first, then joint/home if asked for",
         Command::Enable => "no effect: system/reset comes first, and the joint loop must be alive",
         _ => "not in the present state; walk/stand comes first, and a skill ends first",
     }
@@ -122,8 +137,13 @@ fn event(code: EventCode, detail: u64) -> String {
         EventCode::ObstacleTooHigh => format!("{mm} m is higher than the robot steps"),
         EventCode::ObstacleTooLong => format!("a step of {mm} m over it is longer than the robot's"),
         EventCode::NoFoothold => format!("there is no foothold for {mm} m"),
-        EventCode::ZeroRefused => format!("the robot does not hang still: {detail} N on its feet"),
-        code => format!("{code:?} ({detail})"),
+        EventCode::Fallen => {
+            "the robot has fallen: put it on its feet, then system/reset, system/enable, walk/stand".into()
+        }
+        EventCode::SafeStop => "its joints were stopped: secure the robot, then system/emergency_stop, \
+                                system/reset, system/enable, walk/stand"
+            .into(),
+        code => crate::Words::default().sentence(code as u64, detail),
     }
 }
 

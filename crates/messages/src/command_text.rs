@@ -8,6 +8,7 @@ use crate::command::{
     Command, DistanceCommand, Domain, FixateCommand, HeadJointsCommand, LowerCommand, ParameterCommand,
     PlatformCommand, PushCommand, StepCommand, VelocityCommand,
 };
+use crate::unknown;
 
 /// One number of a command.
 #[derive(Clone, Copy, Debug)]
@@ -246,7 +247,7 @@ impl Command {
     pub fn parse(name: &str, text: &str) -> Result<Self, String> {
         let info = CommandInfo::find(name).ok_or_else(|| {
             let names: Vec<_> = COMMANDS.iter().map(|c| c.name).collect();
-            format!("{}; `gangwerk topic list` shows them all", unknown("topic", name, &names))
+            unknown("topic", name, &names, "`gangwerk topic list` shows them all")
         })?;
         let mut given = [None; MAX_FIELDS];
         for part in text.split([' ', ',', '\t', '\n']).filter(|p| !p.is_empty()) {
@@ -290,8 +291,10 @@ impl CommandInfo {
         let (field, number) = part.split_once('=').ok_or_else(|| {
             format!("{name}: `{part}` is not of the form field=number, for example {}", self.usage())
         })?;
-        let index = (self.fields.iter().position(|f| f.name == field))
-            .ok_or_else(|| format!("{name}: {}", unknown("field", field, &self.field_names())))?;
+        let index = (self.fields.iter().position(|f| f.name == field)).ok_or_else(|| {
+            let takes = format!("it takes {}", self.usage());
+            format!("{name}: {}", unknown("field", field, &self.field_names(), &takes))
+        })?;
         let value = number.parse().map_err(|_| {
             let [lo, hi] = self.fields[index].range;
             format!(
@@ -307,32 +310,4 @@ impl CommandInfo {
         let fields: Vec<_> = self.fields.iter().map(|f| format!("{}=<{}>", f.name, f.unit)).collect();
         fields.join(" ")
     }
-}
-
-/// "there is no KIND `name`; did you mean ...?" with the nearest names, or all of them if none is near.
-fn unknown(kind: &str, name: &str, known: &[&str]) -> String {
-    let tail = |s: &str| s.rsplit('/').next().unwrap_or(s).to_owned();
-    let distance = |k: &&str| edits(name, k).min(edits(&tail(name), &tail(k)));
-    let best = known.iter().map(distance).min().unwrap_or(usize::MAX);
-    if best > 1 + name.len() / 3 {
-        return format!("there is no {kind} `{name}`; there are {}", known.join(", "));
-    }
-    let near: Vec<_> = known.iter().filter(|k| distance(k) == best).copied().collect();
-    format!("there is no {kind} `{name}`; did you mean {}?", near.join(" or "))
-}
-
-/// Edits (insert, delete, replace a letter) that turn `a` into `b`.
-fn edits(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = i;
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let replace = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = replace.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
 }

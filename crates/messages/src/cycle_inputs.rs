@@ -117,6 +117,10 @@ impl CommandTaken {
                 taken.limits = [low, high];
                 (field.into(), 0)
             }
+            Reason::Loaded { load, most } => {
+                taken.limits = [0.0, most];
+                (load as u64, 0)
+            }
             Reason::Event { code, detail } => (code as u64, detail),
             Reason::LeaseLost | Reason::NotStanding | Reason::NotNow => (0, 0),
         };

@@ -2,154 +2,208 @@
 
 use crate::{Header, record};
 
-/// What happened. Numbers are part of the log format: append only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u64)]
-pub enum EventCode {
+macro_rules! events {
+    ($($(#[$doc:meta])* $name:ident = $number:literal, $what:literal, $detail:literal, $advice:literal;)*) => {
+        /// What happened. Numbers are part of the log format: append only.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[repr(u64)]
+        pub enum EventCode { $($(#[$doc])* $name = $number,)* }
+
+        impl EventCode {
+            /// All codes, in order of their numbers.
+            pub const ALL: [Self; [$($number),*].len()] = [$(Self::$name),*];
+
+            /// Words for people: what happened, what the detail says, what to do. See [`Words`](crate::event_words::Words).
+            pub(crate) const fn words(self) -> [&'static str; 3] {
+                match self { $(Self::$name => [$what, $detail, $advice],)* }
+            }
+        }
+    };
+}
+
+// Code and number, what happened, what its detail says, what to do. Words in braces are those of `event_words.rs`.
+events! {
     /// Nothing.
-    None = 0,
+    None = 0, "nothing", "", "";
     /// A process armed and began its cycles; detail: 0.
-    Started = 1,
+    Started = 1, "ready", "", "";
     /// A process ended as asked.
-    Ended = 2,
+    Ended = 2, "ended as asked", "", "";
     /// Motor supply switched on.
-    PowerOn = 3,
+    PowerOn = 3, "motor supply on", "", "";
     /// Motor supply switched off; detail: the code of the reason.
-    PowerOff = 4,
+    PowerOff = 4, "motor supply off", "{event}",
+        "system/reset, then system/enable switch it on again";
     /// The joint loop did not reset the watchdog in time; detail: cycles missed.
-    ResetMissed = 5,
+    ResetMissed = 5, "the joint loop was too late for the watchdog", "{n} cycles",
+        "`gangwerk doctor` says what keeps this machine from real time; `--lockstep` needs none";
     /// Joint targets are too old; detail: age in cycles.
-    TargetsStale = 6,
+    TargetsStale = 6, "joint targets are too old", "{n} cycles",
+        "the stabilizer is late or gone";
     /// A target was not finite; detail: joint index.
-    TargetNotFinite = 7,
     /// A target left its range, or asked for more speed or acceleration than the joint has, and was held back; detail: joint
     /// index.
-    TargetLimited = 8,
+    TargetLimited = 8, "a joint target was held back to what the joint may do", "{joint}", "";
     /// A joint did not follow its target; detail: joint index.
-    FollowingError = 9,
+    FollowingError = 9, "a joint did not follow its target", "{joint}",
+        "look for something in its way, a weak drive, or too fast a walk";
     /// Bus frames are missing; detail: age in cycles.
-    BusSilent = 10,
+    BusSilent = 10, "nothing comes from the field bus", "for {n} cycles",
+        "check cables and the supply of the drives";
     /// A cycle overran; detail: periods skipped.
-    Overrun = 11,
+    Overrun = 11, "a cycle ended too late", "{n} periods skipped",
+        "`gangwerk doctor` says what keeps this machine from real time; `--lockstep` needs none";
     /// Too many overruns: controlled stop.
-    TooManyOverruns = 12,
+    TooManyOverruns = 12, "too many late cycles in a short time", "",
+        "`gangwerk doctor` says what keeps this machine from real time; `--lockstep` needs none";
     /// The planner fell silent: the running plan is walked to its end.
-    PlannerSilent = 13,
+    PlannerSilent = 13, "the planner is silent; its last plan is walked to its end", "", "";
     /// A plan was refused; detail: the plan's id.
-    PlanRefused = 14,
+    PlanRefused = 14, "a plan was refused", "plan {n}", "the one before it goes on";
     /// A command was refused; detail: its message id.
-    CommandRefused = 15,
+    CommandRefused = 15, "a command was refused", "", "its sender was told why; `gangwerk log show` names both";
     /// The robot has fallen.
-    Fallen = 16,
+    Fallen = 16, "the robot has fallen", "",
+        "what led to it stands above; `gangwerk plot` draws it";
     /// Both feet are off the ground while they should carry.
-    Lifted = 17,
+    Lifted = 17, "both feet are off the ground while they should carry", "",
+        "put the robot down; then system/reset, system/enable";
     /// Somebody asked for the emergency stop on its own line; detail: user id << 32 | process id, zeros if unknown.
-    EmergencyStop = 18,
+    EmergencyStop = 18, "emergency stop", "{who}",
+        "make the robot safe; then system/reset, system/enable";
     /// The watchdog missed cycles of its own, for so long that the supply's relay fell.
-    WatchdogSilent = 19,
+    WatchdogSilent = 19, "the watchdog itself was too late, and the relay of the supply fell", "",
+        "`gangwerk doctor` says what keeps this machine from real time; `--lockstep` needs none";
     /// Inverse kinematics or force control met a singularity or limit; detail: which.
-    ControlLimited = 20,
+    ControlLimited = 20, "the stabilizer meets a limit", "{limit}",
+        "once in a while is normal; walk slower if it goes on";
     /// A controlled stop began; detail: the code of the reason.
-    SafeStop = 21,
+    SafeStop = 21, "controlled stop", "{event}",
+        "secure the robot; then system/emergency_stop, system/reset, system/enable";
     /// The controller switched to a plan; detail: its id.
-    PlanActive = 22,
+    PlanActive = 22, "a plan begins", "plan {n}", "";
     /// Records were overwritten before the logger read them; detail: how many.
-    LogDropped = 23,
+    LogDropped = 23, "records are missing from the log", "{n}",
+        "its disk is too slow: another one with --out";
     /// Messages of the command plane were lost by clients that did not keep up; detail: how many since the last time.
-    MessagesLost = 24,
+    MessagesLost = 24, "clients of the broker did not keep up", "{n} messages lost", "";
     /// A sensor value is not finite; the last good ones are used, then a stop.
-    SensorNotFinite = 25,
+    SensorNotFinite = 25, "a sensor reading is not a number; the last good ones are used, then a stop", "",
+        "check the sensors and their cables";
     /// A parameter got another value; detail: its number.
-    ParameterSet = 26,
+    ParameterSet = 26, "a parameter was set", "number {n} of its process",
+        "`gangwerk param list` shows all";
     /// A simulated drive left what its model holds for; detail: its number. Its gear and friction stay as they were.
-    DriveFault = 27,
+    DriveFault = 27, "a simulated drive left what its model holds for", "drive {n}",
+        "gear and friction stay as they were";
     /// Contact forces of the simulated soles were not found to their tolerance; detail: sweeps.
-    ContactNotConverged = 28,
+    ContactNotConverged = 28, "contact forces of the simulated soles were not found to their tolerance", "{n} sweeps",
+        "more substeps in the scene";
     /// An object of the scene cannot do what its schedule says, because the robot touches it; detail: its number.
-    ObjectHeld = 29,
+    ObjectHeld = 29, "an object of the scene waits, because the robot touches it", "object {n}", "";
     /// An object of the scene goes on with its schedule; detail: its number.
-    ObjectResumed = 30,
+    ObjectResumed = 30, "an object of the scene goes on with its schedule", "object {n}", "";
     /// The simulation lost its numbers: a state is not finite. The robot stays where it was last; detail: the state.
-    Diverged = 31,
+    Diverged = 31, "the simulation lost its numbers; the robot stays where it was last", "state {n}",
+        "more substeps, or another integrator in the scene";
     /// A simulated sensor left its range; detail: how many numbers.
-    SensorClipped = 32,
+    SensorClipped = 32, "a simulated sensor left its range", "{n} numbers", "";
     /// The adaptive integrator met its bounds, as at dry friction; detail: the state that would not settle. The rest of the
     /// cycle was done in one semi-implicit step.
-    IntegratorGaveUp = 33,
+    IntegratorGaveUp = 33, "the adaptive integrator met its bounds; the cycle was done in one semi-implicit step", "state {n}", "";
     /// A command to the camera head was refused: the robot has none, or the angles or the point are none it can take;
     /// detail: the message's id.
-    HeadRefused = 34,
+    HeadRefused = 34, "a command to the camera head was refused", "{head}",
+        "its sender was told why";
     /// The point to look at is out of reach: the head holds as near as it gets; detail: the joint at the end of its
     /// range, or the number of joints if the point is too near to the cameras.
-    GazeHeld = 35,
+    GazeHeld = 35, "the point to look at is out of reach; the head holds as near as it gets", "{joint}", "";
     /// The point to look at can be looked at again.
-    GazeResumed = 36,
+    GazeResumed = 36, "the point to look at is in reach again", "", "";
     /// The head jumps to where it is to look; detail: how long it will take \[us\].
-    Saccade = 37,
+    Saccade = 37, "the head jumps to where it is to look", "takes {n} us", "";
     /// No plan from the next step on can be walked as commanded; the active one goes on to its end; detail: its id.
-    PlanKept = 38,
+    PlanKept = 38, "what was commanded cannot be walked from the next step on; the plan goes on to its end", "plan {n}",
+        "command less";
     /// Something in the way is higher than the robot steps: it stops before it; detail: height \[mm\].
-    ObstacleTooHigh = 39,
+    ObstacleTooHigh = 39, "something in the way is higher than the robot steps; it stops before it", "{n} mm",
+        "lead it around";
     /// Something in the way is longer than a step: the robot stops before it; detail: length \[mm\].
-    ObstacleTooLong = 40,
+    ObstacleTooLong = 40, "something in the way is longer than a step; the robot stops before it", "{n} mm",
+        "lead it around";
     /// A step would end on something or touch it: the robot stops before it; detail: its height, or how far it would go \[mm\].
-    NoFoothold = 41,
+    NoFoothold = 41, "a step would end on something or touch it; the robot stops before it", "{n} mm",
+        "lead it around";
     /// A swing foot met the ground early; the next step begins at once. Detail: the plan's id.
-    EarlyContact = 42,
+    EarlyContact = 42, "a swing foot met the ground early; the next step begins at once", "plan {n}", "";
     /// Frames are missing in a cycle; told at the first, second, fourth, eighth ... time; detail: the node.
-    FramesLost = 43,
+    FramesLost = 43, "frames are missing on the field bus", "{node}", "check its cable";
     /// A node's frames are missing for so long that its joints are no longer carried on; detail: 1000 times the node plus
     /// the cycles.
-    NodeHeld = 44,
+    NodeHeld = 44, "frames are missing for so long that joints are no longer carried on", "{node}, {cycles} cycles",
+        "check its cable";
     /// The node is heard again; detail: 1000 times the node plus the cycles it was missing.
-    NodeBack = 45,
+    NodeBack = 45, "a local controller is heard again", "{node}, after {cycles} cycles", "";
     /// A node's frames are missing for too long; detail: 1000 times the node plus the cycles.
-    NodeSilent = 46,
+    NodeSilent = 46, "a local controller is silent for too long", "{node}, {cycles} cycles",
+        "check its cable and supply";
     /// A frame was refused: late, sent twice, of wrong length, unknown; or a reading that cannot be. Told at the first,
     /// second, fourth ... time; detail: a [`Refused`].
-    FrameRefused = 47,
+    FrameRefused = 47, "a frame or a reading was refused", "{refused}", "";
     /// Errors on a line: its controller warns; detail: the line.
-    BusWarning = 48,
+    BusWarning = 48, "errors on a line of the field bus", "line {n}",
+        "check its cable and termination";
     /// More errors on a line: its controller no longer takes part in the handling of errors; detail: the line.
-    BusPassive = 49,
+    BusPassive = 49, "many errors on a line of the field bus; its controller no longer signals them", "line {n}",
+        "check its cable and termination";
     /// The controller of a line left the bus; detail: the line.
-    BusOff = 50,
+    BusOff = 50, "the controller of a line left the field bus", "line {n}",
+        "look for a short circuit";
     /// The controller of a line takes part again; detail: the line.
-    BusActive = 51,
+    BusActive = 51, "the controller of a line takes part again", "line {n}", "";
     /// A local controller heard no targets for so long that its drives have a fault and bring their joints to rest by
     /// themselves; detail: the node.
-    NodeStopped = 52,
+    NodeStopped = 52, "a local controller heard no targets; its drives bring their joints to rest by themselves", "{node}",
+        "system/reset after the bus is back";
     /// The ring of the field bus is open; detail: address of the station before the gap << 16 | of the one behind it; 0: the
     /// master.
-    RingBroken = 53,
+    RingBroken = 53, "the ring of the field bus is open", "{stations}",
+        "the bus goes on over both ends; mend it before a second cable goes";
     /// The ring of the field bus is closed again.
-    RingClosed = 54,
+    RingClosed = 54, "the ring of the field bus is closed again", "", "";
     /// A drive has a fault of its own: controlled stop, if none was before; detail: joint index + 65536 times its error code.
-    DriveTripped = 55,
+    DriveTripped = 55, "a drive has a fault", "{drive}",
+        "mend its cause; then system/reset, system/enable";
     /// A drive was not switched on, or is off while the supply is on: nothing is followed; detail: joint index.
-    DriveNotEnabled = 56,
+    DriveNotEnabled = 56, "a drive is off while the supply is on; nothing is followed", "{joint}",
+        "system/reset, then system/enable";
     /// A joint does not know its angle, so no drive is switched on; detail: joint index.
-    NotHomed = 57,
+    NotHomed = 57, "a joint does not know its angle, so no drive is switched on", "{joint}",
+        "gangwerk topic pub joint/home";
     /// All joints know their angles; detail: cycles it took.
-    Homed = 58,
+    Homed = 58, "all joints know their angles", "after {n} cycles", "";
     /// The force sensors read zero from now on; detail: what was taken away at most \[N\].
-    ForceZeroed = 59,
+    ForceZeroed = 59, "the force sensors read zero from now on", "{n} N taken away at most", "";
     /// The force sensors cannot be set to zero: the robot does not hang still with its drives on; detail: load on its
     /// feet \[N\].
-    ZeroRefused = 60,
+    ZeroRefused = 60, "the force sensors cannot be set to zero, the robot does not hang still with its drives on", "{n} N on its feet",
+        "lift it; then joint/zero_force";
     /// A walking command was refused: the robot does not stand on its feet yet; detail: its message id.
-    NotStanding = 61,
+    NotStanding = 61, "a walking command was refused, the robot does not stand on its feet yet", "{walk}",
+        "walk/stand comes first";
     /// A drive that a standing robot can do without has a fault: its joint is held, the robot goes on; detail as of
     /// [`Self::DriveTripped`].
-    DriveHeld = 62,
+    DriveHeld = 62, "a drive that a standing robot can do without has a fault; its joint is held", "{drive}",
+        "mend its cause at the next stand";
     /// Drives fell out of the operation of the field bus, after a pause of lowlevel: all are started again. That they are
     /// back is told by [`Self::NodeBack`].
-    BusRestart = 63,
+    BusRestart = 63, "drives fell out of the operation of the field bus; all are started again", "", "";
     /// The supply was measured off while it was to be on: its relay fell, or a fuse or a switch is open.
-    SupplyLost = 64,
+    SupplyLost = 64, "the supply is off while it was to be on", "",
+        "look for an open relay, fuse or switch; then system/reset, system/enable";
     /// Who commanded the walk lost the command lease, by death, silence or a closed link: the robot stops. Detail: the
     /// number of the grant.
-    LeaseLost = 65,
+    LeaseLost = 65, "who commanded the walk is gone; the robot stops", "grant {n}", "";
 }
 
 /// Why a frame or a reading was refused, in the detail of [`EventCode::FrameRefused`].
@@ -167,77 +221,21 @@ pub enum Refused {
     Jump = 5,
 }
 
-impl EventCode {
-    /// All codes, in order of their numbers.
-    pub const ALL: [Self; 66] = [
-        Self::None,
-        Self::Started,
-        Self::Ended,
-        Self::PowerOn,
-        Self::PowerOff,
-        Self::ResetMissed,
-        Self::TargetsStale,
-        Self::TargetNotFinite,
-        Self::TargetLimited,
-        Self::FollowingError,
-        Self::BusSilent,
-        Self::Overrun,
-        Self::TooManyOverruns,
-        Self::PlannerSilent,
-        Self::PlanRefused,
-        Self::CommandRefused,
-        Self::Fallen,
-        Self::Lifted,
-        Self::EmergencyStop,
-        Self::WatchdogSilent,
-        Self::ControlLimited,
-        Self::SafeStop,
-        Self::PlanActive,
-        Self::LogDropped,
-        Self::MessagesLost,
-        Self::SensorNotFinite,
-        Self::ParameterSet,
-        Self::DriveFault,
-        Self::ContactNotConverged,
-        Self::ObjectHeld,
-        Self::ObjectResumed,
-        Self::Diverged,
-        Self::SensorClipped,
-        Self::IntegratorGaveUp,
-        Self::HeadRefused,
-        Self::GazeHeld,
-        Self::GazeResumed,
-        Self::Saccade,
-        Self::PlanKept,
-        Self::ObstacleTooHigh,
-        Self::ObstacleTooLong,
-        Self::NoFoothold,
-        Self::EarlyContact,
-        Self::FramesLost,
-        Self::NodeHeld,
-        Self::NodeBack,
-        Self::NodeSilent,
-        Self::FrameRefused,
-        Self::BusWarning,
-        Self::BusPassive,
-        Self::BusOff,
-        Self::BusActive,
-        Self::NodeStopped,
-        Self::RingBroken,
-        Self::RingClosed,
-        Self::DriveTripped,
-        Self::DriveNotEnabled,
-        Self::NotHomed,
-        Self::Homed,
-        Self::ForceZeroed,
-        Self::ZeroRefused,
-        Self::NotStanding,
-        Self::DriveHeld,
-        Self::BusRestart,
-        Self::SupplyLost,
-        Self::LeaseLost,
-    ];
+impl Refused {
+    /// The same in words, of a number from a record.
+    pub(crate) fn text(n: u64) -> &'static str {
+        match n {
+            1 => "of an earlier cycle",
+            2 => "came a second time",
+            3 => "its length is not that of its message",
+            4 => "nobody knows its identifier",
+            5 => "its reading is further from the last one than can be",
+            _ => "for a reason unknown",
+        }
+    }
+}
 
+impl EventCode {
     /// The code of a number from a record.
     pub fn from_number(n: u64) -> Option<Self> {
         Self::ALL.get(n as usize).copied()

@@ -181,6 +181,11 @@ impl Layout {
         Self { nodes, messages, index, motor_side }
     }
 
+    /// Whether all messages fit into frames of classic CAN.
+    pub fn is_classic(&self) -> bool {
+        self.messages.iter().all(|m| m.len <= 8)
+    }
+
     /// Index of the message with this identifier on a line.
     #[inline]
     pub fn find(&self, line: u32, id: u32) -> Option<usize> {

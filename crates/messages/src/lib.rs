@@ -17,6 +17,7 @@ pub mod controller_state;
 pub mod cycle_inputs;
 pub mod cycle_stats;
 pub mod event;
+pub mod event_words;
 pub mod frames;
 pub mod joint_targets;
 pub mod layout;
@@ -28,6 +29,7 @@ pub mod sensors;
 pub mod sim_state;
 pub mod start_up;
 pub mod topics;
+mod unknown;
 pub mod wire;
 
 pub use bus::{BusFrames, ERROR_FLAG, Frame, MAX_FRAMES};
@@ -38,6 +40,7 @@ pub use controller_state::ControllerState;
 pub use cycle_inputs::{CommandTaken, CycleInputs, Used};
 pub use cycle_stats::{BusCounters, CycleStats};
 pub use event::{Event, EventCode};
+pub use event_words::Words;
 pub use joint_targets::{JointMode, JointTargets};
 pub use parameters::Parameters;
 pub use plan::{GaitState, Phase, Plan, Step};
@@ -47,6 +50,7 @@ pub use sensors::{Imu, Sensors};
 pub use sim_state::SimState;
 pub use start_up::StartUp;
 pub use topics::{Process, TOPICS, Topic};
+pub use unknown::{nearest, unknown};
 
 /// Room for joints in every record.
 pub const MAX_JOINTS: usize = 32;

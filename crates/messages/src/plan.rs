@@ -20,6 +20,17 @@ pub enum GaitState {
     Walking = 3,
     /// Last steps before standing.
     Stopping = 4,
+    /// The robot has fallen: nothing is planned or walked until it is upright and the supply was off.
+    Fallen = 5,
+    /// A controlled stop: the joints are held, and nothing is planned or walked until the supply was off.
+    Halted = 6,
+}
+
+impl GaitState {
+    /// Whether the robot neither walks nor comes to a stand.
+    pub const fn rests(self) -> bool {
+        matches!(self, Self::Idle | Self::Standing | Self::Fallen | Self::Halted)
+    }
 }
 
 impl From<u64> for GaitState {
@@ -29,6 +40,8 @@ impl From<u64> for GaitState {
             2 => Self::Starting,
             3 => Self::Walking,
             4 => Self::Stopping,
+            5 => Self::Fallen,
+            6 => Self::Halted,
             _ => Self::Idle,
         }
     }

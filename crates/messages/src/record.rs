@@ -58,6 +58,8 @@ pub trait Visit {
     fn u32(&mut self, value: u32);
     /// A scalar `uint8`.
     fn u8(&mut self, value: u8);
+    /// What stands in the documentation of the part that begins next: its unit in brackets first.
+    fn about(&mut self, _text: &'static str) {}
     /// A named part of a struct begins; it ends with [`Visit::end`].
     fn field(&mut self, _name: &'static str) {}
     /// A fixed-size array begins; it ends with [`Visit::end`].
@@ -114,11 +116,11 @@ impl<T: Field, const N: usize> Field for [T; N] {
 /// With `record NAME` the struct must have a field `header: Header` and also becomes a [`Record`](crate::Record).
 #[macro_export]
 macro_rules! record {
-    ($(#[$meta:meta])* part $name:ident { $($(#[$fmeta:meta])* $field:ident: $type:ty,)* }) => {
+    ($(#[$meta:meta])* part $name:ident { $($(#[doc = $about:literal])* $field:ident: $type:ty,)* }) => {
         $(#[$meta])*
         #[repr(C)]
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct $name { $($(#[$fmeta])* pub $field: $type,)* }
+        pub struct $name { $($(#[doc = $about])* pub $field: $type,)* }
 
         impl $crate::record::Field for $name {
             fn type_name() -> String { stringify!($name).into() }
@@ -129,7 +131,12 @@ macro_rules! record {
                 ]);
             }
             fn visit(&self, visit: &mut dyn $crate::record::Visit) {
-                $(visit.field(stringify!($field)); self.$field.visit(visit); visit.end();)*
+                $(
+                    visit.about(concat!($($about),*));
+                    visit.field(stringify!($field));
+                    self.$field.visit(visit);
+                    visit.end();
+                )*
             }
             fn read(read: &mut dyn $crate::record::Read) -> Self {
                 Self { $($field: <$type as $crate::record::Field>::read(read),)* }

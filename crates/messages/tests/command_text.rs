@@ -30,7 +30,7 @@ fn errors_say_what_to_do() {
     };
     has(refused("walk/velocty", "forward=1"), &["no topic `walk/velocty`", "did you mean walk/velocity?"]);
     has(refused("velocity", "forward=1"), &["did you mean walk/velocity?"]);
-    has(refused("zzzzzzzzzz", ""), &["there are system/emergency_stop", "topic list"]);
+    has(refused("zzzzzzzzzz", ""), &["there is no topic `zzzzzzzzzz`; `gangwerk topic list` shows them all"]);
     has(
         refused("walk/velocity", "foward=1"),
         &["walk/velocity: there is no field `foward`; did you mean forward?"],

@@ -1,4 +1,4 @@
-//! The monotonic clock. Wall time exists in file names only: [`unix_ms`].
+//! The monotonic clock. Wall time exists in file names and as the date of a log only: [`unix_ns`].
 
 use rustix::thread::{ClockId, clock_nanosleep_absolute};
 use rustix::time::Timespec;
@@ -12,10 +12,10 @@ pub fn now() -> u64 {
     t.tv_sec as u64 * SECOND + t.tv_nsec as u64
 }
 
-/// Wall time for names of files: milliseconds since 1970.
-pub fn unix_ms() -> u64 {
+/// Wall time for names of files and the dates of logs: nanoseconds since 1970.
+pub fn unix_ns() -> u64 {
     let t = rustix::time::clock_gettime(rustix::time::ClockId::Realtime);
-    t.tv_sec as u64 * 1000 + t.tv_nsec as u64 / 1_000_000
+    t.tv_sec as u64 * SECOND + t.tv_nsec as u64
 }
 
 /// Sleeps until that time \[ns\]; returns at once if it has passed.

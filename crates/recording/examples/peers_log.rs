@@ -5,7 +5,7 @@
 
 use messages::record::{Read, Visit};
 use messages::topics::{ForType, with_type};
-use messages::{Record, SimState, TOPICS, Topic};
+use messages::{Joints, Record, TOPICS, Topic};
 use recording::traffic::{CanFrame, TrafficWriter};
 use recording::{
     FootInfo, Link, LinkPoses, Pose, Recorder, RecordingError, RobotInfo, RunInfo, channel_name,
@@ -78,10 +78,10 @@ impl LinkPoses for Hopper {
     fn links(&self) -> &[Link] {
         &self.0
     }
-    fn poses(&mut self, _: &SimState, out: &mut [Pose]) {
-        out[0] = Pose::moved([0.0, 0.0, 1.0]);
-        out[1] = Pose::moved([0.0, -0.1, 0.1]);
-        out[2] = Pose::moved([0.0, 0.1, 0.1]);
+    fn poses(&mut self, base: &Pose, _: &Joints, out: &mut [Pose]) {
+        out[0] = *base;
+        out[1] = base.then(&Pose::moved([0.0, -0.1, -0.9]));
+        out[2] = base.then(&Pose::moved([0.0, 0.1, -0.9]));
     }
 }
 
@@ -101,8 +101,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         torso: "torso".into(),
         imu: [0.0; 3],
         feet: [foot("right"), foot("left")],
+        odom: [0.0; 3],
     };
-    let link = |name: &str, parent| Link { name: name.into(), parent };
+    let link = |name: &str, parent| Link { name: name.into(), parent, fixed: false };
     let hopper = Hopper([link("torso", None), link("right_foot", Some(0)), link("left_foot", Some(0))]);
     let mut recorder = Recorder::create(&directory.join("peers.mcap"), &robot, &RunInfo::default())?
         .with_links(Box::new(hopper));

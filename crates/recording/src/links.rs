@@ -1,6 +1,6 @@
 //! Where every link of the robot is: asked from whoever knows the kinematics, written as the tree `/tf`.
 
-use messages::SimState;
+use messages::{Joints, Sensors};
 
 /// Position \[m\] and unit quaternion (x, y, z, w) of a frame in another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +18,8 @@ pub struct Link {
     pub name: String,
     /// Index of the parent link, which comes before this one; none: the floating base.
     pub parent: Option<usize>,
+    /// Whether it never moves against that one.
+    pub fixed: bool,
 }
 
 /// The kinematics behind `/tf`.
@@ -25,8 +27,13 @@ pub trait LinkPoses: Send {
     /// All links, parents before their children.
     fn links(&self) -> &[Link];
 
-    /// world_from_link of every link in that state, in the same order.
-    fn poses(&mut self, state: &SimState, out: &mut [Pose]);
+    /// Pose of every link with the base at `base` and joints at these angles \[rad\], in the same order.
+    fn poses(&mut self, base: &Pose, joint_angle: &Joints, out: &mut [Pose]);
+
+    /// Torque of every joint \[N m\], NaN where nothing is known of it; false: of none.
+    fn torques(&mut self, _sensors: &Sensors, _out: &mut Joints) -> bool {
+        false
+    }
 }
 
 impl Pose {
@@ -49,6 +56,12 @@ impl Pose {
     pub fn place(&self, point: [f64; 3]) -> [f64; 3] {
         let p = turn(self.orientation, point);
         std::array::from_fn(|i| self.position[i] + p[i])
+    }
+
+    /// \[rad\] Direction of its x axis in the plane.
+    pub fn heading(&self) -> f64 {
+        let [x, y, z, w] = self.orientation;
+        (2.0 * (x * y + w * z)).atan2(1.0 - 2.0 * (y * y + z * z))
     }
 
     /// A pose of this frame in the frame this pose is given in: self * inner.

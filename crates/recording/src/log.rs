@@ -7,7 +7,8 @@ use crate::lengths;
 use crate::links::Pose;
 use crate::recorder::channel_name;
 use crate::robot::{METADATA, RobotInfo, RunInfo, from_metadata};
-use crate::standard_definitions::{ROBOT_DESCRIPTION, TF};
+use crate::standard::{ODOM, TRUTH, WORLD};
+use crate::standard_definitions::{ROBOT_DESCRIPTION, TF, TF_STATIC};
 use mcap::McapError;
 use mcap::records::{Channel, Record as Entry, SchemaHeader};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
@@ -64,16 +65,19 @@ pub struct Transform {
     pub pose: Pose,
 }
 
-/// All frames at one instant.
+/// All frames of the robot in `odom` at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameTree {
-    /// \[ns\]
+    /// \[ns\] As in the headers of records.
     pub stamp_ns: u64,
     /// Parents before their children.
     pub transforms: Vec<Transform>,
 }
 
 impl Log {
+    /// Root of [`Log::frames`]: where the robot believes that it was first.
+    pub const ODOM: &'static str = ODOM;
+
     /// Opens a log and reads what it says about itself.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let (mut about, mut urdf) = (None, None);
@@ -162,15 +166,27 @@ impl Log {
         Ok(records)
     }
 
-    /// All messages of `/tf`.
+    /// The frames of `/tf` and `/tf_static` as the robot believes them to be, [`Self::ODOM`] being their root.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is damaged.
     pub fn frames(&self) -> Result<Vec<FrameTree>, RecordingError> {
-        let mut trees = Vec::new();
+        let (mut trees, mut still) = (Vec::new(), Vec::new());
+        let believed = |t: &Transform| t.parent != WORLD && !t.child.starts_with(TRUTH);
         self.each(|message| {
-            if message.channel == TF.topic {
-                trees.push(FrameTree {
-                    stamp_ns: message.log_time_ns,
-                    transforms: read_transforms(message.payload),
-                });
+            let moves = message.channel == TF.topic;
+            if !moves && message.channel != TF_STATIC.topic {
+                return;
+            }
+            let mut transforms = read_transforms(message.payload);
+            transforms.retain(believed);
+            if !moves {
+                still = transforms;
+            } else if !transforms.is_empty() {
+                transforms.extend_from_slice(&still);
+                let clock = self.run.clock.as_ref();
+                let stamp_ns = clock.map_or(message.log_time_ns, |clock| clock.stamp_ns(message.log_time_ns));
+                trees.push(FrameTree { stamp_ns, transforms });
             }
         })?;
         Ok(trees)

@@ -1,7 +1,11 @@
 //! Writes a log: MCAP, profile `ros2`, CDR only, LZ4 chunks, no threads.
 //!
 //! Every logged topic is written verbatim, at full rate, as `/gangwerk/TOPIC` with its own message type. Beside them
-//! stand standard ROS 2 messages, thinned to [`STANDARD_RATE`]: they are for viewers, not for arithmetic.
+//! stand standard ROS 2 messages, thinned to [`STANDARD_RATE`]: they are for viewers, not for arithmetic. `/tf` and `/markers`
+//! are what the robot believes, `/truth/tf` and `/truth/markers` what the simulation knows, under names that begin with `truth/`.
+//!
+//! Time of the log is wall time of a run in real time, simulated time otherwise; messages stand in its order, but for those
+//! that come more than 0.1 s late.
 //!
 //! Chunks are put together in memory and written at once, so that what is in the file is always the beginning of a
 //! valid log: a crash costs the chunk that was not yet written, see [`Recorder::flush`].
@@ -10,12 +14,18 @@ use crate::cdr::Encoder;
 use crate::definition::{definition, interface};
 use crate::error::RecordingError;
 use crate::links::{LinkPoses, Pose};
+use crate::odometry::{self, Odometry};
+use crate::queue::{Message, Queue};
 use crate::robot::{METADATA, RobotInfo, RunInfo, to_metadata};
-use crate::standard;
-use crate::standard_definitions::{FOOT_WRENCH, IMU, JOINT_STATES, MARKERS, ROBOT_DESCRIPTION, STANDARD, TF};
+use crate::standard::{self, ODOM, TRUTH, WORLD};
+use crate::standard_definitions::{
+    FOOT_WRENCH, IMU, JOINT_STATES, MARKERS, ROBOT_DESCRIPTION, ROSOUT, STANDARD, TF, TF_STATIC,
+    TRUTH_MARKERS, TRUTH_TF,
+};
+use crate::{markers, rosout};
 use mcap::records::{MessageHeader, Metadata};
 use messages::topics::{ForType, with_type};
-use messages::{Record, Sensors, SimState, TOPICS, Topic};
+use messages::{ControllerState, Event, MAX_JOINTS, Plan, Record, Sensors, SimState, TOPICS, Topic};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::io::{BufWriter, Seek, Write};
@@ -40,9 +50,13 @@ pub struct Recorder {
     poses: Vec<Pose>,
     channels: Vec<Channel>,
     encoder: Encoder,
+    queue: Queue,
+    odometry: Odometry,
     described: bool,
-    next_sensors_ns: u64,
-    next_state_ns: u64,
+    /// \[ns\] Bus cycle: how much later than its stamp the simulated state is what it says.
+    cycle_ns: u64,
+    /// Stamps from which the next standard messages of sensors, stabilizer and simulation are due \[ns\].
+    next_ns: [u64; 3],
 }
 
 struct Channel {
@@ -75,15 +89,17 @@ impl Recorder {
             poses: Vec::new(),
             channels: Vec::new(),
             encoder: Encoder::new(),
+            queue: Queue::new(run.clock.clone()),
+            odometry: Odometry::default(),
             described: false,
-            next_sensors_ns: 0,
-            next_state_ns: 0,
+            cycle_ns: run.cycle_ns,
+            next_ns: [0; 3],
         };
         recorder.add_channels()?;
         Ok(recorder)
     }
 
-    /// Also writes the pose of every link as `/tf`. Without it `/tf` holds the torso alone.
+    /// Also writes the pose of every link as `/tf`. Without it there is the true torso alone.
     pub fn with_links(mut self, links: Box<dyn LinkPoses>) -> Self {
         self.poses = vec![Pose::IDENTITY; links.links().len()];
         self.links = Some(links);
@@ -108,11 +124,17 @@ impl Recorder {
     /// All channels in the order of the table, so that equal runs give equal files.
     fn add_channels(&mut self) -> Result<(), RecordingError> {
         for standard in STANDARD {
-            self.add_channel(standard.topic, standard.topic, standard.interface, &standard.definition())?;
+            let text = standard.definition();
+            self.add_channel(
+                standard.topic,
+                standard.topic,
+                (standard.interface, &text),
+                standard.quality(),
+            )?;
         }
         for topic in TOPICS.iter().filter(|t| t.logged) {
             if let Some((interface, text)) = with_type(topic.name, Describe) {
-                self.add_channel(topic.name, &channel_name(topic.name), &interface, &text)?;
+                self.add_channel(topic.name, &channel_name(topic.name), (&interface, &text), "")?;
             }
         }
         Ok(())
@@ -122,14 +144,14 @@ impl Recorder {
         &mut self,
         topic: &'static str,
         name: &str,
-        interface: &str,
-        definition: &str,
+        (interface, definition): (&str, &str),
+        quality: &str,
     ) -> Result<(), RecordingError> {
         let schema = self
             .mcap
             .add_schema(interface, "ros2msg", definition.as_bytes())
             .map_err(RecordingError::write)?;
-        let metadata = BTreeMap::from([("offered_qos_profiles".to_string(), String::new())]);
+        let metadata = BTreeMap::from([("offered_qos_profiles".to_string(), quality.to_string())]);
         let id = self.mcap.add_channel(schema, name, "cdr", &metadata).map_err(RecordingError::write)?;
         self.channels.push(Channel { topic, id, sequence: 0 });
         Ok(())
@@ -151,83 +173,154 @@ impl Recorder {
         record: &T,
         number: u32,
     ) -> Result<(), RecordingError> {
-        let stamp = record.header().stamp_ns;
         if !self.described {
             self.described = true;
-            standard::text(&mut self.encoder, &self.robot.urdf);
-            self.put(ROBOT_DESCRIPTION.topic, stamp)?;
+            self.describe();
         }
         self.encoder.encode(record);
         if let Some(channel) = self.channels.iter_mut().find(|c| c.topic == topic.name) {
             channel.sequence = number;
         }
-        self.put(topic.name, stamp)?;
+        self.put(topic.name, record.header().stamp_ns);
         let any: &dyn Any = record;
         if let Some(sensors) = any.downcast_ref::<Sensors>() {
-            self.write_sensors(sensors)?;
+            self.show_sensors(sensors);
+        } else if let Some(state) = any.downcast_ref::<ControllerState>() {
+            self.show_state(state);
+        } else if let Some(plan) = any.downcast_ref::<Plan>() {
+            self.odometry.plan(plan);
         } else if let Some(state) = any.downcast_ref::<SimState>() {
-            self.write_state(state)?;
+            self.show_truth(state);
+        } else if let Some(event) = any.downcast_ref::<Event>().filter(|_| topic.name.starts_with("events/"))
+        {
+            let stamp = self.queue.time(event.header.stamp_ns);
+            rosout::log(&mut self.encoder, stamp, topic.writer.name(), event);
+            self.put(ROSOUT.topic, event.header.stamp_ns);
+        }
+        while let Some((time, message)) = self.queue.next() {
+            self.write_to_file(time, &message)?;
         }
         Ok(())
     }
 
-    fn write_sensors(&mut self, sensors: &Sensors) -> Result<(), RecordingError> {
-        let stamp = sensors.header.stamp_ns;
-        if !due(&mut self.next_sensors_ns, stamp) {
-            return Ok(());
-        }
-        standard::joint_state(&mut self.encoder, &self.robot, sensors);
-        self.put(JOINT_STATES.topic, stamp)?;
-        standard::imu(&mut self.encoder, sensors);
-        self.put(IMU.topic, stamp)?;
-        for (foot, channel) in FOOT_WRENCH.iter().enumerate() {
-            standard::foot_wrench(&mut self.encoder, sensors, foot);
-            self.put(channel.topic, stamp)?;
-        }
-        Ok(())
-    }
-
-    fn write_state(&mut self, state: &SimState) -> Result<(), RecordingError> {
-        let stamp = state.header.stamp_ns;
-        if !due(&mut self.next_state_ns, stamp) {
-            return Ok(());
-        }
+    /// What is said once: the robot, and the frames that never move.
+    fn describe(&mut self) {
+        standard::text(&mut self.encoder, &self.robot.urdf);
+        self.put(ROBOT_DESCRIPTION.topic, 0);
         let links = match &mut self.links {
             Some(links) => {
-                links.poses(state, &mut self.poses);
+                links.poses(&Pose::IDENTITY, &[0.0; MAX_JOINTS], &mut self.poses);
                 links.links()
             }
             None => &[],
         };
-        standard::tf(&mut self.encoder, &self.robot, state, links, &self.poses);
-        self.put(TF.topic, stamp)?;
-        standard::markers(&mut self.encoder, &self.robot, state);
-        self.put(MARKERS.topic, stamp)
+        standard::tf_static(&mut self.encoder, self.queue.time(0), &self.robot, links, &self.poses);
+        self.put(TF_STATIC.topic, 0);
     }
 
-    /// Writes what the encoder holds; a topic that is not logged is left out.
-    fn put(&mut self, topic: &str, stamp_ns: u64) -> Result<(), RecordingError> {
-        let Some(channel) = self.channels.iter_mut().find(|c| c.topic == topic) else {
-            return Ok(());
-        };
+    fn show_sensors(&mut self, sensors: &Sensors) {
+        let stamp = sensors.header.stamp_ns;
+        if !due(&mut self.next_ns[0], stamp) {
+            return;
+        }
+        let time = self.queue.time(stamp);
+        let mut torques = [f64::NAN; MAX_JOINTS];
+        let known = self.links.as_mut().is_some_and(|links| links.torques(sensors, &mut torques));
+        let torques = known.then_some(&torques);
+        standard::joint_state(&mut self.encoder, time, &self.robot, sensors, torques);
+        self.put(JOINT_STATES.topic, stamp);
+        standard::imu(&mut self.encoder, time, sensors);
+        self.put(IMU.topic, stamp);
+        for (foot, channel) in FOOT_WRENCH.iter().enumerate() {
+            standard::foot_wrench(&mut self.encoder, time, sensors, foot);
+            self.put(channel.topic, stamp);
+        }
+        if let Some((sensors, state)) = self.odometry.sensors(sensors) {
+            self.show_believed(&sensors, &state);
+        }
+    }
+
+    fn show_state(&mut self, state: &ControllerState) {
+        if !due(&mut self.next_ns[1], state.header.stamp_ns) {
+            return;
+        }
+        if let Some((sensors, state)) = self.odometry.state(state) {
+            self.show_believed(&sensors, &state);
+        }
+    }
+
+    /// The robot as its sensors and its stabilizer know it.
+    fn show_believed(&mut self, sensors: &Sensors, state: &ControllerState) {
+        let stamp = sensors.header.stamp_ns;
+        let (time, plan) = (self.queue.time(stamp), self.odometry.planned(state));
+        markers::believed(&mut self.encoder, time, &self.robot, (sensors, state), &plan);
+        self.put(MARKERS.topic, stamp);
+        let Some(links) = &mut self.links else { return };
+        links.poses(&Pose::IDENTITY, &sensors.joint_angle, &mut self.poses);
+        let foot = &self.robot.feet[0];
+        let Some(at) = links.links().iter().position(|link| link.name == foot.link) else { return };
+        let sole = self.poses[at].then(&Pose::moved(foot.sole));
+        let Some(torso) = odometry::torso(sensors, state, plan.height, &sole) else { return };
+        links.poses(&torso, &sensors.joint_angle, &mut self.poses);
+        standard::tf(&mut self.encoder, time, ODOM, "", links.links(), &self.poses);
+        self.put(TF.topic, stamp);
+    }
+
+    /// The simulated robot as it is: at the end of its cycle, when the next one measures it.
+    fn show_truth(&mut self, state: &SimState) {
+        let stamp = state.header.stamp_ns + self.cycle_ns;
+        if state.header.stamp_ns == 0 || !due(&mut self.next_ns[2], stamp) {
+            return;
+        }
+        let time = self.queue.time(stamp);
+        let torso = Pose { position: state.position, orientation: state.orientation };
+        match &mut self.links {
+            Some(links) => {
+                links.poses(&torso, &state.joint_angle, &mut self.poses);
+                standard::tf(&mut self.encoder, time, WORLD, TRUTH, links.links(), &self.poses);
+            }
+            None => {
+                let name = format!("{TRUTH}{}", self.robot.torso);
+                standard::tf_of_torso(&mut self.encoder, time, WORLD, &name, &torso);
+            }
+        }
+        self.put(TRUTH_TF.topic, stamp);
+        markers::truth(&mut self.encoder, time, &self.robot, state);
+        self.put(TRUTH_MARKERS.topic, stamp);
+    }
+
+    /// Queues what the encoder holds; a topic that is not logged is left out.
+    fn put(&mut self, topic: &str, stamp_ns: u64) {
+        let Some(at) = self.channels.iter().position(|c| c.topic == topic) else { return };
+        let sequence = self.channels[at].sequence;
+        self.channels[at].sequence = sequence.wrapping_add(1);
+        self.queue.add(stamp_ns, Message { channel: at, sequence, payload: self.encoder.payload().into() });
+    }
+
+    fn write_to_file(&mut self, time: u64, message: &Message) -> Result<(), RecordingError> {
         let header = MessageHeader {
-            channel_id: channel.id,
-            sequence: channel.sequence,
-            log_time: stamp_ns,
-            publish_time: stamp_ns,
+            channel_id: self.channels[message.channel].id,
+            sequence: message.sequence,
+            log_time: time,
+            publish_time: time,
         };
-        channel.sequence = channel.sequence.wrapping_add(1);
-        self.mcap.write_to_known_channel(&header, self.encoder.payload()).map_err(RecordingError::write)
+        self.mcap.write_to_known_channel(&header, &message.payload).map_err(RecordingError::write)
     }
 
     /// Closes the chunk and hands everything to the operating system: what was written so far survives the death of
     /// this process.
     pub fn flush(&mut self) -> Result<(), RecordingError> {
+        while let Some((time, message)) = self.queue.drain() {
+            self.write_to_file(time, &message)?;
+        }
         self.mcap.flush().map_err(RecordingError::write)
     }
 
     /// Writes the index and closes the log.
     pub fn finish(mut self) -> Result<(), RecordingError> {
+        while let Some((time, message)) = self.queue.end() {
+            self.write_to_file(time, &message)?;
+        }
         self.mcap.finish().map_err(RecordingError::write)?;
         self.mcap.into_inner().flush().map_err(RecordingError::write)
     }

@@ -71,29 +71,41 @@ pub(crate) const FOOT_WRENCH: [Standard; 2] = [
     },
 ];
 
-/// Tree of frames.
-pub(crate) const TF: Standard = Standard {
-    topic: "/tf",
-    interface: "tf2_msgs/msg/TFMessage",
-    body: "geometry_msgs/TransformStamped[] transforms\n",
-    parts: &[
-        "MSG: geometry_msgs/TransformStamped\nstd_msgs/Header header\nstring child_frame_id\n\
-         geometry_msgs/Transform transform\n",
-        "MSG: geometry_msgs/Transform\ngeometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n",
-        HEADER,
-        TIME,
-        VECTOR3,
-        QUATERNION,
-    ],
+const TF_BODY: &str = "geometry_msgs/TransformStamped[] transforms\n";
+const TF_PARTS: &[&str] = &[
+    "MSG: geometry_msgs/TransformStamped\nstd_msgs/Header header\nstring child_frame_id\n\
+     geometry_msgs/Transform transform\n",
+    "MSG: geometry_msgs/Transform\ngeometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n",
+    HEADER,
+    TIME,
+    VECTOR3,
+    QUATERNION,
+];
+
+/// Frames that move.
+pub(crate) const TF: Standard =
+    Standard { topic: "/tf", interface: "tf2_msgs/msg/TFMessage", body: TF_BODY, parts: TF_PARTS };
+
+/// The same of the simulated robot as it is.
+pub(crate) const TRUTH_TF: Standard =
+    Standard { topic: "/truth/tf", interface: "tf2_msgs/msg/TFMessage", body: TF_BODY, parts: TF_PARTS };
+
+/// Frames that do not, once.
+pub(crate) const TF_STATIC: Standard =
+    Standard { topic: "/tf_static", interface: "tf2_msgs/msg/TFMessage", body: TF_BODY, parts: TF_PARTS };
+
+/// What happened, in words.
+pub(crate) const ROSOUT: Standard = Standard {
+    topic: "/rosout",
+    interface: "rcl_interfaces/msg/Log",
+    body: "byte DEBUG=10\nbyte INFO=20\nbyte WARN=30\nbyte ERROR=40\nbyte FATAL=50\n\
+           builtin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\nstring file\nstring function\nuint32 line\n",
+    parts: &[TIME],
 };
 
-/// Zero-moment point, support polygon, centre of gravity.
-pub(crate) const MARKERS: Standard = Standard {
-    topic: "/markers",
-    interface: "visualization_msgs/msg/MarkerArray",
-    body: "visualization_msgs/Marker[] markers\n",
-    parts: &[
-        "MSG: visualization_msgs/Marker\n\
+const MARKERS_BODY: &str = "visualization_msgs/Marker[] markers\n";
+const MARKERS_PARTS: &[&str] = &[
+    "MSG: visualization_msgs/Marker\n\
          int32 ARROW=0\nint32 CUBE=1\nint32 SPHERE=2\nint32 CYLINDER=3\nint32 LINE_STRIP=4\nint32 LINE_LIST=5\n\
          int32 CUBE_LIST=6\nint32 SPHERE_LIST=7\nint32 POINTS=8\nint32 TEXT_VIEW_FACING=9\n\
          int32 MESH_RESOURCE=10\nint32 TRIANGLE_LIST=11\n\
@@ -104,18 +116,33 @@ pub(crate) const MARKERS: Standard = Standard {
          string texture_resource\nsensor_msgs/CompressedImage texture\n\
          visualization_msgs/UVCoordinate[] uv_coordinates\nstring text\nstring mesh_resource\n\
          visualization_msgs/MeshFile mesh_file\nbool mesh_use_embedded_materials\n",
-        "MSG: sensor_msgs/CompressedImage\nstd_msgs/Header header\nstring format\nuint8[] data\n",
-        "MSG: visualization_msgs/UVCoordinate\nfloat32 u\nfloat32 v\n",
-        "MSG: visualization_msgs/MeshFile\nstring filename\nuint8[] data\n",
-        HEADER,
-        TIME,
-        DURATION,
-        VECTOR3,
-        POINT,
-        QUATERNION,
-        POSE,
-        COLOR,
-    ],
+    "MSG: sensor_msgs/CompressedImage\nstd_msgs/Header header\nstring format\nuint8[] data\n",
+    "MSG: visualization_msgs/UVCoordinate\nfloat32 u\nfloat32 v\n",
+    "MSG: visualization_msgs/MeshFile\nstring filename\nuint8[] data\n",
+    HEADER,
+    TIME,
+    DURATION,
+    VECTOR3,
+    POINT,
+    QUATERNION,
+    POSE,
+    COLOR,
+];
+
+/// Ground, planned steps, zero-moment point, support polygon, centre of gravity.
+pub(crate) const MARKERS: Standard = Standard {
+    topic: "/markers",
+    interface: "visualization_msgs/msg/MarkerArray",
+    body: MARKERS_BODY,
+    parts: MARKERS_PARTS,
+};
+
+/// The same of the simulated robot as it is.
+pub(crate) const TRUTH_MARKERS: Standard = Standard {
+    topic: "/truth/markers",
+    interface: "visualization_msgs/msg/MarkerArray",
+    body: MARKERS_BODY,
+    parts: MARKERS_PARTS,
 };
 
 /// The URDF, once.
@@ -127,5 +154,29 @@ pub(crate) const ROBOT_DESCRIPTION: Standard = Standard {
 };
 
 /// All of them.
-pub(crate) const STANDARD: [&Standard; 7] =
-    [&ROBOT_DESCRIPTION, &JOINT_STATES, &IMU, &FOOT_WRENCH[0], &FOOT_WRENCH[1], &TF, &MARKERS];
+pub(crate) const STANDARD: [&Standard; 11] = [
+    &ROBOT_DESCRIPTION,
+    &JOINT_STATES,
+    &IMU,
+    &FOOT_WRENCH[0],
+    &FOOT_WRENCH[1],
+    &TF_STATIC,
+    &TF,
+    &MARKERS,
+    &TRUTH_TF,
+    &TRUTH_MARKERS,
+    &ROSOUT,
+];
+
+impl Standard {
+    /// Quality of service with which players send it again: what is sent once waits for those who come later.
+    pub(crate) fn quality(&self) -> &'static str {
+        let once = [TF_STATIC.topic, ROBOT_DESCRIPTION.topic].contains(&self.topic);
+        if once { TRANSIENT_LOCAL } else { "" }
+    }
+}
+
+const TRANSIENT_LOCAL: &str = "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n  \
+    deadline:\n    sec: 9223372036\n    nsec: 854775807\n  lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  \
+    liveliness: 1\n  liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n  \
+    avoid_ros_namespace_conventions: false\n";

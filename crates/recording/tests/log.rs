@@ -2,9 +2,10 @@
 
 use messages::record::Wrench;
 use messages::topics::{CONTROLLER_STATE, EVENTS_CONTROLLER, PLAN, SENSORS, SIM_STATE, STATS_CONTROLLER};
-use messages::{ControllerState, CycleStats, Event, EventCode, Plan, Sensors, SimState};
+use messages::{ControllerState, CycleStats, Event, EventCode, Joints, Plan, Sensors, SimState};
 use recording::{
-    End, FootInfo, Link, LinkPoses, Log, Pose, Recorder, RecordingError, RobotInfo, RunInfo, payload_hashes,
+    End, FootInfo, Link, LinkPoses, Log, Pose, Recorder, RecordingError, RobotInfo, RunInfo, WallClock,
+    payload_hashes,
 };
 use std::path::{Path, PathBuf};
 
@@ -23,6 +24,7 @@ fn robot() -> RobotInfo {
         sensor: [0.0, 0.0, 0.02],
     };
     RobotInfo {
+        odom: [0.5, 0.0, 0.0],
         name: "two_sticks".into(),
         joints: vec!["right_hip".into(), "left_hip".into()],
         urdf: "<robot name=\"two_sticks\"/>".into(),
@@ -33,13 +35,13 @@ fn robot() -> RobotInfo {
 }
 
 fn run() -> RunInfo {
-    RunInfo { scene: "test".into(), config_hash: 0xabc, software: "0.1.0".into() }
+    RunInfo { scene: "test".into(), config_hash: 0xabc, software: "0.1.0".into(), ..RunInfo::default() }
 }
 
 struct TwoSticks([Link; 3]);
 impl TwoSticks {
     fn new() -> Self {
-        let link = |name: &str, parent| Link { name: name.into(), parent };
+        let link = |name: &str, parent| Link { name: name.into(), parent, fixed: false };
         Self([link("torso", None), link("right_foot", Some(0)), link("left_foot", Some(0))])
     }
 }
@@ -47,10 +49,9 @@ impl LinkPoses for TwoSticks {
     fn links(&self) -> &[Link] {
         &self.0
     }
-    fn poses(&mut self, state: &SimState, out: &mut [Pose]) {
-        let torso = Pose { position: state.position, orientation: state.orientation };
+    fn poses(&mut self, torso: &Pose, _: &Joints, out: &mut [Pose]) {
         out.copy_from_slice(&[
-            torso,
+            *torso,
             torso.then(&Pose::moved([0.0, -0.1, -0.9])),
             torso.then(&Pose::moved([0.0, 0.1, -0.9])),
         ]);
@@ -63,7 +64,19 @@ fn sensors(tick: u64) -> Sensors {
     sensors.header.stamp_ns = tick * 1_000_000;
     sensors.joint_angle[1] = (tick as f64).sin();
     sensors.foot_wrench[1].force = [1.0, 2.0, 300.0];
+    let (s, c) = (0.1 * tick as f64).sin_cos();
+    sensors.imu.orientation = [0.0, 0.0, s, c];
     sensors
+}
+
+/// What the stabilizer makes of it: the right sole turns with the torso, and is 0.001 m further in each cycle.
+fn believed(tick: u64) -> ControllerState {
+    let mut state =
+        ControllerState { header: sensors(tick).header, plan_id: 1, ..ControllerState::default() };
+    state.origin = [1.0, 2.0, 0.3];
+    state.feet[0] = [0.001 * tick as f64, 0.1, 0.0, 0.2 * tick as f64];
+    state.com = [0.0, 0.0, 0.9];
+    state
 }
 
 fn state(tick: u64) -> SimState {
@@ -83,6 +96,7 @@ fn write(path: &Path, change: impl Fn(u64, &mut Sensors)) {
         change(tick, &mut s);
         recorder.write(&SENSORS, &s).unwrap();
         recorder.write(&SIM_STATE, &state(tick)).unwrap();
+        recorder.write(&CONTROLLER_STATE, &believed(tick)).unwrap();
         let mut stats = CycleStats::default();
         stats.lateness_ns[0] = std::process::id().into();
         recorder.write(&STATS_CONTROLLER, &stats).unwrap();
@@ -119,37 +133,65 @@ fn standard_messages_are_thinned_and_verbatim_ones_are_not() {
     let end =
         Log::open(&path).unwrap().each(|m| *counts.entry(m.channel.to_string()).or_insert(0) += 1).unwrap();
     assert_eq!(end, End::Complete);
-    for channel in
-        ["/joint_states", "/imu/data", "/foot/right/wrench", "/foot/left/wrench", "/tf", "/markers"]
-    {
+    for channel in ["/joint_states", "/imu/data", "/foot/right/wrench", "/foot/left/wrench"] {
         assert_eq!(counts[channel], CYCLES / 10, "{channel}");
     }
+    // The truth only once there is a cycle to speak of.
+    for (channel, count) in [("/tf", 40), ("/markers", 40), ("/truth/tf", 40), ("/truth/markers", 40)] {
+        assert_eq!(counts[channel], count, "{channel}");
+    }
     assert_eq!(counts["/gangwerk/sensors"], CYCLES);
-    assert_eq!(counts["/robot_description"], 1);
+    assert_eq!((counts["/robot_description"], counts["/tf_static"]), (1, 1));
 }
 
 #[test]
-fn the_tree_of_frames_leads_to_where_the_links_are() {
+fn the_tree_of_frames_leads_to_where_the_robot_believes_its_links_to_be() {
     let path = file("frames.mcap");
     write(&path, |_, _| {});
     let trees = Log::open(&path).unwrap().frames().unwrap();
     assert_eq!(trees.len() as u64, CYCLES / 10);
     for tree in trees {
-        let state = state(tree.stamp_ns / 1_000_000);
-        let mut expected = [Pose::IDENTITY; 3];
-        TwoSticks::new().poses(&state, &mut expected);
+        let tick = tree.stamp_ns / 1_000_000;
         let find = |name: &str| tree.transforms.iter().find(|t| t.child == name).unwrap();
-        let (torso, left, sole) = (find("torso"), find("left_foot"), find("l_sole"));
-        assert_eq!(
-            (torso.parent.as_str(), left.parent.as_str(), sole.parent.as_str()),
-            ("world", "torso", "left_foot")
-        );
-        let left_in_world = torso.pose.then(&left.pose);
-        let sole_in_world = left_in_world.then(&sole.pose).position;
+        let (torso, foot, sole) = (find("torso"), find("right_foot"), find("r_sole"));
+        let parents = [torso, foot, sole].map(|t| t.parent.as_str());
+        assert_eq!(parents, [Log::ODOM, "torso", "right_foot"]);
+        let found = torso.pose.then(&foot.pose).then(&sole.pose);
+        // By hand: the planning frame is turned by 0.3 rad.
+        let ([x, y, z, heading], (s, c)) = (believed(tick).feet[0], 0.3f64.sin_cos());
+        let expected = [1.0 + c * x - s * y, 2.0 + s * x + c * y, z];
         for k in 0..3 {
-            assert!((left_in_world.position[k] - expected[2].position[k]).abs() < 1e-12);
+            assert!((found.position[k] - expected[k]).abs() < 1e-12, "{tick}: {found:?}, {expected:?}");
         }
-        assert!((sole_in_world[2] - 0.05).abs() < 1e-12);
+        assert!((found.heading() - heading - 0.3).sin().abs() < 1e-12, "{tick}: {found:?}");
+    }
+}
+
+#[test]
+fn a_log_of_real_time_begins_on_its_day_and_one_of_simulated_time_at_zero() {
+    let clock =
+        WallClock { unix_ns: 1_700_000_000_000_000_000, monotonic_ns: 5_000_000_000, host: "hal".into() };
+    for (name, clock, first) in
+        [("wall.mcap", Some(clock), 1_700_000_000_200_000_000), ("simulated.mcap", None, 0)]
+    {
+        let path = file(name);
+        let about = RunInfo { commit: "5c1f".into(), seed: 7, cycle_ns: 1_000_000, clock, ..run() };
+        let mut recorder = Recorder::create(&path, &robot(), &about).unwrap();
+        // Without a stamp: nobody has seen a cycle yet.
+        recorder.write(&EVENTS_CONTROLLER, &Event { code: 1, ..Event::default() }).unwrap();
+        for tick in 1..100 {
+            let mut s = sensors(tick);
+            s.header.stamp_ns += 5_199_000_000;
+            recorder.write(&SENSORS, &s).unwrap();
+        }
+        recorder.finish().unwrap();
+        let log = Log::open(&path).unwrap();
+        assert_eq!(log.run(), &about, "what the log says about itself");
+        let mut times = Vec::new();
+        log.each(|m| times.push(m.log_time_ns)).unwrap();
+        assert!(times.is_sorted(), "{name}");
+        let last = about.clock.as_ref().map_or(5_298_000_000, |clock| clock.unix_ns(5_298_000_000));
+        assert_eq!((times[0], *times.last().unwrap()), (first, last), "{name}");
     }
 }
 
@@ -201,8 +243,8 @@ fn a_flipped_bit_in_a_chunk_is_damage() {
     let path = file("damaged.mcap");
     write(&path, |_, _| {});
     let mut bytes = std::fs::read(&path).unwrap();
-    let middle = bytes.len() / 2;
-    bytes[middle] ^= 0x10;
+    let at = bytes.len() / 10; // in the first chunk; what follows a chunk is its index, which is not read
+    bytes[at] ^= 0x10;
     std::fs::write(&path, &bytes).unwrap();
     let result = Log::open(&path).and_then(|log| log.each(|_| {}));
     assert!(matches!(result, Err(RecordingError::Damaged(..))), "{result:?}");

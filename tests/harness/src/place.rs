@@ -33,7 +33,7 @@ impl Site {
         let n = COUNT.fetch_add(1, Ordering::Relaxed);
         let dir = PathBuf::from(format!("/dev/shm/gangwerk-test-{}-{n}", std::process::id()));
         let _ = fs::remove_dir_all(&dir);
-        copy(&root().join("config"), &dir.join("config"));
+        config::snapshot(&config::root(None), &dir.join("config")).unwrap_or_else(|e| panic!("{e}"));
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");
         let port = listener.local_addr().expect("a bound socket has an address").port();
         let site = Self { exe: exe.into(), dir, port };
@@ -182,16 +182,4 @@ impl Drop for Site {
 /// The source tree.
 pub fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
-
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap_or_else(|e| panic!("{}: {e}", to.display()));
-    for entry in fs::read_dir(from).unwrap_or_else(|e| panic!("{}: {e}", from.display())).flatten() {
-        let (source, target) = (entry.path(), to.join(entry.file_name()));
-        if source.is_dir() {
-            copy(&source, &target);
-        } else {
-            fs::copy(&source, &target).unwrap_or_else(|e| panic!("{}: {e}", source.display()));
-        }
-    }
 }

@@ -51,13 +51,18 @@ impl Mesh {
     /// Reads the solid in a file, by its ending; lengths in the file times `scale` are m. The axes are z up, see the
     /// table of this module.
     pub fn read(file: &Path, scale: f64) -> Result<Self, ReadError> {
-        let error = |fault: Fault| ReadError { file: file.to_owned(), place: fault.place, text: fault.text };
-        let bytes = bytes(file).map_err(error)?;
+        let bytes = bytes(file).map_err(|fault| fault.of(file))?;
+        Self::parse(file, &bytes, scale)
+    }
+
+    /// The same from the bytes of the file; buffers of a glTF file are read beside it.
+    pub fn parse(file: &Path, bytes: &[u8], scale: f64) -> Result<Self, ReadError> {
+        let error = |fault: Fault| fault.of(file);
         let mut soup = match ending(file).as_str() {
-            "stl" => stl::read(&bytes),
-            "obj" => obj::read(&bytes),
-            "gltf" | "glb" => gltf::read(&bytes, file.parent().unwrap_or(Path::new("."))),
-            "wrl" => vrml::read(&bytes),
+            "stl" => stl::read(bytes),
+            "obj" => obj::read(bytes),
+            "gltf" | "glb" => gltf::read(bytes, file.parent().unwrap_or(Path::new("."))),
+            "wrl" => vrml::read(bytes),
             other => Err(Fault::whole(format!(
                 "`.{other}` is no format of meshes; there are .stl, .obj, .gltf, .glb and .wrl"
             ))),
@@ -85,6 +90,10 @@ fn bytes(file: &Path) -> Result<Vec<u8>, Fault> {
 impl Fault {
     fn whole(text: impl Into<String>) -> Self {
         Self { place: String::new(), text: text.into() }
+    }
+
+    fn of(self, file: &Path) -> ReadError {
+        ReadError { file: file.to_owned(), place: self.place, text: self.text }
     }
 
     fn at(place: impl fmt::Display, text: impl Into<String>) -> Self {

@@ -1,0 +1,49 @@
+//! Exit codes of `gangwerk run` and `gangwerk sim`: a robot that fell or did not do what it was told is no success.
+
+use std::process::ExitCode;
+
+use crate::ending::{End, Ending};
+
+/// What the command line says of them.
+pub const HELP: &str = "\
+Exit codes:
+  0    the scene was done, or ended in order by system/end
+  1    an error; a process died or hung; the log is not complete because its disk failed
+  2    the command line is wrong
+  3    the robot fell
+  4    the motor supply was lost, the joints were stopped, or a command of the scene was refused
+  130  Ctrl-C, or another signal that asks for the end";
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// As it was told to.
+    Done = 0,
+    /// With an error that was said.
+    Error = 1,
+    /// The robot fell.
+    Fell = 3,
+    /// The robot lost its supply, was stopped, or refused a command of the scene.
+    NotDone = 4,
+    /// A signal asked for the end.
+    Interrupted = 130,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+impl Exit {
+    /// Of a run without errors; `signal`: one asked for the end.
+    pub fn of(ending: &Ending, signal: bool) -> Self {
+        match ending.end().0 {
+            _ if ending.fell().is_some() => Self::Fell,
+            _ if signal => Self::Interrupted,
+            End::PowerOff(_) | End::Stopped(_) => Self::NotDone,
+            _ if ending.unfinished || ending.refused > 0 => Self::NotDone,
+            End::Done | End::Asked | End::Fell => Self::Done,
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Every number of a record with its name and unit: `joint_angle.right_knee_flexion`, rad.
+
+use messages::{Field, MAX_JOINTS, Visit};
+
+/// A number of a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    /// Name with those of the parts around it: `imu.orientation[3]`, `foot_wrench.left.force[2]`.
+    pub name: String,
+    /// Unit; empty: none.
+    pub unit: &'static str,
+    /// The number.
+    pub value: Value,
+}
+
+/// What a number is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// Measured or computed.
+    Real(f64),
+    /// Counted, or a code.
+    Whole(u64),
+}
+
+impl Value {
+    /// Bits of the number: NaN is equal to itself, and 0 is not -0.
+    fn bits(self) -> u64 {
+        match self {
+            Self::Real(x) => x.to_bits(),
+            Self::Whole(n) => n,
+        }
+    }
+
+    /// All digits.
+    pub fn exact(self) -> String {
+        match self {
+            Self::Real(x) => format!("{x:?}"),
+            Self::Whole(n) => n.to_string(),
+        }
+    }
+
+    /// Six digits at most, for people.
+    pub fn short(self) -> String {
+        match self {
+            Self::Real(x) if x == 0.0 || !x.is_finite() => x.to_string(),
+            Self::Real(x) if x.abs() < 1e-4 || x.abs() >= 1e7 => format!("{x:.3e}"),
+            Self::Real(x) => {
+                let before = x.abs().log10().floor().max(0.0) as usize + 1;
+                let text = format!("{x:.*}", 6usize.saturating_sub(before).max(1));
+                text.trim_end_matches('0').trim_end_matches('.').to_owned()
+            }
+            Self::Whole(n) => n.to_string(),
+        }
+    }
+}
+
+/// Every number of a record, in the order of declaration. Arrays of joints hold the robot's, by their names; without names all
+/// places of the array, by their numbers.
+pub fn numbers<T: Field>(record: &T, joints: &[String]) -> Vec<Number> {
+    let mut walk = Walk { joints, open: Vec::new(), about: "", found: Vec::new() };
+    record.visit(&mut walk);
+    walk.found
+}
+
+/// The first number whose bits differ: its name, and its value in both.
+pub fn first_difference<T: Field>(a: &T, b: &T) -> Option<(String, String, String)> {
+    let (a, b) = (numbers(a, &[]), numbers(b, &[]));
+    let differs = a.iter().zip(&b).find(|(a, b)| a.name != b.name || a.value.bits() != b.value.bits());
+    differs.map(|(a, b)| (a.name.clone(), a.value.exact(), b.value.exact()))
+}
+
+/// A part that has begun.
+enum Part {
+    /// A field: its name, and the units and the text of its documentation.
+    Field(&'static str, &'static str),
+    /// An array: how many elements it has, how many came, and the name with which each of them begins.
+    Array { length: usize, count: usize, first: Option<&'static str> },
+}
+
+struct Walk<'a> {
+    joints: &'a [String],
+    open: Vec<Part>,
+    about: &'static str,
+    found: Vec<Number>,
+}
+
+impl Walk<'_> {
+    fn number(&mut self, value: Value) {
+        self.element(None);
+        if let Some(name) = self.name() {
+            self.found.push(Number { name, unit: self.unit(), value });
+        }
+    }
+
+    /// The name of the number that is there now; none: it is of a joint that the robot does not have.
+    fn name(&self) -> Option<String> {
+        let mut name = String::new();
+        let mut feet = false;
+        for part in &self.open {
+            match *part {
+                Part::Field(part, about) => {
+                    name += if name.is_empty() { "" } else { "." };
+                    name += part;
+                    feet = about.contains("right, left");
+                }
+                Part::Array { length: MAX_JOINTS, count, .. } if !self.joints.is_empty() => {
+                    name += &format!(".{}", self.joints.get(count - 1)?);
+                }
+                Part::Array { length: 2, count, .. } if feet => {
+                    name += [".right", ".left"].get(count - 1).unwrap_or(&"");
+                    feet = false;
+                }
+                Part::Array { count, .. } => name += &format!("[{}]", count - 1),
+            }
+        }
+        Some(name)
+    }
+
+    /// Unit of the innermost field that has one. Of "m, rad" the last element of an array takes the last.
+    fn unit(&self) -> &'static str {
+        let field = |part: &Part| match part {
+            Part::Field(_, about) => {
+                about.trim_start().strip_prefix("\\[")?.split_once("\\]").map(|(unit, _)| unit)
+            }
+            Part::Array { .. } => None,
+        };
+        let units = self.open.iter().rev().find_map(field).unwrap_or("");
+        let place = match self.open.last() {
+            Some(Part::Array { length, count, .. }) => length - count.min(length),
+            _ => 0,
+        };
+        let all: Vec<&'static str> = units.split(',').map(str::trim).collect();
+        let unit = all[(all.len() - 1).saturating_sub(place)];
+        if unit == "1" { "" } else { unit }
+    }
+
+    /// In an array, a number or an array is an element of its own; a struct begins with the same field every time.
+    fn element(&mut self, name: Option<&'static str>) {
+        if let Some(Part::Array { count, first, .. }) = self.open.last_mut() {
+            let begins =
+                name.is_none() || *first.get_or_insert(name.unwrap_or_default()) == name.unwrap_or_default();
+            *count += usize::from(begins);
+        }
+    }
+}
+
+impl Visit for Walk<'_> {
+    fn f64(&mut self, value: f64) {
+        self.number(Value::Real(value));
+    }
+    fn u64(&mut self, value: u64) {
+        self.number(Value::Whole(value));
+    }
+    fn u32(&mut self, value: u32) {
+        self.number(Value::Whole(value.into()));
+    }
+    fn u8(&mut self, value: u8) {
+        self.number(Value::Whole(value.into()));
+    }
+    fn about(&mut self, text: &'static str) {
+        self.about = text;
+    }
+    fn field(&mut self, name: &'static str) {
+        self.element(Some(name));
+        self.open.push(Part::Field(name, std::mem::take(&mut self.about)));
+    }
+    fn array(&mut self, length: usize) {
+        self.element(None);
+        self.open.push(Part::Array { length, count: 0, first: None });
+    }
+    fn end(&mut self) {
+        self.open.pop();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use messages::{BusFrames, ControllerState, Frame, Sensors};
+
+    /// 32 places for 24 joints, without names and units.
+    #[test]
+    fn numbers_have_the_robots_names_and_units() {
+        let joints: Vec<String> = ["hip", "knee"].map(String::from).to_vec();
+        let sensors = numbers(&Sensors::default(), &joints);
+        let unit = |all: &[Number], name: &str| {
+            all.iter().find(|n| n.name == name).map(|n| n.unit).unwrap_or_else(|| panic!("{name} of {all:?}"))
+        };
+        assert_eq!(sensors.iter().filter(|n| n.name.starts_with("joint_angle")).count(), 2);
+        assert_eq!((unit(&sensors, "joint_angle.knee"), unit(&sensors, "joint_speed.hip")), ("rad", "rad/s"));
+        assert_eq!((unit(&sensors, "header.stamp_ns"), unit(&sensors, "header.tick")), ("ns", ""));
+        let (force, moment) = ("foot_wrench.right.force[2]", "foot_wrench.left.moment[0]");
+        assert_eq!((unit(&sensors, force), unit(&sensors, moment)), ("N", "N m"));
+        assert_eq!(unit(&sensors, "temperature.hip"), "deg C");
+        let state = numbers(&ControllerState::default(), &joints);
+        assert_eq!((unit(&state, "origin[1]"), unit(&state, "origin[2]")), ("m", "rad"));
+        assert_eq!((unit(&state, "feet[1][2]"), unit(&state, "feet[1][3]")), ("m", "rad"));
+    }
+
+    #[test]
+    fn six_digits_are_shown() {
+        let short = |x: f64| Value::Real(x).short();
+        assert_eq!(short(0.930_000_1), "0.93");
+        assert_eq!(short(-9.812_345_678), "-9.81235");
+        assert_eq!(short(1_234.567_89), "1234.57");
+        assert_eq!(
+            (short(1.5e-9).as_str(), short(0.0).as_str(), short(f64::NAN).as_str()),
+            ("1.500e-9", "0", "NaN")
+        );
+    }
+
+    #[test]
+    fn one_bit_is_named_wherever_it_is() {
+        let a = Sensors::default();
+        let mut b = a;
+        b.joint_angle[7] = f64::from_bits(1);
+        let (field, _, theirs) = first_difference(&a, &b).unwrap();
+        assert_eq!((field.as_str(), theirs.as_str()), ("joint_angle[7]", "5e-324"));
+        assert_eq!(first_difference(&a, &a), None);
+        let mut c = a;
+        c.header.stamp_ns ^= 1 << 40;
+        assert_eq!(first_difference(&a, &c).unwrap().0, "header.stamp_ns");
+        c = a;
+        c.joint_angle[0] = -0.0;
+        assert_eq!(first_difference(&a, &c).unwrap().0, "joint_angle[0]", "bits, not values");
+    }
+
+    #[test]
+    fn elements_that_are_structs_are_counted() {
+        let mut a = BusFrames::default();
+        (0..3).for_each(|_| _ = a.push(&Frame::default()));
+        let mut b = a;
+        b.frames[2].data[5] ^= 4;
+        assert_eq!(first_difference(&a, &b).unwrap().0, "frames[2].data[5]");
+    }
+}

@@ -1,0 +1,143 @@
+//! Events as sentences: what happened, to what, and what to do next.
+
+use crate::command::Domain;
+use crate::command_text::{COMMANDS, CommandInfo};
+use crate::event::{EventCode, Refused};
+
+/// Names of what the details of events count: those of the robot, as far as they are known.
+#[derive(Clone, Debug, Default)]
+pub struct Words {
+    /// Joints, in the order of the robot's table.
+    pub joints: Vec<String>,
+    /// Nodes of the field bus.
+    pub nodes: Vec<String>,
+    /// Text of a drive's error code; empty if it has none.
+    pub fault: Option<fn(u16) -> &'static str>,
+}
+
+impl Words {
+    /// The sentence of an event: `motor supply off: emergency stop; make the robot safe; ...`.
+    pub fn sentence(&self, code: u64, detail: u64) -> String {
+        let Some(event) = EventCode::from_number(code) else {
+            return format!("event {code} with detail {detail}, which this version does not know");
+        };
+        let [what, says, advice] = event.words();
+        let inner = says.contains("{event}").then(|| EventCode::from_number(detail)).flatten();
+        // What caused it says first what to do.
+        let advices = [inner.map_or("", |inner| inner.words()[2]), advice];
+        let mut text = what.to_owned();
+        if !says.is_empty() {
+            text += &format!(": {}", self.detail(says, detail));
+        }
+        advices.iter().filter(|advice| !advice.is_empty()).for_each(|advice| text += &format!("; {advice}"));
+        text
+    }
+
+    /// What the detail of an event says, by the words in braces.
+    fn detail(&self, says: &str, n: u64) -> String {
+        let named = |names: &[String], kind: &str, i: u64| {
+            names.get(i as usize).cloned().unwrap_or_else(|| format!("{kind} {i}"))
+        };
+        let joint = |i| named(&self.joints, "joint", i);
+        let node = |i| named(&self.nodes, "node", i);
+        let word = says.split_once('{').and_then(|(_, rest)| Some(rest.split_once('}')?.0)).unwrap_or("");
+        let value = match word {
+            "event" => EventCode::from_number(n).map_or("for a reason unknown", |e| e.words()[0]).to_owned(),
+            "joint" => joint(n),
+            "walk" => command(Domain::Walk, n),
+            "head" => command(Domain::Head, n),
+            "who" => format!("asked for by pid {} of user {}", n as u32, n >> 32),
+            "limit" => match n {
+                1 => "a task is nearly singular".into(),
+                2 => "a modification of the feet".into(),
+                3 => "speed or range of a joint".into(),
+                n => format!("limit {n}"),
+            },
+            // A node alone, or 1000 times the node plus cycles.
+            "node" if says.contains("{cycles}") => {
+                return says.replace("{node}", &node(n / 1000)).replace("{cycles}", &(n % 1000).to_string());
+            }
+            "node" => node(n),
+            "refused" => Refused::text(n).into(),
+            "stations" => {
+                let name = |i| if i == 0 { "the master".to_owned() } else { format!("station {i}") };
+                format!("between {} and {}", name(n >> 16), name(n & 0xFFFF))
+            }
+            "drive" => {
+                let error = (n >> 16) as u16;
+                let text = self.fault.map_or("", |fault| fault(error));
+                format!("{}: error {error:#06x} {text}", joint(n & 0xFFFF)).trim_end().to_owned()
+            }
+            _ => n.to_string(),
+        };
+        says.replace(&format!("{{{word}}}"), &value)
+    }
+}
+
+/// Name of a command.
+fn command(domain: Domain, id: u64) -> String {
+    let address = |info: &CommandInfo| info.example().address();
+    let found = COMMANDS.iter().find(|info| address(info).0 == domain && u64::from(address(info).1) == id);
+    found.map_or_else(|| format!("message {id}"), |info| info.name.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words() -> Words {
+        let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect();
+        Words {
+            joints: names(&["hip", "knee"]),
+            nodes: names(&["torso", "shank"]),
+            fault: Some(|_| "too hot"),
+        }
+    }
+
+    /// `ControlLimited (3)` and `PowerOff (ResetMissed)` told nobody what to do.
+    #[test]
+    fn an_event_is_a_sentence_with_what_to_do() {
+        let said = |code: EventCode, detail| words().sentence(code as u64, detail);
+        assert_eq!(
+            said(EventCode::ControlLimited, 3),
+            "the stabilizer meets a limit: speed or range of a joint; once in a while is normal; walk slower if it goes on"
+        );
+        let off = said(EventCode::PowerOff, EventCode::ResetMissed as u64);
+        assert!(
+            off.starts_with(
+                "motor supply off: the joint loop was too late for the watchdog; `gangwerk doctor`"
+            ),
+            "{off}"
+        );
+        assert!(off.ends_with("; system/reset, then system/enable switch it on again"), "{off}");
+        assert!(said(EventCode::FollowingError, 1).contains("target: knee;"));
+        assert!(
+            said(EventCode::DriveTripped, 1 | 0x4210 << 16).contains("a fault: knee: error 0x4210 too hot;")
+        );
+        assert!(said(EventCode::NodeBack, 1012).ends_with(": shank, after 12 cycles"));
+        assert!(said(EventCode::FramesLost, 0).contains("bus: torso;"));
+        assert!(said(EventCode::FrameRefused, 2).ends_with(": came a second time"));
+        assert!(said(EventCode::RingBroken, 3).contains("between the master and station 3"));
+        assert!(said(EventCode::EmergencyStop, 1000 << 32 | 77).contains("asked for by pid 77 of user 1000"));
+        assert_eq!(words().sentence(9999, 1), "event 9999 with detail 1, which this version does not know");
+    }
+
+    /// Every code, with any detail and with nothing known of the robot.
+    #[test]
+    fn every_code_has_words_and_no_brace_is_left() {
+        for words in [words(), Words::default()] {
+            for code in EventCode::ALL {
+                for detail in [0, 1, 7, 66, 1999, 0xFFFF_FFFF, u64::MAX] {
+                    let text = words.sentence(code as u64, detail);
+                    assert!(text.len() > 4 && !text.contains(['{', '}']), "{code:?}: {text}");
+                    assert!(!text.contains(&format!("{code:?}")), "a name of the program in: {text}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_of_codes_are_their_places() {
+        assert!(EventCode::ALL.iter().enumerate().all(|(i, code)| *code as usize == i));
+    }
+}

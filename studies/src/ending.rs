@@ -1,0 +1,161 @@
+//! How a run ended: whether the robot was still doing what it is told to, and if not, since when and why.
+
+use std::fmt;
+
+use messages::{EventCode, GaitState};
+
+/// What ended the walk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The scene was done.
+    Done,
+    /// Somebody asked for the end, and the robot came to a stand.
+    Asked,
+    /// The robot fell.
+    Fell,
+    /// The motor supply went off for this reason and stayed off.
+    PowerOff(EventCode),
+    /// The joints were brought to rest for this reason, and held.
+    Stopped(EventCode),
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Done => write!(f, "done"),
+            Self::Asked => write!(f, "asked"),
+            Self::Fell => write!(f, "fell"),
+            Self::PowerOff(reason) => write!(f, "power_off: {reason:?}"),
+            Self::Stopped(reason) => write!(f, "stopped: {reason:?}"),
+        }
+    }
+}
+
+/// Gathers, event by event and cycle by cycle, how a run ends.
+#[derive(Clone, Debug, Default)]
+pub struct Ending {
+    /// Somebody asked for the end.
+    pub asked: bool,
+    /// The robot did not come to a stand when somebody did.
+    pub unfinished: bool,
+    /// Commands of the scene that were refused.
+    pub refused: u64,
+    fell: Option<f64>,
+    off: Option<(f64, EventCode)>,
+    stopped: Option<(f64, EventCode)>,
+    /// The last event that a stop comes of.
+    stop: Option<(f64, EventCode)>,
+    time: f64,
+    powered: bool,
+}
+
+impl Ending {
+    /// Something happened at `time` \[s\]; the same event may be told by several processes.
+    pub fn tell(&mut self, time: f64, code: EventCode, detail: u64) {
+        let reason = EventCode::from_number(detail).unwrap_or(EventCode::None);
+        match code {
+            EventCode::Fallen | EventCode::Diverged => self.fell = self.fell.or(Some(time)),
+            EventCode::PowerOff => self.off = Some((time, reason)),
+            // Armed again: what was before is over, but for a fall.
+            EventCode::PowerOn => (self.off, self.stopped) = (None, None),
+            code if stops(code) => self.stop = Some((time, code)),
+            _ => {}
+        }
+    }
+
+    /// One cycle that begins at `time` \[s\]: whether the supply is measured on, and where in a walk the robot is.
+    pub fn see(&mut self, time: f64, powered: bool, gait: GaitState) {
+        (self.time, self.powered) = (time, powered);
+        match gait {
+            GaitState::Fallen => self.fell = self.fell.or(Some(time)),
+            GaitState::Halted => {
+                let why = self.stop.unwrap_or((time, EventCode::SafeStop));
+                self.stopped = self.stopped.or(Some(why));
+            }
+            // It moves again; without supply nothing tells.
+            _ if powered => self.stopped = None,
+            _ => {}
+        }
+    }
+
+    /// When it fell \[s\]; none: it did not.
+    pub fn fell(&self) -> Option<f64> {
+        self.fell
+    }
+
+    /// What ended the walk, and when \[s\]: of several causes the first.
+    pub fn end(&self) -> (End, f64) {
+        let fell = self.fell.map(|time| (End::Fell, time));
+        let off = self.off.filter(|_| !self.powered).map(|(time, why)| (End::PowerOff(why), time));
+        let stopped = self.stopped.map(|(time, why)| (End::Stopped(why), time));
+        let orderly = (if self.asked { End::Asked } else { End::Done }, self.time);
+        let causes = [fell, off, stopped].into_iter().flatten();
+        causes.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(orderly)
+    }
+}
+
+/// Whether a controlled stop can come of this.
+fn stops(code: EventCode) -> bool {
+    use EventCode::{
+        BusOff, BusSilent, DriveNotEnabled, DriveTripped, Lifted, NodeSilent, SafeStop, SensorNotFinite,
+        TargetNotFinite, TargetsStale, TooManyOverruns,
+    };
+    matches!(
+        code,
+        BusOff
+            | BusSilent
+            | DriveNotEnabled
+            | DriveTripped
+            | Lifted
+            | NodeSilent
+            | SafeStop
+            | SensorNotFinite
+            | TargetNotFinite
+            | TargetsStale
+            | TooManyOverruns
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(events: &[(f64, EventCode, EventCode)], powered: bool, gait: GaitState) -> (String, f64) {
+        let mut ending = Ending::default();
+        events.iter().for_each(|&(time, code, detail)| ending.tell(time, code, detail as u64));
+        ending.see(20.0, powered, gait);
+        let (end, time) = ending.end();
+        (end.to_string(), time)
+    }
+
+    #[test]
+    fn the_first_cause_that_is_not_mended_ended_the_run() {
+        use EventCode::{
+            EmergencyStop, Fallen, FollowingError, None, PowerOff, PowerOn, SafeStop, TargetsStale,
+        };
+        let on = (0.04, PowerOn, None);
+        let off = (17.6, PowerOff, FollowingError);
+        let table: [(&[_], _, _, _, _); 8] = [
+            (&[on], true, GaitState::Standing, "done", 20.0),
+            (&[on, (9.0, Fallen, None), (9.0, SafeStop, None)], true, GaitState::Fallen, "fell", 9.0),
+            (&[on, off], false, GaitState::Idle, "power_off: FollowingError", 17.6),
+            // It fell because of the supply.
+            (&[on, off, (18.0, Fallen, None)], false, GaitState::Fallen, "power_off: FollowingError", 17.6),
+            (&[on, (5.0, TargetsStale, None)], true, GaitState::Halted, "stopped: TargetsStale", 5.0),
+            // Armed again.
+            (
+                &[on, (5.0, PowerOff, EmergencyStop), (6.0, PowerOn, None)],
+                true,
+                GaitState::Standing,
+                "done",
+                20.0,
+            ),
+            // The supply goes off behind the joint loop, which has ended.
+            (&[on, off], true, GaitState::Standing, "done", 20.0),
+            (&[], true, GaitState::Fallen, "fell", 20.0),
+        ];
+        for (events, powered, gait, by, at) in table {
+            assert_eq!(after(events, powered, gait), (by.to_owned(), at), "{events:?}");
+        }
+    }
+}
