@@ -41,6 +41,8 @@ events! {
     TargetsStale = 6, "joint targets are too old", "{n} cycles",
         "the stabilizer is late or gone";
     /// A target was not finite; detail: joint index.
+    TargetNotFinite = 7, "a joint target is not a number; the last good one is kept", "{joint}",
+        "`gangwerk replay` of the log shows where it comes from";
     /// A target left its range, or asked for more speed or acceleration than the joint has, and was held back; detail: joint
     /// index.
     TargetLimited = 8, "a joint target was held back to what the joint may do", "{joint}", "";
