@@ -104,7 +104,8 @@ fn a_simulation_writes_the_traffic_of_classic_can() {
     assert!(said.out.contains("the same, bit for bit"), "{}", said.out);
     let stat = site.gangwerk(&["can", "stat", &traffic, "--robot", "lola", "--json"]).well().out;
     let json: serde_json::Value = serde_json::from_str(&stat).unwrap();
-    let most = json["lines"].as_array().unwrap().iter().map(|l| l["load"].as_f64().unwrap()).fold(0.0, f64::max);
+    let most =
+        json["lines"].as_array().unwrap().iter().map(|l| l["load"].as_f64().unwrap()).fold(0.0, f64::max);
     assert!((0.3..0.62).contains(&most), "the worst case is 61.9 %: {most}");
 }
 
@@ -152,8 +153,14 @@ fn frames_are_decoded_by_any_dbc_file() {
     assert!(by_file.contains("_status = 32") && by_file.contains("(switch on disabled"), "{by_file:.2000}");
     let stat = walk.can(&["stat", &walk.traffic, "--dbc", &dbc]).well().out;
     assert!(stat.contains("node0_targets"), "{stat}");
-    refused(&walk.can(&["dump", &walk.traffic, "--dbc", "/nowhere/x.dbc"]), &["/nowhere/x.dbc: cannot be read"]);
-    refused(&walk.can(&["dump", &walk.traffic, "--dbc", &walk.traffic]), &["walk.log: this is not a DBC file"]);
+    refused(
+        &walk.can(&["dump", &walk.traffic, "--dbc", "/nowhere/x.dbc"]),
+        &["/nowhere/x.dbc: cannot be read"],
+    );
+    refused(
+        &walk.can(&["dump", &walk.traffic, "--dbc", &walk.traffic]),
+        &["walk.log: this is not a DBC file"],
+    );
 }
 
 /// The load over time as a picture; the documented bit rate of CAN FD is the one it is computed with.

@@ -7,7 +7,9 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use can_dbc::{
-    AttributeValue, ByteOrder, Dbc, MessageId, MultiplexIndicator, SignalExtendedValueType, ValueDescription, ValueType};
+    AttributeValue, ByteOrder, Dbc, MessageId, MultiplexIndicator, SignalExtendedValueType, ValueDescription,
+    ValueType,
+};
 
 use crate::error::ConfigError;
 
@@ -115,7 +117,10 @@ impl Database {
 impl Described {
     /// The signals of a frame with this payload: those that lie within it, and of multiplexed ones those that are there.
     pub fn carries<'a>(&'a self, data: &'a [u8]) -> impl Iterator<Item = Carried<'a>> {
-        self.fields.iter().filter(|field| self.is_there(field, data, 0)).filter_map(|field| field.carried(data))
+        self.fields
+            .iter()
+            .filter(|field| self.is_there(field, data, 0))
+            .filter_map(|field| field.carried(data))
     }
 
     /// Whether the signals that switch a field let it be there.
@@ -125,7 +130,9 @@ impl Described {
         // A circle of switches in a bent file ends, too.
         depth < self.fields.len()
             && self.is_there(switch, data, depth + 1)
-            && switch.raw(data).is_some_and(|raw| values.iter().any(|(low, high)| (*low..=*high).contains(&raw)))
+            && switch
+                .raw(data)
+                .is_some_and(|raw| values.iter().any(|(low, high)| (*low..=*high).contains(&raw)))
     }
 }
 
@@ -201,7 +208,8 @@ impl<'a> Details<'a> {
             _ => return None,
         };
         let index = |name: &str| m.signals.iter().position(|other| other.name == name);
-        let first = || m.signals.iter().position(|s| s.multiplexer_indicator == MultiplexIndicator::Multiplexor);
+        let first =
+            || m.signals.iter().position(|s| s.multiplexer_indicator == MultiplexIndicator::Multiplexor);
         let switch = match (self.switches.get(&key), s.multiplexer_indicator) {
             (Some((by, values)), _) => index(by).map(|by| (by, values.clone())),
             (None, MultiplexIndicator::MultiplexedSignal(value))
@@ -276,11 +284,18 @@ SG_MUL_VAL_ 100 deep switch 2-3, 7-7;
         assert_eq!(carried(mixed, &low), [("switch", 0.0, Some("low")), ("intel", 9.5, None)]);
         assert_eq!(mixed.carries(&low).nth(1).unwrap().unit, "°C");
         let high = [0x01, 0xab, 0xc0, 0, 0, 0, 0, 0];
-        assert_eq!(carried(mixed, &high), [("switch", 1.0, Some("high")), ("motorola", f64::from(0xabc), None)]);
+        assert_eq!(
+            carried(mixed, &high),
+            [("switch", 1.0, Some("high")), ("motorola", f64::from(0xabc), None)]
+        );
         for (value, is_there) in [(2, true), (3, true), (4, false), (7, true)] {
             assert_eq!(carried(mixed, &[value, 5]).len() == 2, is_there, "{value}");
         }
-        assert_eq!(carried(mixed, &[0]), [("switch", 0.0, Some("low"))], "what lies behind the end is not there");
+        assert_eq!(
+            carried(mixed, &[0]),
+            [("switch", 0.0, Some("low"))],
+            "what lies behind the end is not there"
+        );
         assert!(database.message(101).is_none());
     }
 

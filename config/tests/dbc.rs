@@ -189,7 +189,9 @@ fn words(carries: Carries) -> Vec<(u16, &'static str)> {
             let text = ["disable voltage", "quick stop", "shutdown", "enable operation", "fault reset"];
             cia402::WORDS.into_iter().zip(text).collect()
         }
-        Carries::Error(_) => Fault::ALL.map(|f| (f as u16, f.text())).into_iter().chain([(0, "none")]).collect(),
+        Carries::Error(_) => {
+            Fault::ALL.map(|f| (f as u16, f.text())).into_iter().chain([(0, "none")]).collect()
+        }
         Carries::Status(_) => {
             let states = [
                 (State::NotReady, "not ready"),

@@ -256,9 +256,10 @@ fn commands_are_answered_by_the_state_they_come_in() {
                 }
                 _ => assert_eq!(found, wanted, "{state:?}, {}", command.name()),
             }
-            let refusals = rig.events.iter().filter(|(code, _)| {
-                matches!(code, EventCode::CommandRefused | EventCode::ZeroRefused)
-            });
+            let refusals = rig
+                .events
+                .iter()
+                .filter(|(code, _)| matches!(code, EventCode::CommandRefused | EventCode::ZeroRefused));
             assert_eq!(refusals.count(), usize::from(found.is_err()), "{state:?}, {}", command.name());
         }
     }

@@ -113,7 +113,12 @@ fn mapped(capture: &Capture, map: &[String]) -> Result<Vec<String>, Box<dyn Erro
 }
 
 /// Every frame at its time \[ns\] after the first one.
-fn timed(frames: &[(&Captured, u64)], player: &Player, speed: f64, stop: &Stop) -> Result<(), Box<dyn Error>> {
+fn timed(
+    frames: &[(&Captured, u64)],
+    player: &Player,
+    speed: f64,
+    stop: &Stop,
+) -> Result<(), Box<dyn Error>> {
     let begun = clock::now();
     let (mut sent, mut latest) = (0u64, 0u64);
     let first = frames.first().map_or(0, |(_, elapsed)| *elapsed);

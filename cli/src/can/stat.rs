@@ -239,7 +239,10 @@ fn table(r: &Report) -> String {
         r.seconds, r.bitrate, r.data_bitrate
     );
     if r.clock_steps > 0 {
-        text += &format!("the clock was put back {} times: what passed meanwhile is not counted\n", r.clock_steps);
+        text += &format!(
+            "the clock was put back {} times: what passed meanwhile is not counted\n",
+            r.clock_steps
+        );
     }
     for l in &r.lines {
         let load = l.load.map_or("-".into(), |load| format!("{:.1} %", 100.0 * load));

@@ -11,7 +11,8 @@ pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
     let chart = |title: &str, foot: usize, color| {
         let peak = walk.cycles.iter().map(|c| c.force_z[foot]).fold(0.0, f64::max);
         let title = format!("{title}: peak {peak:.0} N");
-        let mut chart = Chart::new(&title, "time [s]", "vertical force [N]").height(360.0).at_least(10.0).robust();
+        let mut chart =
+            Chart::new(&title, "time [s]", "vertical force [N]").height(360.0).at_least(10.0).robust();
         chart.line("measured", walk.over_time(|c| c.force_z[foot]), color);
         chart.dashed("desired", walk.over_time(|c| c.state.wrench_desired[foot].force[2]), BLACK);
         chart

@@ -13,7 +13,9 @@ const GROUPS: [(&str, &str, &str); 3] =
 pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
     let moves = |c: &super::walk::Cycle| c.state.tracking_error.iter().any(|error| error.abs() > NOTHING);
     if !walk.cycles.iter().any(moves) {
-        return Err("every joint is where its target is: the scene has no drives (depth = 2 or more has)".into());
+        return Err(
+            "every joint is where its target is: the scene has no drives (depth = 2 or more has)".into()
+        );
     }
     let mut figure = Figure::new("Joint tracking: target of the last cycle − measured angle", &walk.about);
     let mut found = false;

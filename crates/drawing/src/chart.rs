@@ -88,7 +88,9 @@ impl Chart {
     pub(crate) fn emptiness(&self) -> (&str, bool) {
         let seen = |points: &[Point]| points.iter().any(|p| p[0].is_finite() && p[1].is_finite());
         let empty = !self.marks.iter().any(|mark| match mark {
-            Mark::Line { points, .. } | Mark::Dots { points, .. } | Mark::Area { outline: points, .. } => seen(points),
+            Mark::Line { points, .. } | Mark::Dots { points, .. } | Mark::Area { outline: points, .. } => {
+                seen(points)
+            }
             Mark::Note { .. } | Mark::Label { .. } => false,
         });
         (&self.title, empty)

@@ -35,7 +35,11 @@ mod tests {
         let directory = std::env::temp_dir();
         let draw = |name: &str, shift: f64| {
             let mut chart = Chart::new("sine", "x", "y").at_least(4.0);
-            chart.line("y", (0..500).map(|k| [f64::from(k), (f64::from(k) * 0.03).sin() + shift]).collect(), BLUE);
+            chart.line(
+                "y",
+                (0..500).map(|k| [f64::from(k), (f64::from(k) * 0.03).sin() + shift]).collect(),
+                BLUE,
+            );
             chart.line("", vec![[0.0, -2.0], [0.0, 2.0]], BLUE);
             let path = directory.join(format!("gangwerk-difference-{}-{name}.png", std::process::id()));
             Figure::new("a", "b").with(chart).save(&path).unwrap();

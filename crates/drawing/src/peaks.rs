@@ -29,7 +29,15 @@ pub(crate) fn draw<'a>(canvas: &mut Canvas, view: &View, lines: impl Iterator<It
     let [low, high] = view.ranges[1];
     let mut written = [f32::NEG_INFINITY; 2];
     for (points, color) in lines {
-        let side = |p: &Point| if p[1] > high { 1 } else if p[1] < low { -1 } else { 0 };
+        let side = |p: &Point| {
+            if p[1] > high {
+                1
+            } else if p[1] < low {
+                -1
+            } else {
+                0
+            }
+        };
         for stretch in points.chunk_by(|a, b| side(a) == side(b)).filter(|stretch| side(&stretch[0]) != 0) {
             let up = side(&stretch[0]) > 0;
             let out = |p: &&Point| if up { p[1] } else { -p[1] };

@@ -68,7 +68,11 @@ impl Format for Asc {
 
 impl Asc {
     /// A line without a time.
-    fn head<'a, T>(&mut self, first: &str, words: impl Iterator<Item = &'a str>) -> Result<Option<T>, String> {
+    fn head<'a, T>(
+        &mut self,
+        first: &str,
+        words: impl Iterator<Item = &'a str>,
+    ) -> Result<Option<T>, String> {
         let head = first.to_ascii_lowercase();
         if !HEADS.iter().any(|known| head == *known || (*known == "//" && head.starts_with("//"))) {
             return Err(format!("`{first}` is neither a time in seconds nor a word of a header"));
@@ -98,7 +102,9 @@ impl Asc {
         let code = code.ok_or_else(|| format!("`{}` is not a length code", length.unwrap_or_default()))?;
         let len = CLASSIC_BYTES.min(code as usize);
         let frame = match (kind, length) {
-            ("r" | "R", _) => Captured { id: id | REMOTE, len: len as u8, form: Form::CLASSIC, ..error_frame() },
+            ("r" | "R", _) => {
+                Captured { id: id | REMOTE, len: len as u8, form: Form::CLASSIC, ..error_frame() }
+            }
             ("d" | "D", Some(_)) => {
                 let form = Form::Classic { code: if code > 8 { code as u8 } else { 0 } };
                 Captured { id, len: len as u8, data: bytes(words, len, self.base)?, form, ..error_frame() }
@@ -110,7 +116,8 @@ impl Asc {
 
     /// `CHANNEL Rx ID[x] [NAME] BRS ESI CODE LENGTH DATA… DURATION BITS FLAGS …`.
     fn fd<'a>(&self, words: &mut impl Iterator<Item = &'a str>) -> Frame {
-        let channel = words.next().and_then(|word| number(word, 10)).ok_or("behind CANFD the channel is missing")?;
+        let channel =
+            words.next().and_then(|word| number(word, 10)).ok_or("behind CANFD the channel is missing")?;
         let Some(way) = way(words.next())? else { return Ok(None) };
         let id = words.next().unwrap_or_default();
         if id.eq_ignore_ascii_case("ErrorFrame") {
@@ -128,7 +135,8 @@ impl Asc {
         let state = bit(words.next(), "the error state")?;
         let code = words.next().and_then(|word| number(word, 16)).filter(|code| *code < 16);
         let code = code.ok_or("behind the error state the length code is missing")?;
-        let len = words.next().and_then(|word| number(word, 10)).ok_or("behind the code the length is missing")?;
+        let len =
+            words.next().and_then(|word| number(word, 10)).ok_or("behind the code the length is missing")?;
         let len = usize::try_from(len).ok().filter(|len| FD_LENGTHS.contains(len));
         let len = len.ok_or("no CAN FD frame is that long (0 to 8, 12, 16, 20, 24, 32, 48, 64)")?;
         let data = bytes(words, len, self.base)?;
@@ -137,7 +145,9 @@ impl Asc {
         let (id, len, form) = match flags {
             _ if flags & FLAG_REMOTE != 0 => (id | REMOTE, CLASSIC_BYTES.min(code as usize), Form::CLASSIC),
             _ if flags & FLAG_FD != 0 => (id, len, Form::Fd { flags: 4 | switch | state << 1 }),
-            _ if len > CLASSIC_BYTES => return Err(format!("{len} bytes of data in a classic frame, at most 8")),
+            _ if len > CLASSIC_BYTES => {
+                return Err(format!("{len} bytes of data in a classic frame, at most 8"));
+            }
             _ => (id, len, Form::CLASSIC),
         };
         Ok(Some((channel, Captured { id, len: len as u8, data, form, way: Some(way), ..error_frame() })))
@@ -150,7 +160,8 @@ impl Asc {
             None => (word, BASE_BITS, 0),
         };
         let id = number(digits, self.base).filter(|id| *id <= most);
-        id.map(|id| id | flag).ok_or_else(|| format!("`{word}` is not an identifier, or longer than it may be"))
+        id.map(|id| id | flag)
+            .ok_or_else(|| format!("`{word}` is not an identifier, or longer than it may be"))
     }
 }
 
@@ -180,7 +191,8 @@ mod tests {
 
     #[test]
     fn every_form_of_frame_is_read_and_events_are_none() {
-        let (frames, broken) = read("date Sat Sep 30 15:06:13.191 2017\r\nbase hex  timestamps absolute\r\n\
+        let (frames, broken) = read(
+            "date Sat Sep 30 15:06:13.191 2017\r\nbase hex  timestamps absolute\r\n\
             internal events logged\r\n// version 9.0.0\r\nBegin Triggerblock Sat Sep 30 15:06:13.191 2017\r\n   \
             0.000000 Start of measurement\r\n   0.015991 CAN 1 Status:chip status error active\r\n   \
             0.015991 1  Statistic: D 0 R 0 XD 0 XR 0 E 0 O 0 B 0.00%\r\n   \
@@ -189,7 +201,8 @@ mod tests {
             3.3 1 7ff Rx d f 1 2 3 4 5 6 7 8\r\n   3.4 1  10 TxRq d 1 00\r\n  \
             30.506898 CANFD   2 Rx  4EE  A_Name  1 1 9 12 00 01 02 03 04 05 06 07 08 09 0A 0B 0 0 7000 0\r\n  \
             30.6 CANFD   2 Tx   12345678x  0 0 0 0 0 0 1000\r\n  30.7 CANFD 2 Tx 12  0 0 1 1 AA 0 0 0\r\n  \
-            30.8 CANFD 2 Tx 12  0 0 8 0 0 0 10\r\n  30.9 CANFD   1 Rx  ErrorFrame Not Acknowledge error\r\nEnd TriggerBlock\r\n");
+            30.8 CANFD 2 Tx 12  0 0 8 0 0 0 10\r\n  30.9 CANFD   1 Rx  ErrorFrame Not Acknowledge error\r\nEnd TriggerBlock\r\n",
+        );
         assert_eq!(broken.count, 0, "{broken}");
         let wanted = "2.501000 can0 20000000#0000000000000000|3.013000 can0 064#00010203040506FF|3.014000 can1 18EBFF00#0A|\
             3.100000 can0 010#R|3.200000 can0 010#R8|3.300000 can0 7FF#0102030405060708_F|\
@@ -202,8 +215,9 @@ mod tests {
 
     #[test]
     fn decimal_numbers_and_times_since_the_line_before() {
-        let (frames, broken) =
-            read("base dec timestamps relative\n0.5 log trigger event\n0.25 1 100 Rx d 2 255 16\n0.25 1 100 Rx d 0\n");
+        let (frames, broken) = read(
+            "base dec timestamps relative\n0.5 log trigger event\n0.25 1 100 Rx d 2 255 16\n0.25 1 100 Rx d 0\n",
+        );
         assert_eq!(broken.count, 0, "{broken}");
         assert_eq!(frames, "(0000000000.750000) can0 064#FF10\n(0000000001.000000) can0 064#\n");
     }

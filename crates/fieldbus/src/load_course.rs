@@ -51,7 +51,8 @@ impl LoadCourse {
                 let sum: f64 = occupied.range(first..end).map(|(_, s)| s).sum();
                 [first as f64 * PIECE as f64 * 1e-9 + seconds / 2.0, sum / seconds]
             };
-            let whole = occupied.iter().filter(|(piece, _)| (**piece + 1).saturating_mul(PIECE) <= self.end_ns);
+            let whole =
+                occupied.iter().filter(|(piece, _)| (**piece + 1).saturating_mul(PIECE) <= self.end_ns);
             LineCourse {
                 line: *line,
                 points: (0..columns).map(point).collect(),

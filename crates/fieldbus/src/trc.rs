@@ -40,13 +40,16 @@ impl Format for Trc {
         let row: Vec<(char, &str)> = self.columns.chars().filter(|c| *c != 'D').zip(&mut words).collect();
         let of = |column: char| row.iter().find(|(c, _)| *c == column).map(|(_, word)| *word);
         // Milliseconds, with or without parts of them.
-        let time = of('O').and_then(|word| fixed(word, 6).or_else(|| Some(u64::from(number(word, 10)?) * 1_000_000)));
+        let time = of('O')
+            .and_then(|word| fixed(word, 6).or_else(|| Some(u64::from(number(word, 10)?) * 1_000_000)));
         let time_ns = time.ok_or("the time in milliseconds is missing")?;
         let bus = of('B').map_or(Some(1), |word| number(word, 10)).ok_or("the bus is not a number")?;
         let name = format!("can{}", bus.saturating_sub(1));
         let frame = match (of('T'), of('d')) {
             (Some("ER"), _) | (None, Some("Error")) => Some(error_frame()),
-            (Some(kind @ ("DT" | "RR" | "FD" | "FB" | "FE" | "BI")), way) => self.frame(kind, way, &of, words)?,
+            (Some(kind @ ("DT" | "RR" | "FD" | "FB" | "FE" | "BI")), way) => {
+                self.frame(kind, way, &of, words)?
+            }
             (None, way) => self.frame("DT", way, &of, words)?,
             (Some(kind), _) if kind.len() == 2 && kind.bytes().all(|b| b.is_ascii_uppercase()) => None,
             (Some(kind), _) => return Err(format!("`{kind}` is not a type of lines")),
@@ -121,7 +124,14 @@ impl Trc {
         if len > most || !FD_LENGTHS.contains(&len) {
             return Err(format!("no such frame has {len} bytes"));
         }
-        Ok(Some(Captured { id, len: len as u8, data: bytes(&mut data, len, 16)?, form, way, ..error_frame() }))
+        Ok(Some(Captured {
+            id,
+            len: len as u8,
+            data: bytes(&mut data, len, 16)?,
+            form,
+            way,
+            ..error_frame()
+        }))
     }
 }
 
@@ -152,23 +162,33 @@ mod tests {
     #[test]
     fn every_version_is_read() {
         for (text, wanted) in [
-            (";  comment\n     1)     1841 0001 8 00 00 00 00 00 00 00 00\n     2) 1900 0300 0\n     3) 2000 FFFFFFFF 4 00 00 00 08\n\
+            (
+                ";  comment\n     1)     1841 0001 8 00 00 00 00 00 00 00 00\n     2) 1900 0300 0\n     3) 2000 FFFFFFFF 4 00 00 00 08\n\
               \n     4) 2100 18EFC034 4 RTR\n",
-             "1.841000) can0 001#0000000000000000|1.900000) can0 300#|2.100000) can0 18EFC034#R4"),
-            (";$FILEVERSION=1.1\n;$STARTTIME=39878.6772258947\n 1) 1059.9  Rx         0300  7  00 00 00 00 04 00 00\n\
+                "1.841000) can0 001#0000000000000000|1.900000) can0 300#|2.100000) can0 18EFC034#R4",
+            ),
+            (
+                ";$FILEVERSION=1.1\n;$STARTTIME=39878.6772258947\n 1) 1059.9  Rx         0300  7  00 00 00 00 04 00 00\n\
               2) 1283.231 Tx 18EFC034 1 27\n 3) 1300.0 Warng FFFFFFFF 4 00 00 00 08\n",
-             "1.059900) can0 300#00000000040000|1.283231) can0 18EFC034#27"),
+                "1.059900) can0 300#00000000040000|1.283231) can0 18EFC034#27",
+            ),
             (";$FILEVERSION=1.2\n 1) 1059.900 2  Rx 0300  2  00 04\n", "1.059900) can1 300#0004"),
-            (";$FILEVERSION=1.3\n 1) 1059.900 1  Rx 0300 -  2  00 04\n 2) 1061.0 1 Error 0008 - 5 00 19 08 08 00\n",
-             "1.059900) can0 300#0004|1.061000) can0 20000000#0000000000000000"),
-            (";$FILEVERSION=2.0\n;$STARTTIME=43008.920986006946\n;$COLUMNS=N,O,T,I,d,l,D\n 1 1059.900 DT 0300 Rx 7 00 00 00 00 04 00 00\n\
+            (
+                ";$FILEVERSION=1.3\n 1) 1059.900 1  Rx 0300 -  2  00 04\n 2) 1061.0 1 Error 0008 - 5 00 19 08 08 00\n",
+                "1.059900) can0 300#0004|1.061000) can0 20000000#0000000000000000",
+            ),
+            (
+                ";$FILEVERSION=2.0\n;$STARTTIME=43008.920986006946\n;$COLUMNS=N,O,T,I,d,l,D\n 1 1059.900 DT 0300 Rx 7 00 00 00 00 04 00 00\n\
               2 1283.231 FB 18EFC034 Rx 12 01 02 03 04 05 06 07 08 09 0A 0B 0C\n 3 1300.0 ST - Rx 00 00 00 08\n 4 1400.0 RR 0100 Rx 2\n\
               5 1500.0 ER - Rx 5 04 00 02 00 00\n",
-             "1.059900) can0 300#00000000040000|1.283231) can0 18EFC034##50102030405060708090A0B0C|1.400000) can0 100#R2|\
-              1.500000) can0 20000000#0000000000000000"),
-            (";$FILEVERSION=2.1\n;$COLUMNS=N,O,T,B,I,d,R,L,D\n 1 1.0 FE 2 00000300 Tx - 9 01 02 03 04 05 06 07 08 09 0A 0B 0C\n\
+                "1.059900) can0 300#00000000040000|1.283231) can0 18EFC034##50102030405060708090A0B0C|1.400000) can0 100#R2|\
+              1.500000) can0 20000000#0000000000000000",
+            ),
+            (
+                ";$FILEVERSION=2.1\n;$COLUMNS=N,O,T,B,I,d,R,L,D\n 1 1.0 FE 2 00000300 Tx - 9 01 02 03 04 05 06 07 08 09 0A 0B 0C\n\
               2 2.0 DT 1 0123 Rx - 11 01 02 03 04 05 06 07 08\n 3 3.0 FD 1 0123 Rx - 0\n",
-             ".001000) can1 00000300##70102030405060708090A0B0C|.002000) can0 123#0102030405060708_B|.003000) can0 123##4"),
+                ".001000) can1 00000300##70102030405060708090A0B0C|.002000) can0 123#0102030405060708_B|.003000) can0 123##4",
+            ),
         ] {
             let (frames, broken) = read(text);
             assert_eq!(broken.count, 0, "{text}{broken}");
@@ -186,11 +206,17 @@ mod tests {
             (" 1) 5 0100 2 00", "1 bytes of data, not 2"),
             (" 1) 5 0100 1 0G", "`0G` in the data"),
             (";$FILEVERSION=1.1\n 1) 5.0 Up 0100 0", "where Rx or Tx must"),
-            (";$COLUMNS=N,O,T,I,d,l,D\n 1 5.0 DT 0100 Rx 9 00 00 00 00 00 00 00 00 00", "no such frame has 9"),
+            (
+                ";$COLUMNS=N,O,T,I,d,l,D\n 1 5.0 DT 0100 Rx 9 00 00 00 00 00 00 00 00 00",
+                "no such frame has 9",
+            ),
             (";$COLUMNS=N,O,T,I,d,l,D\n 1 5.0 what 0100 Rx 0", "not a type"),
         ] {
             let (frames, broken) = read(line);
-            assert!(frames.is_empty() && broken.count == 1 && broken.first[0].why.contains(why), "{line}: {broken}");
+            assert!(
+                frames.is_empty() && broken.count == 1 && broken.first[0].why.contains(why),
+                "{line}: {broken}"
+            );
         }
     }
 }

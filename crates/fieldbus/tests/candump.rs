@@ -152,7 +152,10 @@ fn a_clock_that_was_put_back_costs_no_frame_and_is_told() {
     let order: Vec<u32> = capture.frames.iter().map(|f| f.id).collect();
     let written: Vec<u32> = (0..100).map(|k| k / 10 * 16 + k % 10).collect();
     assert_eq!(order, written, "the order is that of the file");
-    assert_eq!(capture.steps.iter().map(|s| (s.at, s.back_ns)).collect::<Vec<_>>(), [(40, 499_000_000), (60, 499_000_000)]);
+    assert_eq!(
+        capture.steps.iter().map(|s| (s.at, s.back_ns)).collect::<Vec<_>>(),
+        [(40, 499_000_000), (60, 499_000_000)]
+    );
     assert_eq!(capture.elapsed().last(), Some(97_000_000), "of two times nothing is known");
     let mut statistics = Statistics::new(BitRates { nominal: 1e6, data: 5e6 });
     for (i, frame) in capture.frames.iter().enumerate() {
@@ -170,7 +173,8 @@ fn a_clock_that_was_put_back_costs_no_frame_and_is_told() {
 /// Each line is a step: none is lost, and it takes no longer.
 #[test]
 fn a_clock_that_drifts_back_costs_no_frame() {
-    let lines = |k: u64| format!("({:010}.000000) can0 123#\n({:010}.500000) can1 123#\n", 30_000 - k, 30_000 - k);
+    let lines =
+        |k: u64| format!("({:010}.000000) can0 123#\n({:010}.500000) can1 123#\n", 30_000 - k, 30_000 - k);
     let text: String = (0..20_000).map(lines).collect();
     let (mut capture, broken) = candump::parse(text.as_bytes()).unwrap();
     capture.sort();

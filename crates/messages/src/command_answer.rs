@@ -110,7 +110,9 @@ const fn not_now(command: &Command) -> &'static str {
         Command::Home => {
             "no joint waits for its angle: every one knows it, or the motor supply is off (system/reset and system/enable)"
         }
-        Command::ZeroForce => "the drives are not on: system/reset and system/enable come first, then joint/home if asked for",
+        Command::ZeroForce => {
+            "the drives are not on: system/reset and system/enable come first, then joint/home if asked for"
+        }
         Command::Enable => "no effect: system/reset comes first, and the joint loop must be alive",
         _ => "not in the present state; walk/stand comes first, and a skill ends first",
     }

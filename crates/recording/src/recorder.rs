@@ -25,7 +25,7 @@ use crate::standard_definitions::{
 use crate::{markers, rosout};
 use mcap::records::{MessageHeader, Metadata};
 use messages::topics::{ForType, with_type};
-use messages::{ControllerState, Event, MAX_JOINTS, Plan, Record, Sensors, SimState, TOPICS, Topic};
+use messages::{ControllerState, Event, MAX_JOINTS, Plan, Record, Sensors, SimState, TOPICS, Topic, Words};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::io::{BufWriter, Seek, Write};
@@ -50,6 +50,7 @@ pub struct Recorder {
     poses: Vec<Pose>,
     channels: Vec<Channel>,
     encoder: Encoder,
+    words: Words,
     queue: Queue,
     odometry: Odometry,
     described: bool,
@@ -89,6 +90,7 @@ impl Recorder {
             poses: Vec::new(),
             channels: Vec::new(),
             encoder: Encoder::new(),
+            words: Words { joints: robot.joints.clone(), ..Words::default() },
             queue: Queue::new(run.clock.clone()),
             odometry: Odometry::default(),
             described: false,
@@ -194,7 +196,7 @@ impl Recorder {
         } else if let Some(event) = any.downcast_ref::<Event>().filter(|_| topic.name.starts_with("events/"))
         {
             let stamp = self.queue.time(event.header.stamp_ns);
-            rosout::log(&mut self.encoder, stamp, topic.writer.name(), event);
+            rosout::log(&mut self.encoder, stamp, topic.writer.name(), event, &self.words);
             self.put(ROSOUT.topic, event.header.stamp_ns);
         }
         while let Some((time, message)) = self.queue.next() {

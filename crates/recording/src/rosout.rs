@@ -1,7 +1,7 @@
 //! `/rosout`: events in words, for the log panels of viewers.
 
 use messages::record::Visit;
-use messages::{Event, EventCode};
+use messages::{Event, EventCode, Words};
 
 use crate::cdr::Encoder;
 
@@ -15,12 +15,12 @@ enum Level {
 }
 
 /// `rcl_interfaces/Log` of an event that `process` told.
-pub(crate) fn log(e: &mut Encoder, stamp_ns: u64, process: &str, event: &Event) {
+pub(crate) fn log(e: &mut Encoder, stamp_ns: u64, process: &str, event: &Event, words: &Words) {
     let code = EventCode::from_number(event.code);
     e.begin().stamp(stamp_ns);
     e.u8(code.map_or(Level::Warn, level) as u8);
     e.string(process);
-    e.string(&sentence(code, event));
+    e.string(&words.sentence(event.code, event.detail));
     // File, function and line are those of a program, not of a robot.
     e.string("");
     e.string("");
@@ -60,43 +60,18 @@ fn level(code: EventCode) -> Level {
     }
 }
 
-/// `power off: following error`.
-fn sentence(code: Option<EventCode>, event: &Event) -> String {
-    let Some(code) = code else { return format!("event {} ({})", event.code, event.detail) };
-    let reason = EventCode::from_number(event.detail).filter(|reason| *reason != EventCode::None);
-    match (code, reason) {
-        (EventCode::PowerOff | EventCode::SafeStop, Some(reason)) => {
-            format!("{}: {}", words(code), words(reason))
-        }
-        _ if event.detail == 0 => words(code),
-        _ => format!("{} ({})", words(code), event.detail),
-    }
-}
-
-/// `FollowingError`: following error.
-fn words(code: EventCode) -> String {
-    let mut text = String::new();
-    for c in format!("{code:?}").chars() {
-        if c.is_uppercase() && !text.is_empty() {
-            text.push(' ');
-        }
-        text.extend(c.to_lowercase());
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Every code that somebody adds is thought about: what cuts the power or stops the robot is an error.
     #[test]
-    fn an_event_is_a_line_in_words() {
-        let event = |code: EventCode, detail: u64| Event { code: code as u64, detail, ..Event::default() };
-        let text = |event: Event| sentence(EventCode::from_number(event.code), &event);
-        let off = event(EventCode::PowerOff, EventCode::FollowingError as u64);
-        assert_eq!(text(off), "power off: following error");
-        assert_eq!(text(event(EventCode::ControlLimited, 3)), "control limited (3)");
-        assert_eq!(text(event(EventCode::Fallen, 0)), "fallen");
-        assert_eq!(text(Event { code: 9999, ..Event::default() }), "event 9999 (0)");
+    fn what_ends_a_walk_is_an_error_and_routine_is_none() {
+        for code in [EventCode::PowerOff, EventCode::SafeStop, EventCode::Fallen, EventCode::FollowingError] {
+            assert_eq!(level(code) as u8, Level::Error as u8, "{code:?}");
+        }
+        for code in [EventCode::Started, EventCode::PowerOn, EventCode::PlanActive] {
+            assert!((level(code) as u8) < Level::Warn as u8, "{code:?}");
+        }
     }
 }
