@@ -7,16 +7,10 @@ use std::path::PathBuf;
 
 const EXE: &str = harness::executable!();
 
-/// Standing up.
-const STAND: &str = "
-[[command]]
-time = 0.02
-topic = \"walk/stand\"
-";
-/// And one step.
+/// Standing up and one step.
 const WALK: &str = "
 [[command]]
-time = 0.02
+time = 0.06
 topic = \"walk/stand\"
 [[command]]
 time = 2.2
@@ -31,10 +25,10 @@ struct Walk {
 }
 
 impl Walk {
-    /// A walk of some seconds with its log and the traffic of its bus.
+    /// A walk of some seconds, or a robot that keeps its pose for less, with its log and the traffic of its bus.
     fn new(seconds: f64) -> Self {
         let site = Site::new(EXE);
-        site.scene("walk", seconds, if seconds > 2.2 { WALK } else { STAND });
+        site.scene("walk", seconds, if seconds > 2.2 { WALK } else { "" });
         let path = |name: &str| site.path(name).display().to_string();
         let (log, traffic) = (path("walk.mcap"), path("walk.log"));
         site.gangwerk(&["sim", "walk", "--log", &log, "--can", &traffic]).well();

@@ -37,7 +37,8 @@ fn deserved(trial: &Trial, code: EventCode) -> bool {
         if lost { &[Fallen, Lifted, EarlyContact, SafeStop, PlanKept, NotStanding] } else { &[] };
     // Whoever hits the ground is slower at once than a reading may be.
     let impact: &[EventCode] = if trial.fell { &[FrameRefused, FramesLost] } else { &[] };
-    [PlanActive, ControlLimited].contains(&code) || [cause, after, impact].iter().any(|of| of.contains(&code))
+    [PlanActive, ControlLimited, TargetLimited].contains(&code)
+        || [cause, after, impact].iter().any(|of| of.contains(&code))
 }
 
 #[test]

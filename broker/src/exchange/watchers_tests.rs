@@ -228,7 +228,7 @@ fn a_parameter_is_set_by_name_or_refused_with_the_reason() {
         (5, "planner.swing_height = 0.5 is outside of [0, 0.15] m; nothing was changed"),
         (13, "lowlevel.bus.missed is fixed at start: change it in config/system.toml"),
         (13, "broker.lease is a constant of the program"),
-        (13, "there is no parameter nothing; `gangwerk param list` shows them all"),
+        (13, "there is no parameter `nothing`; `gangwerk param list` shows them all"),
     ] {
         assert_eq!(operator.refused(), (code, text.into()));
     }
