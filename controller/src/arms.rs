@@ -81,7 +81,7 @@ impl Arms {
     }
 
     /// Speeds of the shoulders, `desired` being the kinematics of the `angles` \[rad\] that the joints were told last; small
-    /// errors vanish with `drift` \[1/s\], large ones as fast as [`RETURN`] lets them.
+    /// errors vanish with `drift` \[1/s\], large ones within bounds of speed and acceleration.
     pub fn drive(
         &mut self,
         desired: &TaskSpace,
