@@ -7,6 +7,7 @@ use harness::{Said, Site, doze};
 use ipc::Reader;
 use messages::topics::SIM_STATE;
 use messages::{Process, SimState};
+use realtime::clock;
 use recording::{Log, payload_hashes};
 use rustix::process::Signal;
 use std::collections::BTreeMap;
@@ -164,6 +165,25 @@ fn without_broker_observer_or_logger_the_robot_does_the_same_bit_by_bit() {
             assert_eq!(different(&alone, &hashes(&parts[0])), [""; 0], "{victim:?}");
         }
     }
+}
+
+/// Paced, a machine that is late slows the robot down: the same bits, in no less time than the scene has.
+#[test]
+fn paced_a_process_that_is_stopped_costs_time_and_nothing_else() {
+    let site = site();
+    let alone = sim(&site);
+    let begun = clock::now();
+    let run = site.run("walk", &["--lockstep", "--paced"]);
+    for process in [Process::Planner, Process::Lowlevel, Process::SimBackend] {
+        doze(1.0);
+        run.signal(process, Signal::STOP);
+        doze(0.3);
+        run.signal(process, Signal::CONT);
+    }
+    refused(&run.end());
+    let took = (clock::now() - begun) as f64 * 1e-9;
+    assert!(took > SECONDS, "{took} s for {SECONDS} s");
+    assert_eq!(different(&alone, &hashes(&site.path("walk.mcap"))), [""; 0]);
 }
 
 /// In whatever order the processes come, they wait for each other, and what they do is the same.

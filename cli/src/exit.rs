@@ -10,7 +10,7 @@ Exit codes:
   0    the scene was done, or ended in order by system/end
   1    an error; a process died or hung; the log is not complete because its disk failed
   2    the command line is wrong
-  3    the robot fell
+  3    the robot fell, whatever came before
   4    the motor supply was lost, the joints were stopped, or a command of the scene was refused
   130  Ctrl-C, or another signal that asks for the end";
 

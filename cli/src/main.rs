@@ -54,6 +54,9 @@ enum Task {
         /// Simulated time: every process waits for the others, and two runs are bit for bit the same.
         #[arg(long)]
         lockstep: bool,
+        /// Lockstep no faster than real time: a busy machine slows the robot down instead of felling it.
+        #[arg(long, requires = "lockstep")]
+        paced: bool,
         /// Field bus: shm, can:vcan0 (all lines), can:vcan0-8 (one each), canfd:INTERFACES, sercos:INTERFACES.
         #[arg(long, default_value = "shm")]
         bus: Address,
@@ -295,7 +298,8 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
     let done = |result: Result<(), Box<dyn Error>>| result.map(|()| ExitCode::SUCCESS);
     let task = arguments.task.unwrap_or(Task::Run {
         scene: "demo".into(),
-        lockstep: false,
+        lockstep: true,
+        paced: true,
         bus: Address::Shared,
         no_robot: false,
         out: None,
@@ -306,7 +310,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         dir: ipc::default_dir(),
     });
     match task {
-        Task::Run { scene, lockstep, bus, no_robot, out, no_log, no_plots, json, rt, dir } => {
+        Task::Run { scene, lockstep, paced, bus, no_robot, out, no_log, no_plots, json, rt, dir } => {
             let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
             let config = config()?;
             let log = match no_log {
@@ -316,7 +320,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
                 }
             };
             let (robot, rt_required) = (!no_robot, rt.is_some());
-            let order = Order { mode, scene, method: None, config, bus, robot, dir, log, rt_required };
+            let order = Order { mode, paced, scene, method: None, config, bus, robot, dir, log, rt_required };
             run_command::run(order, Results::of(json, no_plots))
         }
         Task::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed

@@ -313,6 +313,7 @@ fn realtime_study(
         bus: Address::Shared,
         robot: true,
         mode,
+        paced: false,
         scene,
         method,
         config,

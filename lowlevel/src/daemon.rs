@@ -111,7 +111,8 @@ fn receive(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, tick: u64, sta
     sensors.header
 }
 
-/// Simulated time: each peer answers tick n before tick n + 1 begins.
+/// Simulated time: each peer answers tick n before tick n + 1 begins; if it is paced, no sooner than its clock says. What a
+/// machine loses it does not make good for: the robot is slower for a moment.
 fn lockstep(
     d: &mut Daemon,
     p: &mut Ports,
@@ -123,7 +124,13 @@ fn lockstep(
     if !p.bus.wait(d, &p.waiter, 0)? {
         return Ok(header);
     }
+    let mut next = clock::now();
     for tick in 1..=last {
+        if d.paced {
+            clock::sleep_until(next);
+            // What is less than a cycle late is caught up with; more is lost.
+            next = (next + d.period_ns()).max(clock::now());
+        }
         d.begin(clock::now());
         header = receive(d, p, joints, tick, tick * d.period_ns());
         let targets = &mut p.targets;

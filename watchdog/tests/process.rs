@@ -62,6 +62,7 @@ impl Rig {
         let run = Run {
             dir: dir.clone(),
             mode,
+            paced: false,
             scene: "watchdog".into(),
             method: None,
             config: config(&dir),

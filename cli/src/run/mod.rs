@@ -43,6 +43,8 @@ const OPEN_FILES: u64 = 1024;
 pub struct Order {
     /// Lockstep or real time.
     pub mode: Mode,
+    /// In lockstep: no faster than real time.
+    pub paced: bool,
     /// Name of the scene, or path of its file.
     pub scene: String,
     /// How it is simulated, if it leaves that open: [`crate::choose`].
@@ -139,6 +141,7 @@ pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<
     let run = Run {
         dir: space.dir().into(),
         mode: order.mode,
+        paced: order.paced,
         scene,
         method: order.method.map(|method| method.to_string()),
         config,

@@ -35,6 +35,8 @@ pub struct Daemon {
     pub process: Process,
     /// Lockstep or real time.
     pub mode: Mode,
+    /// In lockstep: no faster than real time.
+    pub paced: bool,
     /// The field bus.
     pub bus: Address,
     /// Whether a simulated robot is at its far end.
@@ -94,6 +96,7 @@ impl Daemon {
             robot: run.robot,
             logged: run.log.is_some(),
             mode: run.mode,
+            paced: run.paced,
             process,
             setup,
             space,

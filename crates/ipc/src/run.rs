@@ -39,6 +39,8 @@ pub struct Run {
     pub dir: PathBuf,
     /// Lockstep or real time.
     pub mode: Mode,
+    /// In lockstep: no faster than real time. A machine that is late slows the robot down, and fells nobody.
+    pub paced: bool,
     /// Name of the scene.
     pub scene: String,
     /// How the scene is simulated, if it leaves that open (`depth = "auto"`).
@@ -63,6 +65,7 @@ impl Run {
         Self {
             dir: dir.into(),
             mode: Mode::RealTime,
+            paced: false,
             scene: "none".into(),
             method: None,
             config: "none".into(),
@@ -77,6 +80,7 @@ impl Run {
     /// The text of `dir/run`.
     pub fn to_text(&self) -> String {
         let mode = match self.mode {
+            Mode::Lockstep if self.paced => "paced",
             Mode::Lockstep => "lockstep",
             Mode::RealTime => "real-time",
         };
@@ -131,10 +135,11 @@ impl Run {
         let wrong = |key: &str, other: &str, choice: &str| {
             IpcError::Other(format!("{}: {key} = {other}: must be {choice}", path.display()))
         };
-        let mode = match value("mode")? {
-            "lockstep" => Mode::Lockstep,
-            "real-time" => Mode::RealTime,
-            other => return Err(wrong("mode", other, "lockstep or real-time")),
+        let (mode, paced) = match value("mode")? {
+            "lockstep" => (Mode::Lockstep, false),
+            "paced" => (Mode::Lockstep, true),
+            "real-time" => (Mode::RealTime, false),
+            other => return Err(wrong("mode", other, "lockstep, paced or real-time")),
         };
         let robot = match value("robot")? {
             "simulated" => true,
@@ -150,6 +155,7 @@ impl Run {
         Ok(Self {
             dir: dir.into(),
             mode,
+            paced,
             scene: value("scene")?.into(),
             method: (!method.is_empty()).then(|| method.into()),
             config: value("config")?.into(),

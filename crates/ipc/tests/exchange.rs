@@ -178,6 +178,7 @@ fn a_run_is_saved_and_loaded() {
     let run = Run {
         dir: system.dir().into(),
         mode: Mode::Lockstep,
+        paced: true,
         scene: "walk_1kmh".into(),
         method: None,
         config: "/somewhere/config".into(),
@@ -190,7 +191,7 @@ fn a_run_is_saved_and_loaded() {
     run.save().unwrap();
     assert_eq!(Run::load(system.dir()).unwrap(), run);
     let method = Some("type 2, semi_implicit x 4".into());
-    let logged = Run { mode: Mode::RealTime, method, log: Some("/tmp/a b.mcap".into()), ..run };
+    let logged = Run { mode: Mode::RealTime, paced: false, method, log: Some("/tmp/a b.mcap".into()), ..run };
     logged.save().unwrap();
     assert_eq!(Run::load(system.dir()).unwrap(), logged);
     std::fs::write(system.dir().join("run"), "mode = fast\nscene = x\nmethod =\nconfig = y\nlog =\n")

@@ -91,7 +91,7 @@ impl Reason {
             }
             Self::LeaseLost => "its sender no longer holds the command lease".into(),
             Self::Limit { field, low, high } => limit(command, usize::from(field), low, high),
-            Self::NotStanding => "the robot does not stand on its feet yet; walk/stand comes first".into(),
+            Self::NotStanding => "the robot does not stand on its feet, its supply on: system/reset, system/enable, then walk/stand".into(),
             Self::NotNow => not_now(command).into(),
             Self::Loaded { load, most } => {
                 format!("{load:.0} N on a foot, at most {most:.0} N: the robot must hang, with its feet free")

@@ -23,13 +23,18 @@ impl Words {
         };
         let [what, says, advice] = event.words();
         let inner = says.contains("{event}").then(|| EventCode::from_number(detail)).flatten();
-        // What caused it says first what to do.
-        let advices = [inner.map_or("", |inner| inner.words()[2]), advice];
+        let unknown = inner == Some(EventCode::None);
+        // What caused it says first what to do, and perhaps all of it.
+        let first = inner.map_or("", |inner| inner.words()[2]);
+        let then = if first.contains("system/reset") { "" } else { advice };
         let mut text = what.to_owned();
-        if !says.is_empty() {
+        if !says.is_empty() && !unknown {
             text += &format!(": {}", self.detail(says, detail));
         }
-        advices.iter().filter(|advice| !advice.is_empty()).for_each(|advice| text += &format!("; {advice}"));
+        [first, then]
+            .iter()
+            .filter(|advice| !advice.is_empty())
+            .for_each(|advice| text += &format!("; {advice}"));
         text
     }
 
@@ -110,6 +115,10 @@ mod tests {
             "{off}"
         );
         assert!(off.ends_with("; system/reset, then system/enable switch it on again"), "{off}");
+        let stop = said(EventCode::PowerOff, EventCode::EmergencyStop as u64);
+        assert_eq!(stop.matches("system/reset").count(), 1, "{stop}");
+        let stop = said(EventCode::SafeStop, 0);
+        assert!(stop.starts_with("controlled stop; secure the robot"), "{stop}");
         assert!(said(EventCode::FollowingError, 1).contains("target: knee;"));
         assert!(
             said(EventCode::DriveTripped, 1 | 0x4210 << 16).contains("a fault: knee: error 0x4210 too hot;")

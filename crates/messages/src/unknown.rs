@@ -15,11 +15,13 @@ pub fn nearest<'k>(name: &str, known: &'k [impl AsRef<str>]) -> Option<&'k str> 
 pub fn unknown(kind: &str, name: &str, known: &[&str], hint: &str) -> String {
     // `velocity` is near to `walk/velocity`, and `swing_hieght` to `planner.swing_height`.
     let tail = |s: &str| s.rsplit(['/', '.']).next().unwrap_or(s).to_owned();
-    let distance = |k: &str| edits(name, k).min(edits(&tail(name), &tail(k)));
-    let best = known.iter().map(|k| distance(k)).min().unwrap_or(usize::MAX);
-    let near = |k: &&str| match best <= 1 + name.chars().count() / 3 {
-        true => distance(k) == best,
-        false => name.len() > 2 && (k.contains(name) || name.contains(*k)),
+    // A third of the letters is a slip; more is another word.
+    let slip = |a: &str, b: &str| Some(edits(a, b)).filter(|edits| *edits <= 1 + a.chars().count() / 3);
+    let distance = |k: &str| [slip(name, k), slip(&tail(name), &tail(k))].into_iter().flatten().min();
+    let best = known.iter().filter_map(|k| distance(k)).min();
+    let near = |k: &&str| match best {
+        Some(best) => distance(k) == Some(best),
+        None => name.len() > 2 && (k.contains(name) || name.contains(*k)),
     };
     let near: Vec<&str> = known.iter().copied().filter(near).take(MOST).collect();
     match near.is_empty() {
@@ -46,6 +48,10 @@ mod tests {
         assert_eq!(
             said("swing_hieght"),
             "there is no thing `swing_hieght`; did you mean planner.swing_height? all: X"
+        );
+        assert_eq!(
+            unknown("command", "walk/fly", &["walk/stop", "system/end"], "all: X"),
+            "there is no command `walk/fly`; all: X"
         );
         assert_eq!(said("zzzzzzzz"), "there is no thing `zzzzzzzz`; all: X");
         assert_eq!(unknown("thing", "x", &[], "none"), "there is no thing `x`; none");
