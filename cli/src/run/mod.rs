@@ -35,8 +35,8 @@ use crate::figures::{Figures, Gatherer};
 
 pub use crash::TEXT as CRASH_TEXT;
 
-/// Open files that the supervisor needs, with room for topics to come; 775 at the last count.
-const OPEN_FILES: u64 = 1024;
+/// Open files that the supervisor needs, with room for topics to come; 1147 at the last count.
+const OPEN_FILES: u64 = 2048;
 
 /// What to run and how.
 #[derive(Clone, Debug)]
