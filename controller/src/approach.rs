@@ -13,9 +13,14 @@ pub(crate) struct Approach {
 }
 
 /// Share of the acceleration that the slowing down plans with: the rest is for cycles that are not infinitely short.
-const PLANNED: f64 = 0.8;
+pub(crate) const PLANNED: f64 = 0.8;
 
 impl Approach {
+    /// The same with a share of speed and acceleration (0 to 1), while a motion sets in.
+    pub(crate) fn eased(self, share: f64) -> Self {
+        Self { speed: share * self.speed, acceleration: share * self.acceleration, ..self }
+    }
+
     /// \[rad/s\] Speed of the next cycle of `dt` \[s\] for a joint that is `error` \[rad\] away and returned with `last`
     /// \[rad/s\] so far. An error that is not finite leads nowhere.
     pub(crate) fn next(&self, error: f64, last: f64, dt: f64) -> f64 {

@@ -81,13 +81,14 @@ impl Arms {
     }
 
     /// Speeds of the shoulders, `desired` being the kinematics of the `angles` \[rad\] that the joints were told last; small
-    /// errors vanish with `drift` \[1/s\], large ones within bounds of speed and acceleration.
+    /// errors vanish with `drift` \[1/s\], large ones within bounds of speed and acceleration, of which there is a `share`
+    /// while the motion sets in.
     pub fn drive(
         &mut self,
         desired: &TaskSpace,
         angles: &[f64],
         dt: f64,
-        drift: f64,
+        (drift, share): (f64, f64),
         given: &mut JointVector,
     ) {
         let leg = |foot: usize| desired.limb(self.hips[foot]).0.x;
@@ -104,7 +105,7 @@ impl Arms {
             let hangs = swing.x / self.lever[i] > HANGS;
             let error =
                 if hangs { turn * (bounded - com.x) } else { self.comfort[i] - angles[self.joints[i]] };
-            let back = Approach { rate: drift, ..RETURN };
+            let back = Approach { rate: drift, ..RETURN.eased(share) };
             self.returning[i] = back.next(error, self.returning[i], dt);
             given[self.joints[i]] = turn * rate + self.returning[i];
         }
@@ -153,7 +154,7 @@ mod tests {
                     worst = worst.max((at[LEFT] - self.arms.rest[LEFT] + half).abs());
                 }
                 let mut given = JointVector::zeros();
-                self.arms.drive(&self.desired, &self.q, DT, 100.0, &mut given);
+                self.arms.drive(&self.desired, &self.q, DT, (100.0, 1.0), &mut given);
                 for j in self.arms.joints {
                     self.q[j] += DT * given[j];
                 }

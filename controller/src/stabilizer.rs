@@ -14,6 +14,7 @@ use multibody::ModelError;
 use nalgebra::{Matrix3, Vector3, Vector6};
 use std::f64::consts::FRAC_PI_2;
 
+use crate::approach::PLANNED;
 use crate::arms::Arms;
 use crate::contact::Contact;
 use crate::estimate::Estimate;
@@ -29,9 +30,12 @@ use crate::watch::{FALLING, Watch};
 const MISSED_CYCLES: u64 = 20;
 /// \[s\] A limit is told again after so long without it.
 const QUIET: f64 = 1.0;
-/// \[s\] Time in which drift compensation and null-space motion set in when the joints begin to move: they may rest far from
-/// comfort, and where they rest is not quite where a plan begins.
+/// \[s\] Time in which drift compensation, null-space motion and returns set in when the joints begin to move: they may rest
+/// far from comfort, and where they rest is not quite where a plan begins.
 const RAMP: f64 = 0.5;
+/// \[1\] Share of what the drives can accelerate that is asked of them: the joint loop's limit is that at the measured angles,
+/// which lag behind these.
+const ASKED: f64 = 0.97;
 /// Feedback path 2.
 const MEASURED: u64 = 2;
 
@@ -293,9 +297,9 @@ impl Controller {
             };
             gaze.drive(&torso, self.dt, &self.angle, &self.speed, &mut given);
         }
-        let drift = self.drift();
+        let setting_in = (self.drift(), self.share());
         if let Some(arms) = &mut self.arms {
-            arms.drive(&self.desired, &self.angle, self.dt, drift, &mut given);
+            arms.drive(&self.desired, &self.angle, self.dt, setting_in, &mut given);
         }
         let wanted = self.ik.speeds(&task, &velocity, &given, &self.angle, self.share());
         self.moving += self.dt;
@@ -303,14 +307,15 @@ impl Controller {
         self.tell_limits([task.damped, self.modification.limited, held]);
     }
 
-    /// Share of drift compensation and null-space motion that is wanted: all of it a while after the joints began to move.
-    fn share(&self) -> f64 {
+    /// Share of drift compensation, null-space motion and returns that is wanted: all of it a while after the joints began to
+    /// move. A leg that is nearly straight has no length to spare for any of them before the plan has lowered the body.
+    pub(super) fn share(&self) -> f64 {
         let x = (self.moving / RAMP).min(1.0);
         x * x * (3.0 - 2.0 * x)
     }
 
     /// \[1/s\] K_x (5.35).
-    fn drift(&self) -> f64 {
+    pub(super) fn drift(&self) -> f64 {
         self.control.drift_gain * self.share()
     }
 
@@ -327,20 +332,35 @@ impl Controller {
         }
     }
 
-    /// q_d of the end of the cycle, trapezoidal, so that angle and speed agree; within speed and range. Whether one of
-    /// these held a joint.
+    /// q_d of the end of the cycle, trapezoidal, so that angle and speed agree; within range, speed and what the drives can
+    /// accelerate, which a landing asks more of. Whether one of these held a joint.
     fn integrate(&mut self, wanted: &JointVector) -> bool {
         let before = self.state.limited;
         for (j, joint) in self.robot.joints.iter().enumerate() {
-            let speed = wanted[j].clamp(-joint.speed_limit, joint.speed_limit);
-            let angle = self.angle[j] + 0.5 * self.dt * (self.speed[j] + speed);
-            let [low, high] = joint.range;
-            let held = angle.clamp(low.min(self.angle[j]), high.max(self.angle[j]));
-            if !(speed == wanted[j] && held == angle) {
+            if !wanted[j].is_finite() {
                 self.state.limited += 1;
+                continue;
             }
-            // NaN moves nothing.
-            if held.is_finite() && speed.is_finite() {
+            // Towards the end of its range no faster than it can brake in what will be left of it: s^2 <= 2 b r at the end of
+            // the cycle. Without a limit of acceleration this is NaN, which min and max pass over.
+            let [low, high] = joint.range;
+            let braking = PLANNED * joint.acceleration;
+            let braked = |room: f64, speed: f64| {
+                let half = 0.5 * braking * self.dt;
+                let left = (room - 0.5 * self.dt * speed).max(0.0);
+                (half * half + 2.0 * braking * left).sqrt() - half
+            };
+            let speed = wanted[j].min(braked(high - self.angle[j], self.speed[j]));
+            let speed = speed.max(-braked(self.angle[j] - low, -self.speed[j]));
+            let mut speed = speed.clamp(-joint.speed_limit, joint.speed_limit);
+            if (speed - self.speed[j]).abs() > ASKED * joint.acceleration * self.dt {
+                let most = ASKED * self.robot.acceleration(j, &self.angle) * self.dt;
+                speed = speed.clamp(self.speed[j] - most, self.speed[j] + most);
+            }
+            let angle = self.angle[j] + 0.5 * self.dt * (self.speed[j] + speed);
+            let held = angle.clamp(low.min(self.angle[j]), high.max(self.angle[j]));
+            self.state.limited += u64::from(speed != wanted[j] || held != angle);
+            if held.is_finite() {
                 self.speed[j] = if held == angle { speed } else { 0.0 };
                 self.angle[j] = held;
             }

@@ -37,8 +37,7 @@ fn deserved(trial: &Trial, code: EventCode) -> bool {
         if lost { &[Fallen, Lifted, EarlyContact, SafeStop, PlanKept, NotStanding] } else { &[] };
     // Whoever hits the ground is slower at once than a reading may be.
     let impact: &[EventCode] = if trial.fell { &[FrameRefused, FramesLost] } else { &[] };
-    [PlanActive, ControlLimited, TargetLimited].contains(&code)
-        || [cause, after, impact].iter().any(|of| of.contains(&code))
+    [PlanActive, ControlLimited].contains(&code) || [cause, after, impact].iter().any(|of| of.contains(&code))
 }
 
 #[test]

@@ -140,9 +140,10 @@ impl Random {
     }
 }
 
-/// Legs somewhere between a crouch and knees bent by a tenth of that (nearer to straight, a leg that must become longer
-/// while the body moves over the feet has nothing left: of 200 poses of Lola five did, and all five fell); every joint that no foot needs anywhere in the inner nine tenths of its
-/// range, but for the toes.
+/// Legs somewhere between a crouch and straight; every joint that no foot needs anywhere in the inner nine tenths of its range,
+/// but for the toes.
+///
+/// Regression: arms that came down at once took the last length of nearly straight legs, and Lola fell.
 #[test]
 fn from_poses_nobody_chose() {
     for (name, seed) in SCENES.into_iter().zip(1..) {
@@ -154,7 +155,7 @@ fn from_poses_nobody_chose() {
         let free: Vec<bool> =
             robot.joints.iter().map(|j| !of_legs(&j.name) && !j.name.starts_with("pelvis")).collect();
         for k in 0..POSES {
-            let share = 0.9 * random.next();
+            let share = random.next();
             let joints = setup.robot.joints.clone();
             let pose = joints.iter().enumerate().map(|(j, joint)| {
                 let [least, most] = joint.range;
@@ -185,9 +186,7 @@ fn the_demonstration_on_types_2_and_3() {
         for _ in 0..(setup.scene.duration / setup.scene.cycle) as usize {
             let c = chain.step();
             gatherer.add(&c.sim_state, &c.controller_state);
-            // A landing asks an ankle for more than its motors can.
-            let counts = |code| is_trouble(code) && code != EventCode::TargetLimited;
-            trouble.extend(c.events.iter().filter(|(_, code, _)| counts(*code)));
+            trouble.extend(c.events.iter().filter(|(_, code, _)| is_trouble(*code)));
         }
         let f = gatherer.figures(&setup, 0.0, None);
         assert!(!f.fell && trouble.is_empty() && f.steps == 25, "type {depth}: {trouble:?} {f:?}");

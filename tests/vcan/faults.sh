@@ -3,9 +3,10 @@
 . "$(dirname "$0")/step.sh"
 . "$here/walking.sh"
 
-# said PATTERN: whether the run told of it.
-said() {
-    grep -qE "$1" "$work/fault/said"
+# told SECONDS PATTERN: waits until the run tells of it.
+told() {
+    within "$1" grep -qE "$2" "$work/fault/said" || because "nothing like '$2': $(tail -n 5 "$work/fault/said")" || return 1
+    grep -E "$2" "$work/fault/said" | sed 's/^/        /'
 }
 
 # disturbed PATTERN COMMAND...: walks, does that at cycle 1000, in mid-step, and waits until the run tells of it.
@@ -20,8 +21,7 @@ disturbed() {
     running=$!
     wait "$waiting" || because "cycle 1000 was not reached: $(tail -n 5 "$work/fault/said")" || return 1
     "$@" || because "could not: $*"
-    within 240 said "$pattern" || because "no event like '$pattern': $(tail -n 5 "$work/fault/said")" || return 1
-    grep -E "$pattern" "$work/fault/said" | sed 's/^/        /'
+    told 240 "$pattern"
 }
 
 # at_rest STATE: the end of the run, and what the joints did last.
@@ -31,7 +31,7 @@ at_rest() {
 }
 
 pulled() {
-    disturbed 'lowlevel: (NodeSilent|BusSilent)' ip link set vcan3 down
+    disturbed 'lowlevel: (a local controller is silent for too long: hip_left|nothing comes from the field bus)' ip link set vcan3 down
     code=$?
     ip link set vcan3 up
     return $code
@@ -39,8 +39,7 @@ pulled() {
 
 # Frames go both ways again and are believed; the stop stays until an operator resets it.
 plugged() {
-    within 120 said 'lowlevel: NodeBack \(3' || because "no event NodeBack: $(tail -n 5 "$work/fault/said")" || return 1
-    grep -E 'lowlevel: NodeBack' "$work/fault/said" | sed 's/^/        /'
+    told 120 'lowlevel: a local controller is heard again: hip_left,' || return 1
     timeout 120 candump -L -n 150 vcan3 >"$work/plugged.log"
     awk 'FNR == NR && /^BO_ / { ours[sprintf("%03X", $2)] = $5 == "PC" }
          FNR != NR { n[ours[substr($3, 1, index($3, "#") - 1)]]++ }
@@ -50,7 +49,7 @@ plugged() {
 }
 
 bus_off() {
-    disturbed 'lowlevel: BusOff' "$python" -S -c "$bus_off_frame"
+    disturbed 'lowlevel: the controller of a line left the field bus: line 3' "$python" -S -c "$bus_off_frame"
     code=$?
     at_rest Off && return $code
 }

@@ -76,8 +76,9 @@ impl Controller {
     /// Speeds of the joints that no foot needs: toes as planned, the others to their comfortable angles.
     pub(super) fn given_speeds(&self, end: &Desired) -> JointVector {
         let mut speeds = JointVector::zeros();
+        let settle = SETTLE.eased(self.share());
         for (j, joint) in self.robot.joints.iter().enumerate().filter(|(j, _)| !self.free[*j]) {
-            speeds[j] = SETTLE.next(joint.comfort - self.angle[j], self.speed[j], self.dt);
+            speeds[j] = settle.next(joint.comfort - self.angle[j], self.speed[j], self.dt);
         }
         for (foot, toe) in self.robot.feet.iter().enumerate().filter_map(|(i, f)| Some((i, f.toe?))) {
             speeds[toe] = self.toe_speed(&end.toes[foot], toe);

@@ -192,7 +192,7 @@ events! {
         "lift it; then joint/zero_force";
     /// A walking command was refused: the robot does not stand on its feet yet; detail: its message id.
     NotStanding = 61, "a walking command was refused, the robot does not stand on its feet yet", "{walk}",
-        "walk/stand comes first";
+        "system/reset, system/enable, then walk/stand";
     /// A drive that a standing robot can do without has a fault: its joint is held, the robot goes on; detail as of
     /// [`Self::DriveTripped`].
     DriveHeld = 62, "a drive that a standing robot can do without has a fault; its joint is held", "{drive}",

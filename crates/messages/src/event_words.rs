@@ -55,7 +55,7 @@ impl Words {
             "limit" => match n {
                 1 => "a task is nearly singular".into(),
                 2 => "a modification of the feet".into(),
-                3 => "speed or range of a joint".into(),
+                3 => "speed, acceleration or range of a joint".into(),
                 n => format!("limit {n}"),
             },
             // A node alone, or 1000 times the node plus cycles.
@@ -105,7 +105,7 @@ mod tests {
         let said = |code: EventCode, detail| words().sentence(code as u64, detail);
         assert_eq!(
             said(EventCode::ControlLimited, 3),
-            "the stabilizer meets a limit: speed or range of a joint; once in a while is normal; walk slower if it goes on"
+            "the stabilizer meets a limit: speed, acceleration or range of a joint; once in a while is normal; walk slower if it goes on"
         );
         let off = said(EventCode::PowerOff, EventCode::ResetMissed as u64);
         assert!(
