@@ -8,6 +8,9 @@ use crate::drive::Drive;
 use crate::robot::{Joint, Robot};
 use drives::{Gear, Transmission};
 
+/// \[1\] Times what its drives can accelerate it alone, a joint may be asked for: when a foot lands, the ground pushes it where
+/// it goes, at most with what the drives can just hold.
+pub const WITH_LOAD: f64 = 2.0;
 /// Angles per joint at which a linkage is looked at, over the joint's range.
 const ANGLES: usize = 17;
 

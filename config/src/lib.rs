@@ -41,6 +41,7 @@ pub mod timeline;
 pub mod tolerance;
 pub mod unknown;
 
+pub use acceleration::WITH_LOAD;
 pub use error::{ConfigError, Problem};
 pub use file::{BUILT_IN, Embedded, embed};
 pub use gait::Gait;

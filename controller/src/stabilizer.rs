@@ -5,7 +5,7 @@ mod task;
 
 use config::gait::Control;
 use config::parameters::STABILIZER;
-use config::{Gait, Robot};
+use config::{Gait, Robot, WITH_LOAD};
 use messages::{
     Command, ControllerState, EventCode, GaitState, JointMode, JointTargets, MAX_JOINTS, Parameters, Plan,
     Reason, Sensors, StartUp, Verdict,
@@ -33,9 +33,9 @@ const QUIET: f64 = 1.0;
 /// \[s\] Time in which drift compensation, null-space motion and returns set in when the joints begin to move: they may rest
 /// far from comfort, and where they rest is not quite where a plan begins.
 const RAMP: f64 = 0.5;
-/// \[1\] Share of what the drives can accelerate that is asked of them: the joint loop's limit is that at the measured angles,
-/// which lag behind these.
-const ASKED: f64 = 0.97;
+/// \[1\] Times what the drives can accelerate, asked of them: a little less than what the joint loop passes, which knows the
+/// measured angles, and these lag.
+const ASKED: f64 = 0.97 * WITH_LOAD;
 /// Feedback path 2.
 const MEASURED: u64 = 2;
 
@@ -333,7 +333,7 @@ impl Controller {
     }
 
     /// q_d of the end of the cycle, trapezoidal, so that angle and speed agree; within range, speed and what the drives can
-    /// accelerate, which a landing asks more of. Whether one of these held a joint.
+    /// accelerate with a landing's load, which asks for more. Whether one of these held a joint.
     fn integrate(&mut self, wanted: &JointVector) -> bool {
         let before = self.state.limited;
         for (j, joint) in self.robot.joints.iter().enumerate() {

@@ -1,5 +1,6 @@
 //! What a joint may be asked to do.
 
+use config::WITH_LOAD;
 use config::robot::Joint;
 
 /// Share of the acceleration with which a joint that catches up plans to slow down.
@@ -27,7 +28,7 @@ pub struct Motion {
 
 /// The nearest admissible target to `wanted`, one cycle of `dt` \[s\] after `last`, and whether anything was held back.
 ///
-/// Range, speed, and what its drives can accelerate: `possible` \[rad/s^2\], asked for only when the target needs more than
+/// Range, speed, and what its drives can accelerate with a load that helps ([`WITH_LOAD`]): alone `possible` \[rad/s^2\], asked for only when the target needs more than
 /// they can everywhere. A joint that was held back follows as fast as it can and slows down in time, so that it meets its
 /// targets again without passing them.
 ///
@@ -43,8 +44,11 @@ pub fn admit(
         return Err(Refusal::NotFinite);
     }
     let asked = needed(last, wanted, dt);
-    let reached =
-        if asked <= joint.acceleration { wanted } else { accelerated(joint, possible(), last, wanted, dt) };
+    let reached = if asked <= WITH_LOAD * joint.acceleration {
+        wanted
+    } else {
+        accelerated(joint, WITH_LOAD * possible(), last, wanted, dt)
+    };
     let reach = joint.speed_limit * dt;
     let [low, high] = joint.range;
     // A joint found outside of its range may stay where it is or come back, never go further out.
@@ -130,15 +134,15 @@ mod tests {
         let mut cycles = 0;
         while last != target {
             let (next, held) = admit(&j, || 200.0, last, target, 1e-3).unwrap();
-            assert!((next.speed - last.speed).abs() <= 0.2 * (1.0 + 1e-9), "{last:?} {next:?}");
+            assert!((next.speed - last.speed).abs() <= 0.4 * (1.0 + 1e-9), "{last:?} {next:?}");
             assert_eq!(held, next != target);
-            assert!(next.angle <= 1.0 + 2e-4, "passed: {next:?}");
+            assert!(next.angle <= 1.0 + 4e-4, "passed: {next:?}");
             last = next;
             cycles += 1;
             assert!(cycles < 200, "{last:?}");
         }
-        // Half of the way at 200 rad/s^2 each, at best.
-        let best = 2.0 * (0.5 / 200.0f64).sqrt() / 1e-3;
+        // Half of the way at 400 rad/s^2 each, at best.
+        let best = 2.0 * (0.5 / 400.0f64).sqrt() / 1e-3;
         assert!((best..1.5 * best).contains(&f64::from(cycles)), "{cycles} cycles, {best:.0} at best");
     }
 
@@ -166,7 +170,7 @@ mod tests {
                     prop_assert!((j.range[0]..=j.range[1]).contains(&m.angle));
                     prop_assert!((m.angle - last).abs() <= j.speed_limit * 1e-3 * (1.0 + 1e-12));
                     prop_assert!(m.speed.abs() <= j.speed_limit);
-                    prop_assert!(m.speed.abs() <= j.acceleration * 1e-3 * (1.0 + 1e-9), "from rest");
+                    prop_assert!(m.speed.abs() <= 2.0 * j.acceleration * 1e-3 * (1.0 + 1e-9), "from rest");
                     prop_assert_eq!(held, m.angle != angle || m.speed != speed);
                 }
             }
