@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// that is not the processes'.
 const LAYERS: [&[&str]; 6] = [
     &["contact", "curves", "drawing", "drives", "environment", "multibody", "terminal"],
-    &["messages"],
+    &["messages", "codec"],
     &["ipc", "realtime", "config", "recording", "daemon", "fieldbus", "sercos", "latency"],
     &["planner", "controller", "lowlevel", "sim-backend", "broker", "watchdog", "logger"],
     &["studies", "harness", "fuzzing"],

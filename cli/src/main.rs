@@ -8,6 +8,7 @@ mod config_command;
 mod fault_table;
 mod log_command;
 mod param_command;
+mod robot_command;
 mod run_command;
 mod shipped;
 mod sim_command;
@@ -22,7 +23,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 use cli::run::Order;
 use daemon::Commands;
-use fieldbus::Address;
+use config::BusAddress;
 use ipc::{Mode, Space};
 use messages::Process;
 use messages::command::Domain;
@@ -59,7 +60,7 @@ enum Task {
         paced: bool,
         /// Field bus: shm, can:vcan0 (all lines), can:vcan0-8 (one each), canfd:INTERFACES, sercos:INTERFACES.
         #[arg(long, default_value = "shm")]
-        bus: Address,
+        bus: BusAddress,
         /// No simulated robot: somebody else is at the far end of the bus, a robot or a replay.
         #[arg(long)]
         no_robot: bool,
@@ -127,6 +128,11 @@ enum Task {
     Scene {
         #[command(subcommand)]
         what: config_command::SceneTask,
+    },
+    /// Files of a robot that are made from its robot.toml.
+    Robot {
+        #[command(subcommand)]
+        what: robot_command::RobotTask,
     },
     /// Traffic of the joint loop's bus: record, replay, look at it, hold it against a log.
     Can {
@@ -300,7 +306,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         scene: "demo".into(),
         lockstep: true,
         paced: true,
-        bus: Address::Shared,
+        bus: BusAddress::Shared,
         no_robot: false,
         out: None,
         no_log: false,
@@ -331,6 +337,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         Task::Param { what, dir } => done(param_command::run(&dir, what)),
         Task::Config { what } => done(config_command::run(asked, what)),
         Task::Scene { what: config_command::SceneTask::List } => done(config_command::scenes(&config()?)),
+        Task::Robot { what } => done(robot_command::run(&config()?, what)),
         Task::Can { what } => {
             cli::can::run(&config()?, what)?;
             Ok(ExitCode::SUCCESS)

@@ -14,7 +14,7 @@ pub(crate) fn run(
     classic: bool,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let (setup, choice) = cli::choose::load(config, scene, !json)?;
-    let setup = setup.on_bus(classic);
+    let setup = setup.on_bus(classic)?;
     let bar = if json {
         indicatif::ProgressBar::hidden()
     } else {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::Subcommand;
 use cli::run::Order;
-use fieldbus::Address;
+use config::BusAddress;
 use ipc::Mode;
 use terminal::Console;
 
@@ -99,7 +99,7 @@ pub(super) enum Task {
     Lines {
         /// The lines, classic CAN or CAN FD.
         #[arg(long, default_value = "can:vcan0-8")]
-        bus: Address,
+        bus: BusAddress,
         /// Whose frames they carry.
         #[arg(long, default_value = "lola")]
         robot: String,
@@ -217,12 +217,12 @@ pub(super) fn run(config: &Path, what: Task, json: bool) -> Result<ExitCode, Box
 /// How punctual a cycle over CAN lines is.
 fn lines_study(
     config: &Path,
-    bus: Address,
+    bus: BusAddress,
     robot: String,
     cycle_ms: f64,
     seconds: u64,
 ) -> Result<studies::lines::Report, Box<dyn Error>> {
-    let Address::Can { fd, interfaces } = bus else {
+    let BusAddress::Can { fd, interfaces } = bus else {
         return Err(format!("--bus {bus}: must be can:INTERFACES or canfd:INTERFACES").into());
     };
     if !(0.1..=1000.0).contains(&cycle_ms) {
@@ -310,7 +310,7 @@ fn realtime_study(
     let (mode, dir, config) = (Mode::RealTime, ipc::default_dir(), config.to_path_buf());
     let method = choice.map(|choice| choice.method);
     let order = Order {
-        bus: Address::Shared,
+        bus: BusAddress::Shared,
         robot: true,
         mode,
         paced: false,

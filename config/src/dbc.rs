@@ -20,7 +20,7 @@
 use std::path::Path;
 
 use can_dbc::{ByteOrder, Dbc, MessageId, MultiplexIndicator, ValueType};
-use messages::layout::{Carries, Layout, MAX_NODES, Message, Signal};
+use codec::layout::{Carries, Layout, MAX_NODES, Message, Signal};
 use messages::{MAX_FRAMES, nearest};
 
 use crate::error::{ConfigError, Problem};

@@ -14,9 +14,11 @@
 mod acceleration;
 pub mod brake;
 pub mod bus_fault;
+mod bus_address;
 pub mod crane;
 pub mod database;
 pub mod dbc;
+pub mod dbc_writer;
 pub mod drive;
 pub mod efficiency;
 mod error;
@@ -42,6 +44,7 @@ pub mod tolerance;
 pub mod unknown;
 
 pub use acceleration::WITH_LOAD;
+pub use bus_address::{BusAddress, interface_names};
 pub use error::{ConfigError, Problem};
 pub use file::{BUILT_IN, Embedded, embed};
 pub use gait::Gait;

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use drives::homing::HomeSwitch;
-use messages::layout::Layout;
+use codec::layout::Layout;
 use messages::{MAX_JOINTS, nearest};
 
 use crate::acceleration;
 use crate::dbc;
+use crate::dbc_writer::{FrameForm, LocalController, dbc_text};
 pub use crate::drive::Drive;
 use crate::drive::drives;
 use crate::error::ConfigError;
@@ -40,8 +41,10 @@ pub struct Robot {
     pub poses: BTreeMap<String, Vec<f64>>,
     /// Frames of the field bus; as read, those of CAN FD.
     pub layout: Layout,
-    /// Frames of classic CAN.
-    pub classic: Layout,
+    /// Frames of classic CAN, or why there are none.
+    pub classic: Result<Layout, String>,
+    /// What both come from.
+    pub can: Can,
     /// Local controllers (indices) that the robot can walk without: nobody stops it if one of them falls silent.
     pub spare: Vec<usize>,
     /// Camera head, if it has one.
@@ -138,15 +141,21 @@ impl Robot {
         let path = directory.join("robot.toml");
         let text = file::text(&path, hash)?;
         let name = directory.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let (mut robot, (can, spare_names)) =
-            section::read(&path, &text, |top| (Self::build(top, name), can(top)))?;
+        let (mut robot, can) = section::read(&path, &text, |top| (Self::build(top, name), Can::build(top)))?;
         let limits = acceleration::least(&robot.drives, &robot.joints);
         robot.joints.iter_mut().zip(limits).for_each(|(joint, limit)| joint.acceleration = limit);
         let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-        let classic = dbc::load(&directory.join(&can[0]), &joints, hash)?;
-        let layout = dbc::load(&directory.join(&can[1]), &joints, hash)?;
-        (robot.classic, robot.layout) = (classic, layout);
-        robot.spare = spare(&robot.layout, &spare_names).map_err(|text| ConfigError::of_file(&path, text))?;
+        let of_robot = |text| ConfigError::of_file(&path, text);
+        robot.layout = match &can.fd {
+            Some(file) => dbc::load(&directory.join(file), &joints, hash)?,
+            None => written(&robot.name, &can, FrameForm::Fd, &joints).map_err(of_robot)?,
+        };
+        robot.classic = match &can.classic {
+            Some(file) => dbc::load(&directory.join(file), &joints, hash).map(Ok)?,
+            None => written(&robot.name, &can, FrameForm::Classic, &joints),
+        };
+        robot.spare = spare(&robot.layout, &can.spare).map_err(of_robot)?;
+        robot.can = can;
         let urdf_path = directory.join(&robot.urdf);
         robot.urdf = file::text(&urdf_path, hash)?;
         let masses = masses(&robot.urdf).map_err(|text| ConfigError::of_file(&urdf_path, text))?;
@@ -185,7 +194,8 @@ impl Robot {
             imu: top.numbers("imu", "m", -2.0..=2.0),
             poses: poses(top, &joints),
             layout: Layout::default(),
-            classic: Layout::default(),
+            classic: Ok(Layout::default()),
+            can: Can::default(),
             spare: Vec::new(),
             head: optional(top, "head", |table| Head::build(table, &joints)),
             arms: optional(top, "arms", |table| Arms::build(table, &joints)),
@@ -344,13 +354,49 @@ fn poses(top: &Section<'_, '_>, joints: &[Joint]) -> BTreeMap<String, Vec<f64>> 
     top.table("pose_deg", all).unwrap_or_default()
 }
 
-/// DBC files of the classic CAN bus and of CAN FD; names of the local controllers that the robot can walk without.
-fn can(top: &Section<'_, '_>) -> ([String; 2], Vec<String>) {
-    let build = |can: &Section<'_, '_>| {
-        let spare = if can.has("spare") { can.texts("spare") } else { Vec::new() };
-        ([can.text("classic"), can.text("fd")], spare)
-    };
-    top.table("can", build).unwrap_or_default()
+/// `[can]`: frames of the local controllers, in DBC files or made from what each of them drives and reads.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Can {
+    /// DBC file of classic CAN, beside `robot.toml`.
+    pub classic: Option<String>,
+    /// DBC file of CAN FD.
+    pub fd: Option<String>,
+    /// The local controllers, in the order of their lines; needed where there is no file.
+    pub nodes: Vec<LocalController>,
+    /// Whether the drives report the motor side, too.
+    pub motor_side: bool,
+    /// Names of the local controllers that the robot can walk without.
+    spare: Vec<String>,
+}
+
+impl Can {
+    fn build(top: &Section<'_, '_>) -> Self {
+        let build = |can: &Section<'_, '_>| {
+            let file = |key| can.has(key).then(|| can.text(key));
+            let nodes = if can.has("node") { can.tables("node", LocalController::build) } else { Vec::new() };
+            Self {
+                classic: file("classic"),
+                fd: file("fd"),
+                nodes,
+                motor_side: can.has("motor_side") && can.flag("motor_side"),
+                spare: if can.has("spare") { can.texts("spare") } else { Vec::new() },
+            }
+        };
+        top.table("can", build).unwrap_or_default()
+    }
+}
+
+/// Frames of a robot that has no file of them.
+fn written(robot: &str, can: &Can, form: FrameForm, joints: &[&str]) -> Result<Layout, String> {
+    if can.nodes.is_empty() {
+        let key = if form == FrameForm::Fd { "fd" } else { "classic" };
+        return Err(format!("can: needs `{key}`, a DBC file, or its local controllers as [[can.node]]"));
+    }
+    let text = dbc_text(robot, &can.nodes, can.motor_side, form)?;
+    dbc::read(&text, joints).map_err(|problems| {
+        let all: Vec<String> = problems.iter().map(|p| format!("{} {}", p.key, p.text)).collect();
+        format!("can.node: the frames made from them: {}", all.join("; "))
+    })
 }
 
 /// Local controllers by name.

@@ -54,11 +54,14 @@ impl Setup {
     }
 
     /// The same with the frames of classic CAN, or those of CAN FD that every other bus carries.
-    pub fn on_bus(mut self, classic: bool) -> Self {
+    ///
+    /// # Errors
+    /// The robot has no frames of classic CAN.
+    pub fn on_bus(mut self, classic: bool) -> Result<Self, String> {
         if classic {
-            self.robot.layout = self.robot.classic.clone();
+            self.robot.layout = self.robot.classic.clone()?;
         }
-        self
+        Ok(self)
     }
 
     /// The same with a method for the scene; one whose depth is "auto" needs it.

@@ -3,8 +3,8 @@
 use config::database::Database;
 use config::{Robot, dbc};
 use drives::cia402::{self, Fault, REFERENCED, State, VOLTAGE, WARNING};
-use messages::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
-use messages::layout::{Carries, Layout};
+use codec::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
+use codec::layout::{Carries, Layout};
 use messages::{BusFrames, JointTargets, Sensors};
 
 fn robots() -> Vec<Robot> {
@@ -55,7 +55,7 @@ fn unit(layout: &Layout, carries: Carries) -> Option<f64> {
 #[test]
 fn whatever_is_sent_comes_back_within_half_a_unit() {
     for robot in robots() {
-        for layout in [&robot.classic, &robot.layout] {
+        for layout in [robot.classic.as_ref().unwrap(), &robot.layout] {
             for tick in [1, 255, 256, 0x1_0007] {
                 let sent = sensors(&robot, tick);
                 let (mut frames, mut got) = (BusFrames::default(), Sensors::default());
@@ -97,7 +97,7 @@ fn whatever_is_sent_comes_back_within_half_a_unit() {
 #[test]
 fn targets_come_back_too_and_a_motor_side_that_nobody_sends_is_the_link_side() {
     for robot in robots() {
-        for layout in [&robot.classic, &robot.layout] {
+        for layout in [robot.classic.as_ref().unwrap(), &robot.layout] {
             let from = sensors(&robot, 9);
             let mut sent = DriveCommand::default();
             (sent.targets.header.tick, sent.targets.mode) = (9, 2);
@@ -125,7 +125,7 @@ fn targets_come_back_too_and_a_motor_side_that_nobody_sends_is_the_link_side() {
 #[test]
 fn old_repeated_short_foreign_and_error_frames_are_counted_and_move_nothing() {
     let robot = &robots()[0];
-    for layout in [&robot.classic, &robot.layout] {
+    for layout in [robot.classic.as_ref().unwrap(), &robot.layout] {
         let mut frames = BusFrames::default();
         encode_sensors(layout, &sensors(robot, 9), &mut frames);
         let all = frames.count as usize;
@@ -148,7 +148,7 @@ fn old_repeated_short_foreign_and_error_frames_are_counted_and_move_nothing() {
 #[test]
 fn a_frame_of_the_cycle_before_is_late() {
     for robot in robots() {
-        for layout in [&robot.classic, &robot.layout] {
+        for layout in [robot.classic.as_ref().unwrap(), &robot.layout] {
             let counts = layout.messages.iter().all(|message| message.counter().is_some());
             assert!(counts || robot.name == "archie", "{}: only bought drives have none", robot.name);
             for tick in [300, 256, 0x1_0000].into_iter().filter(|_| counts) {
@@ -215,7 +215,7 @@ fn words(carries: Carries) -> Vec<(u16, &'static str)> {
 #[test]
 fn shipped_files_name_modes_states_and_errors_and_say_what_messages_are_and_how_often_they_come() {
     for (robot, cycle) in robots().iter().zip([3.5e-3, 1.5e-3, 3.5e-3]) {
-        for (layout, file, cycle) in [(&robot.classic, "", cycle), (&robot.layout, "_fd", 1e-3)] {
+        for (layout, file, cycle) in [(robot.classic.as_ref().unwrap(), "", cycle), (&robot.layout, "_fd", 1e-3)] {
             let name = &robot.name;
             let path = config::root(None).join(format!("robots/{name}/can/{name}{file}.dbc"));
             let database = Database::load(&path).unwrap();
@@ -244,17 +244,18 @@ fn shipped_files_name_modes_states_and_errors_and_say_what_messages_are_and_how_
 #[test]
 fn every_line_carries_two_or_three_joints_and_its_sync_comes_last() {
     let robot = &robots()[0];
-    assert_eq!(robot.classic.nodes.len(), 9);
-    assert_eq!(robot.classic.nodes, robot.layout.nodes);
-    for (node, name) in robot.classic.nodes.iter().enumerate() {
+    let classic = robot.classic.as_ref().unwrap();
+    assert_eq!(classic.nodes.len(), 9);
+    assert_eq!(classic.nodes, robot.layout.nodes);
+    for (node, name) in classic.nodes.iter().enumerate() {
         let joints = |layout: &Layout| {
             let all = layout.messages.iter().filter(|m| m.node == node).flat_map(|m| &m.signals);
             all.filter(|s| matches!(s.carries, Carries::Target(_))).count()
         };
-        assert!((2..=3).contains(&joints(&robot.classic)), "{name}");
-        assert_eq!(joints(&robot.classic), joints(&robot.layout));
+        assert!((2..=3).contains(&joints(classic)), "{name}");
+        assert_eq!(joints(classic), joints(&robot.layout));
     }
-    assert!(robot.classic.messages.iter().all(|m| m.len <= 8));
+    assert!(classic.messages.iter().all(|m| m.len <= 8));
 }
 
 fn lola() -> String {

@@ -6,8 +6,8 @@ use std::time::Duration;
 use daemon::Daemon;
 use fieldbus::{End, Lines};
 use ipc::{Mode, Waiter};
-use messages::frames::{self, DriveCommand, Received, encode_targets};
-use messages::layout::Layout;
+use codec::frames::{self, DriveCommand, Received, encode_targets};
+use codec::layout::Layout;
 use messages::{BusFrames, MAX_FRAMES};
 use realtime::clock;
 

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use ::fieldbus::Address;
+use config::BusAddress;
 use daemon::Daemon;
 use ipc::Waiter;
 use messages::{BusFrames, EventCode};
@@ -47,8 +47,8 @@ pub trait Fieldbus {
 /// The bus of a run.
 pub(crate) fn open(d: &Daemon) -> Result<Box<dyn Fieldbus>, Box<dyn Error>> {
     match &d.bus {
-        Address::Shared => Ok(Box::new(SimulatedBus::new(d)?)),
-        Address::Can { fd, interfaces } => Ok(Box::new(CanBus::new(d, *fd, interfaces)?)),
-        Address::Sercos(place) => Ok(Box::new(SercosBus::new(d, place)?)),
+        BusAddress::Shared => Ok(Box::new(SimulatedBus::new(d)?)),
+        BusAddress::Can { fd, interfaces } => Ok(Box::new(CanBus::new(d, *fd, interfaces)?)),
+        BusAddress::Sercos(place) => Ok(Box::new(SercosBus::new(d, place)?)),
     }
 }

@@ -14,8 +14,8 @@ use config::{Robot, System};
 use drives::cia402::REFERENCED;
 use fieldbus::{ErrorFrame, ErrorState};
 use messages::event::Refused;
-use messages::frames::Received;
-use messages::layout::{Carries, Layout};
+use codec::frames::Received;
+use codec::layout::{Carries, Layout};
 use messages::{BusCounters, BusFrames, EventCode, Sensors};
 
 use crate::reading::{Bounds, Readings, copy_joint};

@@ -5,7 +5,7 @@
 
 use config::Robot;
 use config::system::BusLimits;
-use messages::layout::Carries;
+use codec::layout::Carries;
 use messages::{MAX_JOINTS, Sensors};
 
 /// \[m/s^2\] Standard gravity.

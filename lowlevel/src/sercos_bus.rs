@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use daemon::Daemon;
 use ipc::Waiter;
-use messages::layout::Layout;
+use codec::layout::Layout;
 use messages::{BusFrames, EventCode};
 use realtime::clock;
 use sercos::packing::{Interfaces, Packing, stations};

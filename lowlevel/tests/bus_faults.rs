@@ -6,8 +6,8 @@ use drives::cia402::{self, REFERENCED, status_of};
 use fieldbus::{ErrorFrame, ErrorState, Injector};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::State;
-use messages::frames::{DriveCommand, decode_targets, encode_sensors};
-use messages::layout::Carries;
+use codec::frames::{DriveCommand, decode_targets, encode_sensors};
+use codec::layout::Carries;
 use messages::{BusFrames, EventCode, Frame, JointMode, JointTargets, Sensors};
 use proptest::prelude::*;
 
@@ -96,7 +96,7 @@ impl Rig {
     /// The line of the local controller that reads a joint.
     fn line(&self, name: &str) -> u32 {
         let j = self.joint(name);
-        let reads = |m: &&messages::layout::Message| m.signals.iter().any(|s| s.carries == Carries::Angle(j));
+        let reads = |m: &&codec::layout::Message| m.signals.iter().any(|s| s.carries == Carries::Angle(j));
         self.robot.layout.sent(false).find(reads).unwrap().node as u32
     }
 

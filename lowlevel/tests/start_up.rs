@@ -4,8 +4,8 @@ use config::{Robot, System};
 use drives::cia402::{self, Fault, Inputs, REFERENCED};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::State;
-use messages::frames::{DriveCommand, decode_targets, encode_sensors};
-use messages::layout::Carries;
+use codec::frames::{DriveCommand, decode_targets, encode_sensors};
+use codec::layout::Carries;
 use messages::{BusFrames, Command, EventCode, JointMode, JointTargets, Reason, Sensors, StartUp, Verdict};
 
 /// \[N\] Lola's weight.
@@ -130,7 +130,7 @@ impl Rig {
 
     /// Takes away what the local controller of joint `j` says.
     fn cut(&self, j: usize, frames: &mut BusFrames) {
-        let reads = |m: &&messages::layout::Message| m.signals.iter().any(|s| s.carries == Carries::Angle(j));
+        let reads = |m: &&codec::layout::Message| m.signals.iter().any(|s| s.carries == Carries::Angle(j));
         let line = self.robot.layout.messages.iter().find(reads).unwrap().node as u32;
         let all = *frames;
         frames.count = 0;

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use daemon::Daemon;
 use fieldbus::{End, Lines};
-use messages::layout::{Carries, Layout, MAX_NODES};
+use codec::layout::{Carries, Layout, MAX_NODES};
 use messages::{BusFrames, Frame};
 use realtime::clock;
 
@@ -214,10 +214,10 @@ impl Gathering {
 mod tests {
     use super::*;
     use config::Robot;
-    use messages::frames::{DriveCommand, encode_targets, look};
+    use codec::frames::{DriveCommand, encode_targets, look};
 
     fn layout() -> Layout {
-        Robot::load(&config::root(None).join("robots/lola")).unwrap().classic
+        Robot::load(&config::root(None).join("robots/lola")).unwrap().classic.unwrap()
     }
 
     fn cycle(layout: &Layout, tick: u64) -> BusFrames {

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::time::Duration;
 
 use daemon::Daemon;
-use fieldbus::Address;
+use config::BusAddress;
 use ipc::{IpcError, Reader, Waiter, Writer};
 use messages::BusFrames;
 use messages::topics::{BUS_RX, BUS_TX, Process};
@@ -45,9 +45,9 @@ pub(crate) trait FarEnd {
 /// The bus of a run.
 pub(crate) fn open(d: &mut Daemon) -> Result<Box<dyn FarEnd>, Box<dyn Error>> {
     match d.bus.clone() {
-        Address::Shared => Ok(Box::new(SharedEnd::new(d)?)),
-        Address::Can { fd, interfaces } => Ok(Box::new(CanEnd::new(d, fd, &interfaces)?)),
-        Address::Sercos(place) => Ok(Box::new(SercosEnd::new(d, &place)?)),
+        BusAddress::Shared => Ok(Box::new(SharedEnd::new(d)?)),
+        BusAddress::Can { fd, interfaces } => Ok(Box::new(CanEnd::new(d, fd, &interfaces)?)),
+        BusAddress::Sercos(place) => Ok(Box::new(SercosEnd::new(d, &place)?)),
     }
 }
 

@@ -5,8 +5,8 @@
 //! so long does not get a joint back in mid-motion.
 
 use messages::MAX_JOINTS;
-use messages::frames::Received;
-use messages::layout::{Carries, Layout, MAX_NODES};
+use codec::frames::Received;
+use codec::layout::{Carries, Layout, MAX_NODES};
 
 /// Cycles without targets after which the drives of a local controller have a fault.
 pub const UNHEARD_CYCLES: u32 = 20;
@@ -87,7 +87,7 @@ impl Hearing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use messages::layout::{Message, Signal};
+    use codec::layout::{Message, Signal};
 
     fn layout() -> Layout {
         let message = |node: usize| Message {

@@ -6,7 +6,7 @@ use config::bus_fault::{BusFault, Way};
 use config::{Robot, Scene};
 use fieldbus::Injector;
 use messages::command::{LowerCommand, PushCommand};
-use messages::frames::{DriveCommand, decode_targets, encode_sensors};
+use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use messages::{BusFrames, EventCode, Imu, Power, Sensors, SimState, Wrench};
 use multibody::Frame;
 use nalgebra::Vector3;

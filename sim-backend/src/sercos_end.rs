@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use daemon::Daemon;
 use messages::BusFrames;
-use messages::layout::Layout;
+use codec::layout::Layout;
 use realtime::clock;
 use sercos::packing::{Interfaces, Packing, stations, sync_counter};
 use sercos::{Far, Phase, Slave};

@@ -216,7 +216,7 @@ mod tests {
     use crate::hearing::UNHEARD_CYCLES;
     use config::{Setup, root};
     use drives::cia402::{DISABLE_VOLTAGE, ENABLE_OPERATION, FAULT_RESET, SHUTDOWN, State};
-    use messages::frames::Received;
+    use codec::frames::Received;
 
     const KNEE: usize = 5;
     const HEAD: usize = 22;

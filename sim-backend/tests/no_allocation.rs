@@ -6,7 +6,7 @@ use config::scene::Integrator;
 use config::{Setup, root};
 use drives::Resolution;
 use environment::Environment;
-use messages::frames::{DriveCommand, encode_targets};
+use codec::frames::{DriveCommand, encode_targets};
 use messages::{BusFrames, JointMode, JointTargets, MAX_JOINTS, Power};
 use realtime::allocations::{arm, counted, disarm};
 use rig::Rig;

@@ -2,7 +2,7 @@
 
 use config::{Setup, root};
 use messages::command::PushCommand;
-use messages::frames::{DriveCommand, decode_sensors, encode_targets};
+use codec::frames::{DriveCommand, decode_sensors, encode_targets};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, Sensors, SimState};
 use sim_backend::SimBackend;
 

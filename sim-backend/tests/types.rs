@@ -5,7 +5,7 @@ use config::brake::Brake;
 use config::scene::Integrator;
 use config::{Setup, root};
 use messages::command::PushCommand;
-use messages::frames::{DriveCommand, encode_targets};
+use codec::frames::{DriveCommand, encode_targets};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, MAX_JOINTS, Power, SimState};
 use sim_backend::SimBackend;
 
@@ -171,7 +171,7 @@ fn brakes_hold_a_standing_robot() {
         assert!((carried - 60.885 * 9.81).abs() < 10.0, "type {depth}: {carried} N");
         // What the sensors see of it is a robot that rests, too.
         let mut sensors = messages::Sensors::default();
-        messages::frames::decode_sensors(&setup.robot.layout, sim.step(None, None).0, &mut sensors);
+        codec::frames::decode_sensors(&setup.robot.layout, sim.step(None, None).0, &mut sensors);
         let felt = sensors.imu.acceleration;
         assert!((felt[2] - 9.81).abs() < 0.05 && felt[0].hypot(felt[1]) < 0.2, "type {depth}: {felt:?}");
     }

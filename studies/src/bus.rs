@@ -8,8 +8,8 @@ use config::scene::Integrator;
 use config::tolerance::Method;
 use config::{Robot, Setup};
 use fieldbus::load::{BIT_RATE, DATA_BIT_RATE, Rates, cycle_time};
-use messages::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
-use messages::layout::{Carries, Layout};
+use codec::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
+use codec::layout::{Carries, Layout};
 use messages::{BusFrames, Sensors};
 use realtime::clock::thread_time;
 use serde::Serialize;
@@ -93,7 +93,7 @@ pub fn run(root: &Path) -> Result<Report, Error> {
     let mut buses = Vec::new();
     for (name, cycle) in ROBOTS {
         let robot = Robot::load(&root.join("robots").join(name))?;
-        buses.push(bus(&robot, "classic CAN, 1 Mbit/s", &robot.classic, CLASSIC, cycle));
+        buses.push(bus(&robot, "classic CAN, 1 Mbit/s", robot.classic.as_ref().map_err(String::as_str)?, CLASSIC, cycle));
         buses.push(bus(&robot, "CAN FD, 1 and 5 Mbit/s", &robot.layout, FD, FD_CYCLE));
     }
     let mut walks = Vec::new();
@@ -108,7 +108,7 @@ pub fn run(root: &Path) -> Result<Report, Error> {
 }
 
 fn one_walk(root: &Path, scene: &str, cycle: f64, classic: bool) -> Result<Walk, Error> {
-    let mut setup = Setup::load(root, scene)?.on_bus(classic);
+    let mut setup = Setup::load(root, scene)?.on_bus(classic)?;
     let substeps = (cycle / STEP).round() as u32;
     setup.scene.choose(Method { depth: 3, integrator: Integrator::SemiImplicit, substeps });
     setup.scene.cycle = cycle;
@@ -236,7 +236,7 @@ mod tests {
         let root = config::root(None);
         for (name, cycle) in ROBOTS {
             let robot = Robot::load(&root.join("robots").join(name)).unwrap();
-            for (layout, rates, cycle) in [(&robot.classic, CLASSIC, cycle), (&robot.layout, FD, FD_CYCLE)] {
+            for (layout, rates, cycle) in [(robot.classic.as_ref().unwrap(), CLASSIC, cycle), (&robot.layout, FD, FD_CYCLE)] {
                 for (time, node) in cycle_time(layout, rates).iter().zip(&layout.nodes) {
                     assert!(*time < cycle, "{name}, {node}: {time} s of {cycle}");
                 }

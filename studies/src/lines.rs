@@ -10,8 +10,8 @@ use std::time::Duration;
 
 use config::Robot;
 use fieldbus::{End, Lines};
-use messages::frames::{DriveCommand, decode_sensors, encode_sensors, encode_targets};
-use messages::layout::Layout;
+use codec::frames::{DriveCommand, decode_sensors, encode_sensors, encode_targets};
+use codec::layout::Layout;
 use messages::{BusFrames, Frame, MAX_FRAMES, Sensors};
 use realtime::{Histogram, Period, Schedule, allocations, clock, prepare_thread};
 use serde::Serialize;
@@ -79,7 +79,7 @@ pub struct Report {
 /// The robot's files are wrong, or an interface cannot be used.
 pub fn run(config: &Path, order: &Order) -> Result<Report, Box<dyn Error>> {
     let robot = Robot::load(&config.join("robots").join(&order.robot))?;
-    let layout = if order.fd { robot.layout } else { robot.classic };
+    let layout = if order.fd { robot.layout } else { robot.classic? };
     let open = |end| Lines::open(&order.interfaces, &layout, order.fd, end);
     let (near, far) = (open(End::Near)?, open(End::Far)?);
     let beside = || cyclictest(None, PRIORITY[0], order.seconds);

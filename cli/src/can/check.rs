@@ -13,8 +13,8 @@ use fieldbus::capture::Form;
 use fieldbus::cycles::Cycles;
 use fieldbus::owners::Owners;
 use lowlevel::JointLoop;
-use messages::frames::encode_sensors;
-use messages::layout::Layout;
+use codec::frames::encode_sensors;
+use codec::layout::Layout;
 use messages::topics::{JOINT_TARGETS, SENSORS};
 use messages::{BusFrames, Frame, Header, JointTargets, Sensors};
 use recording::Log;
@@ -44,7 +44,7 @@ pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
     let mut setup = Setup::load(config, &log.run().scene)?;
     let capture = file::read(&order.recording, order.lenient)?;
     if !capture.frames.iter().any(|frame| matches!(frame.form, Form::Fd { .. })) {
-        setup.robot.layout = setup.robot.classic.clone();
+        setup = setup.on_bus(true)?;
     }
     let outcome = Comparison::new(&setup, &capture, &log)?.run();
     let other = if setup.hash == log.run().config_hash {

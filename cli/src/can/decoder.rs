@@ -7,7 +7,7 @@ use std::path::Path;
 use config::Robot;
 use fieldbus::capture::{Captured, Form};
 use fieldbus::owners::Owners;
-use messages::layout::{Carries, Layout, Message};
+use codec::layout::{Carries, Layout, Message};
 
 use super::Only;
 
@@ -17,6 +17,11 @@ pub(super) struct Decoder {
     /// Whether a frame of CAN FD was seen: then the layout is that of CAN FD, also for frames of up to 8 bytes.
     fd: bool,
     pub(super) owners: Owners,
+}
+
+/// The layout of classic CAN or CAN FD; a robot without frames of classic CAN has just one.
+fn layout(robot: &Robot, fd: bool) -> &Layout {
+    robot.classic.as_ref().ok().filter(|_| !fd).unwrap_or(&robot.layout)
 }
 
 impl Decoder {
@@ -30,13 +35,12 @@ impl Decoder {
     /// Learns from frames: all of a recording before it is looked at, or each as it comes.
     pub(super) fn learn(&mut self, frame: &Captured) {
         self.fd |= matches!(frame.form, Form::Fd { .. });
-        let layout = if self.fd { &self.robot.layout } else { &self.robot.classic };
-        self.owners.learn(layout, frame);
+        self.owners.learn(layout(&self.robot, self.fd), frame);
     }
 
     /// The layout in use.
     pub(super) fn layout(&self) -> &Layout {
-        if self.fd { &self.robot.layout } else { &self.robot.classic }
+        layout(&self.robot, self.fd)
     }
 
     /// The message of a frame.

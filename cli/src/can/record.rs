@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use fieldbus::capture::{Captured, Form};
 use ipc::{Reader, Run, Space};
-use messages::layout::Layout;
+use codec::layout::Layout;
 use messages::topics::{BUS_RX, BUS_TX};
 use messages::{BusFrames, Process};
 use realtime::{Stop, clock};

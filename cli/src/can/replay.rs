@@ -283,7 +283,7 @@ mod tests {
         let mut joints = JointLoop::new(&setup.robot, &setup.system, setup.scene.cycle);
         // As on CAN the joint loop asks for the first state with a SYNC of tick 0: twice, as if it was impatient.
         let mut told = BusFrames::default();
-        messages::frames::encode_targets(&setup.robot.layout, &Default::default(), &mut told);
+        codec::frames::encode_targets(&setup.robot.layout, &Default::default(), &mut told);
         let mut ask = |told: &BusFrames| {
             for frame in told.as_slice() {
                 replay.answer(&Captured::of(frame, 0, Form::Fd { flags: 5 })).unwrap();

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use fieldbus::capture::Captured;
-use fieldbus::interface;
+use config::interface_names;
 use fieldbus::tap::Tap;
 use realtime::{Stop, clock};
 
@@ -45,7 +45,7 @@ pub(super) fn listen(
 
 /// The interfaces of a list.
 pub(super) fn names(list: &str) -> Result<Vec<String>, Box<dyn Error>> {
-    Ok(interface::names(list)?)
+    Ok(interface_names(list)?)
 }
 
 /// A duration as somebody typed it.

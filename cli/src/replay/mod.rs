@@ -13,9 +13,9 @@ use std::error::Error;
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 
-use config::Setup;
+use config::{BusAddress, Setup};
 use config::tolerance::Method;
-use fieldbus::Address;
+
 use messages::Process;
 use recording::Log;
 
@@ -98,7 +98,7 @@ fn cycle(tape: &mut Tape, part: &mut dyn parts::Part, done: &mut Replayed) -> Re
 }
 
 /// The configuration of a log, from the files in it, and the field bus.
-fn setup_of(log: &Log) -> Result<(Setup, Address), Box<dyn Error>> {
+fn setup_of(log: &Log) -> Result<(Setup, BusAddress), Box<dyn Error>> {
     let place = Unpacked::new()?;
     let mut run = None;
     let mut failed = None;
@@ -114,8 +114,8 @@ fn setup_of(log: &Log) -> Result<(Setup, Address), Box<dyn Error>> {
         run.ok_or("the log does not say how it was run: only logs of `gangwerk run` can be replayed")?;
     let run = ipc::Run::parse(&place.0, &run)?;
     let method: Option<Method> = run.method.as_deref().map(str::parse).transpose()?;
-    let bus: Address = run.bus.parse()?;
-    let setup = Setup::load(&place.0, &run.scene)?.with_method(method)?.on_bus(bus.is_classic());
+    let bus: BusAddress = run.bus.parse()?;
+    let setup = Setup::load(&place.0, &run.scene)?.with_method(method)?.on_bus(bus.is_classic())?;
     let (theirs, ours) = (log.run().config_hash, setup.hash);
     if theirs != ours {
         return Err(format!(

@@ -2,9 +2,9 @@
 
 use std::error::Error;
 
-use config::Setup;
+use config::{BusAddress, Setup};
 use controller::Controller;
-use fieldbus::Address;
+
 use lowlevel::JointLoop;
 use messages::topics::{
     CONTROLLER_STATE, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, PARAMETERS_CONTROLLER, PARAMETERS_PLANNER, PLAN,
@@ -37,7 +37,7 @@ pub(super) trait Part {
 }
 
 /// The process as it is when it begins.
-pub(super) fn of(process: Process, setup: &Setup, bus: &Address) -> Result<Box<dyn Part>, Box<dyn Error>> {
+pub(super) fn of(process: Process, setup: &Setup, bus: &BusAddress) -> Result<Box<dyn Part>, Box<dyn Error>> {
     let Setup { scene, robot, gait, system, .. } = setup;
     Ok(match process {
         Process::Planner => {
@@ -59,7 +59,7 @@ pub(super) fn of(process: Process, setup: &Setup, bus: &Address) -> Result<Box<d
         }),
         Process::Lowlevel => Box::new(Driving {
             joints: JointLoop::new(robot, system, scene.cycle),
-            real_bus: *bus != Address::Shared,
+            real_bus: *bus != BusAddress::Shared,
             targets: None,
             frames: None,
         }),

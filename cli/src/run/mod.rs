@@ -21,9 +21,9 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
 
-use config::Setup;
+use config::{BusAddress, Setup};
 use config::tolerance::Method;
-use fieldbus::Address;
+
 use ipc::{Mode, Run, Space};
 use messages::topics::{CONTROLLER_STATE, SIM_STATE};
 use messages::{ControllerState, Process, SimState};
@@ -52,7 +52,7 @@ pub struct Order {
     /// The configuration directory.
     pub config: PathBuf,
     /// The field bus.
-    pub bus: Address,
+    pub bus: BusAddress,
     /// Whether a simulated robot is put at its far end.
     pub robot: bool,
     /// The run directory.
@@ -122,7 +122,7 @@ pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<
         .into());
     }
     // From here errors name the files of the operator; the processes read the copy.
-    let theirs = Setup::load(&order.config, &order.scene)?;
+    let theirs = Setup::load(&order.config, &order.scene)?.on_bus(order.bus.is_classic())?;
     let space = Space::create(&order.dir)?;
     let config = space.dir().join(ipc::CONFIG);
     let _ = std::fs::remove_dir_all(&config); // of a run that was killed

@@ -8,8 +8,8 @@ mod cycle_log;
 
 pub use cycle_log::CycleLog;
 
-use config::Setup;
-use fieldbus::Address;
+use config::{BusAddress, Setup};
+
 use ipc::{Bell, IpcError, Mode, Run, Space, Waiter, Woken, Writer};
 use messages::topics::{Process, Topic};
 use messages::{BusCounters, CommandSource, CycleStats, Event, EventCode, Header};
@@ -38,7 +38,7 @@ pub struct Daemon {
     /// In lockstep: no faster than real time.
     pub paced: bool,
     /// The field bus.
-    pub bus: Address,
+    pub bus: BusAddress,
     /// Whether a simulated robot is at its far end.
     pub robot: bool,
     /// Whether the run is logged.
@@ -69,8 +69,8 @@ impl Daemon {
         let stop = Stop::on_signals()?;
         let run = Run::load(dir)?;
         let method = run.method.as_deref().map(str::parse).transpose()?;
-        let bus: Address = run.bus.parse()?;
-        let setup = Setup::load(&run.config, &run.scene)?.with_method(method)?.on_bus(bus.is_classic());
+        let bus: BusAddress = run.bus.parse()?;
+        let setup = Setup::load(&run.config, &run.scene)?.with_method(method)?.on_bus(bus.is_classic())?;
         let row = setup.system.process(process).cloned();
         let schedule = match (run.mode, &row) {
             (Mode::RealTime, Some(row)) => Schedule { priority: row.priority, core: row.core },

@@ -5,7 +5,7 @@
 
 use crate::capture::{Capture, Captured};
 use crate::owners::Owners;
-use messages::layout::{Layout, Message};
+use codec::layout::{Layout, Message};
 use messages::{BusFrames, Header};
 use std::collections::BTreeMap;
 

@@ -14,7 +14,7 @@
 
 use config::bus_fault::{BusFault, FaultKind, MOST_LATE, Way};
 use messages::bus::MAX_FRAMES;
-use messages::layout::Layout;
+use codec::layout::Layout;
 use messages::{BusFrames, ERROR_FLAG, Frame};
 
 use crate::error_counters::{ErrorCounters, RECOVERY_BITS};

@@ -9,8 +9,6 @@ use std::path::Path;
 const TYPE_CAN: &str = "280";
 /// Bit of /sys/class/net/NAME/flags: the interface is up.
 const UP: u32 = 1;
-/// Most interfaces of one bus.
-const MOST: usize = 64;
 
 /// Errors of the operating system, by number.
 const EPERM: i32 = 1;
@@ -96,63 +94,9 @@ pub(crate) fn open(name: &str) -> Result<CanFdSocket, InterfaceError> {
     CanFdSocket::open(name).map_err(|e| InterfaceError::of(name, &e))
 }
 
-/// The interfaces of a list: `vcan0`, `vcan0-8`, `can0,can1,vcan0-3`.
-///
-/// # Errors
-/// A name is empty, too long or named twice, or a range runs backwards.
-pub fn names(list: &str) -> Result<Vec<String>, String> {
-    let mut names: Vec<String> = Vec::new();
-    for part in list.split(',') {
-        for name in range(part)? {
-            if name.is_empty() || name.len() > 15 || name.contains(['/', ' ', ':']) {
-                return Err(format!("`{list}`: `{name}` is not the name of an interface (1 to 15 letters)"));
-            }
-            if names.contains(&name) {
-                return Err(format!("`{list}` names {name} twice"));
-            }
-            names.push(name);
-        }
-    }
-    let fits = names.len() <= MOST;
-    fits.then_some(names).ok_or_else(|| format!("`{list}` are more than {MOST} interfaces"))
-}
-
-/// `vcan0-8` as nine names; anything else as it is: a hyphen may be part of a name.
-fn range(part: &str) -> Result<Vec<String>, String> {
-    let whole = || Ok(vec![part.to_owned()]);
-    let Some((first, last)) = part.rsplit_once('-') else { return whole() };
-    let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
-    let (Ok(from), Ok(to)) = (first[stem.len()..].parse::<usize>(), last.parse::<usize>()) else {
-        return whole();
-    };
-    if to < from || to - from >= MOST {
-        return Err(format!("`{part}`: from {from} to {to} are not 1 to {MOST} interfaces"));
-    }
-    Ok((from..=to).map(|n| format!("{stem}{n}")).collect())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn lists_and_ranges_of_names() {
-        assert_eq!(names("vcan0").unwrap(), ["vcan0"]);
-        assert_eq!(names("can0,vcan2-4").unwrap(), ["can0", "vcan2", "vcan3", "vcan4"]);
-        assert_eq!(names("can-left").unwrap(), ["can-left"]);
-        for (list, why) in [
-            ("", "not the name"),
-            ("can0,,can1", "not the name"),
-            ("vcan8-0", "from 8 to 0"),
-            ("vcan0-99999", "not 1 to 64"),
-            ("can0,can0", "twice"),
-            ("averyveryverylongname", "1 to 15"),
-            ("a/b", "not the name"),
-        ] {
-            let said = names(list).unwrap_err();
-            assert!(said.contains(why), "{list}: {said}");
-        }
-    }
 
     #[test]
     fn every_error_of_the_system_says_what_to_do() {

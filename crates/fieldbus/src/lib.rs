@@ -1,16 +1,15 @@
 //! The CAN side of the field bus, for both of its ends and for the tools that listen: sockets, recordings, faults.
 //!
-//! Layouts of frames are data: `config/robots/NAME/can/*.dbc`, read by `config`, used by [`messages::frames`].
+//! The layout of its frames is data: [`codec`].
 //!
 //! - [`capture`]: recorded traffic; [`clock_steps`]: where its clock was put back. [`text_log`]: files of it, as [`candump`],
 //!   [`asc`] or [`trc`]. [`bits`]: how long a frame occupies its line.
-//! - [`address`]: which bus a run uses. [`lines`]: one end of all lines of a robot. [`load`]: how full they are;
+//! - [`lines`]: one end of all lines of a robot. [`load`]: how full they are;
 //!   [`load_course`]: over the time of a recording.
 //! - [`owners`], [`cycles`]: recorded frames by local controller and bus cycle. [`statistics`]: how often, how regular.
 //! - [`interface`]: interfaces by name, and what is wrong with them. [`tap`]: listening and playing, for tools.
 //! - [`injector`]: faults between the two ends; with [`error_counters`] and [`error_frame`], as CAN has them.
 
-pub mod address;
 pub mod asc;
 pub mod bits;
 pub mod candump;
@@ -31,7 +30,6 @@ pub mod tap;
 pub mod text_log;
 pub mod trc;
 
-pub use address::Address;
 pub use capture::{Capture, Captured, Form, Way};
 pub use error_counters::ErrorCounters;
 pub use error_frame::{ErrorFrame, ErrorState};

@@ -7,7 +7,7 @@ use std::os::fd::AsFd;
 use std::time::Duration;
 
 use crate::interface::{self, InterfaceError};
-use messages::layout::{Layout, MAX_NODES};
+use codec::layout::{Layout, MAX_NODES};
 use messages::{BusFrames, ERROR_FLAG, Frame, MAX_FRAMES};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use socketcan::{

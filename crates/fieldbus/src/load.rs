@@ -4,7 +4,7 @@
 //! until the next frame. CAN FD (ISO 11898-1:2015): arbitration phase of 30 bits, stuffed the same way, at the nominal rate;
 //! data phase of control, data, fixed stuff bits and CRC of 17 or 21 bits at the data rate.
 
-use messages::layout::{Layout, Message};
+use codec::layout::{Layout, Message};
 
 /// \[bit/s\] Of arbitration, and of all of classic CAN, on the lines of these robots.
 pub const BIT_RATE: f64 = 1e6;

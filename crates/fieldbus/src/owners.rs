@@ -5,7 +5,7 @@
 //! several nodes use (one SYNC for all) belong to those nodes whose other frames were seen on the same interface.
 
 use crate::capture::{Capture, Captured};
-use messages::layout::{Layout, Message};
+use codec::layout::{Layout, Message};
 
 /// The nodes behind each interface.
 #[derive(Clone, Debug, Default, PartialEq)]

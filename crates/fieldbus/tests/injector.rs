@@ -2,7 +2,7 @@
 
 use config::bus_fault::{BusFault, FaultKind, Way};
 use fieldbus::{ErrorFrame, ErrorState, Injector};
-use messages::layout::{Carries, Layout, Message, Signal};
+use codec::layout::{Carries, Layout, Message, Signal};
 use messages::{BusFrames, Frame};
 
 #[global_allocator]

@@ -4,7 +4,7 @@ use fieldbus::cycles::{Cycles, Unwrapped};
 use fieldbus::owners::Owners;
 use fieldbus::statistics::{BitRates, Statistics};
 use fieldbus::{Capture, candump};
-use messages::layout::{Carries, Layout, Message, Signal};
+use codec::layout::{Carries, Layout, Message, Signal};
 
 const COUNTER: u32 = 8;
 

@@ -47,7 +47,7 @@ pub struct Run {
     pub method: Option<String>,
     /// The configuration directory: `system.toml`, `robots/`, `scenes/`, `gaits/`.
     pub config: PathBuf,
-    /// The field bus, as `fieldbus::Address` reads it.
+    /// The field bus, as `config::BusAddress` reads it.
     pub bus: String,
     /// Whether a simulated robot is at the far end of the bus.
     pub robot: bool,

@@ -5,7 +5,7 @@
 //! missing gets no new data in that cycle.
 
 use crate::layout::Station;
-use messages::layout::{Carries, Layout};
+use codec::layout::{Carries, Layout};
 use messages::{BusFrames, Frame};
 
 /// Longest data of a connection \[B\].
@@ -130,7 +130,7 @@ impl std::str::FromStr for Interfaces {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use messages::layout::{Message, Signal};
+    use codec::layout::{Message, Signal};
 
     fn message(id: u32, len: u32, node: usize, to_drives: bool) -> Message {
         let signal = |carries| Signal {

@@ -2,8 +2,8 @@
 
 use config::scene::Scene;
 use drives::cia402::{ENABLE_OPERATION, SHUTDOWN};
-use messages::frames::{DriveCommand, encode_targets};
-use messages::layout::Layout;
+use codec::frames::{DriveCommand, encode_targets};
+use codec::layout::Layout;
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, SimState};
 use sim_backend::SimBackend;
 

@@ -68,7 +68,7 @@ fn target(bench: &Bench) -> Finding {
     let robot = &bench.setup.robot;
     let mut joints = JointLoop::new(robot, &bench.setup.system, bench.setup.scene.cycle);
     let mut told = false;
-    let mut out = messages::frames::DriveCommand::default();
+    let mut out = codec::frames::DriveCommand::default();
     let mut largest = 0.0_f64;
     let mut answer = messages::BusFrames::default();
     let mut sensors = messages::Sensors { power: 1, ..Default::default() };
@@ -78,7 +78,7 @@ fn target(bench: &Bench) -> Finding {
     for tick in 1..20 {
         sensors.header.tick = tick;
         sensors.joint_angle[..bench.pose().len()].copy_from_slice(bench.pose());
-        messages::frames::encode_sensors(&robot.layout, &sensors, &mut answer);
+        codec::frames::encode_sensors(&robot.layout, &sensors, &mut answer);
         joints.receive(tick, tick * 1_000_000, Some(&answer));
         let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
         targets.header.tick = tick;
@@ -88,7 +88,7 @@ fn target(bench: &Bench) -> Finding {
             targets.speed[4] = 1e300;
         }
         let (frames, _) = joints.send(Some(&targets), None);
-        messages::frames::decode_targets(&robot.layout, frames, &mut out);
+        codec::frames::decode_targets(&robot.layout, frames, &mut out);
         let wrong = |j: usize| (out.targets.angle[j] - bench.pose()[j]).abs();
         largest = (0..bench.pose().len()).map(wrong).fold(largest, f64::max);
         told |= matches!(joints.take_event(), Some((EventCode::TargetNotFinite, _)));
@@ -109,7 +109,7 @@ fn push(bench: &Bench, depth: u8, name: &str, force: f64) -> Result<Finding> {
             held.sim.push(&PushCommand { force: [force, 0.0, 0.0], duration: 0.01 });
         }
         let (frames, truth) = held.step();
-        messages::frames::decode_sensors(&bench.setup.robot.layout, frames, &mut seen);
+        codec::frames::decode_sensors(&bench.setup.robot.layout, frames, &mut seen);
         let pose = truth.position.iter().chain(&truth.orientation).chain(&truth.velocity).chain(&truth.com);
         let feet = truth.foot_wrench.iter().flat_map(|w| w.force.iter().chain(&w.moment));
         let rest = truth.angular_velocity.iter().chain(&truth.joint_angle).chain(truth.feet.iter().flatten());

@@ -62,7 +62,7 @@ pub(super) fn all(config: &Path, tell: &impl Fn(&str)) -> Result<Vec<Walk>, Box<
             let mut setup = scene.clone();
             resolve(&mut setup, Resolution::default());
             cycled(&mut setup, cycle);
-            framed(&mut setup, classic);
+            setup = setup.on_bus(classic)?;
             walks.push(walk(setup, format!("Lola, cascade, exact, frames of {bus}"), tell)?);
         }
     }
@@ -75,7 +75,7 @@ pub(super) fn all(config: &Path, tell: &impl Fn(&str)) -> Result<Vec<Walk>, Box<
     ] {
         let mut setup = johnnie.clone();
         resolve(&mut setup, resolution);
-        framed(&mut setup, classic);
+        setup = setup.on_bus(classic)?;
         walks.push(walk(setup, format!("Johnnie, voltage law (5.40), {name}"), tell)?);
     }
     Ok(walks)
@@ -83,13 +83,6 @@ pub(super) fn all(config: &Path, tell: &impl Fn(&str)) -> Result<Vec<Walk>, Box<
 
 fn resolve(setup: &mut Setup, resolution: Resolution) {
     setup.robot.drives.iter_mut().for_each(|drive| drive.control.resolution = resolution);
-}
-
-/// The frames that all of the chain encodes and decodes: those of classic CAN instead of CAN FD.
-fn framed(setup: &mut Setup, classic: bool) {
-    if classic {
-        setup.robot.layout = setup.robot.classic.clone();
-    }
 }
 
 /// The same scene with another bus cycle, and as long steps.

@@ -1,7 +1,8 @@
 //! Commands as bytes and as text, candump logs, DBC files, and the file that tells processes which run they are in.
 
 use broker::message::{MAX_BYTES, Message, write_command};
-use fieldbus::{Address, candump};
+use config::BusAddress;
+use fieldbus::candump;
 use messages::command_text::COMMANDS;
 use messages::{Command, Stamp, wire};
 use std::path::Path;
@@ -110,7 +111,7 @@ pub(crate) fn run_file(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let dir = Path::new("/nowhere");
     if let Ok(run) = ipc::Run::parse(dir, text) {
-        let _ = run.bus.parse::<Address>();
+        let _ = run.bus.parse::<BusAddress>();
         let _ = run.method.as_deref().map(str::parse::<config::tolerance::Method>);
         assert_eq!(ipc::Run::parse(dir, &run.to_text()).expect("it was written"), run);
     }

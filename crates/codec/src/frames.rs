@@ -1,8 +1,7 @@
 //! Records to frames and back, by the layout of a robot: [`Layout`].
 
-use crate::bus::{BusFrames, ERROR_FLAG, Frame};
+use messages::{BusFrames, ERROR_FLAG, Frame, JointMode, JointTargets, MAX_JOINTS, Sensors};
 use crate::layout::{Carries, Layout, MAX_NODES, Message};
-use crate::{JointMode, JointTargets, MAX_JOINTS, Sensors};
 
 /// What the drives are told in one cycle.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,7 +3,7 @@
 //! A layout is data: `config` makes it from a robot's DBC file. Numbers are scaled integers of up to 32 bits, little endian
 //! (Intel), value = raw × scale + offset; bit 0 is the lowest of byte 0.
 
-use crate::MAX_JOINTS;
+use messages::MAX_JOINTS;
 
 /// Room for local controllers: nodes, each on a line of its own.
 pub const MAX_NODES: usize = 32;
@@ -17,7 +17,7 @@ const NOBODY: u16 = u16::MAX;
 pub enum Carries {
     /// \[1\] Low bits of the tick: tells a repeated or late frame from a new one.
     Counter,
-    /// \[1\] To the drives: a [`JointMode`](crate::JointMode).
+    /// \[1\] To the drives: a [`JointMode`](messages::JointMode).
     Mode,
     /// \[rad\] To the drives: angle of a joint.
     Target(usize),

@@ -1,0 +1,8 @@
+//! Records to bus frames and back, for both ends of the field bus and for the tools that read its traffic.
+//!
+//! - [`layout`]: position, scale and meaning of each number in the frames. It is data: `config` makes it from a robot's DBC
+//!   files.
+//! - [`frames`]: encoding and decoding by such a layout, and what became of the frames of a cycle.
+
+pub mod frames;
+pub mod layout;
