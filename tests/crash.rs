@@ -1,4 +1,4 @@
-//! What is left of a process that dies or hangs in the middle of a run: its last two seconds, the reason, where it was.
+//! Crash record of a process that dies or hangs in the middle of a run: its last two seconds, the reason, the stack.
 
 use harness::{Running, Said, Signal, Site, doze, turn};
 use messages::topics::{CONTROLLER_STATE, INPUTS_CONTROLLER, INPUTS_PLANNER, JOINT_TARGETS, SIM_STATE};

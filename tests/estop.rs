@@ -43,7 +43,7 @@ fn trials() -> usize {
 /// A robot that stands, and what is seen of its supply.
 struct Rig {
     run: Running,
-    /// What the readers read.
+    /// Records of the readers.
     _space: Space,
     power: Reader<Power>,
     sim: Reader<SimState>,
@@ -139,7 +139,7 @@ fn at(mut values: Vec<f64>, share: f64) -> f64 {
     values[((values.len() as f64 * share).ceil() as usize).clamp(1, values.len()) - 1]
 }
 
-/// What is printed of one condition; with many trials its limits are held.
+/// Figures of one condition; with many trials its limits are held.
 fn row(name: &str, trials: &[Trial]) -> String {
     let of = |value: fn(&Trial) -> f64, share| at(trials.iter().map(value).collect(), share);
     let record = |share| of(|t| t.record_us as f64 * 1e-3, share);

@@ -57,7 +57,7 @@ impl<T: Record> Track<T> {
     }
 }
 
-/// What an observer sees of a run.
+/// A run as an observer sees it.
 struct Observer {
     sim: Track<SimState>,
     power: Track<Power>,
@@ -115,7 +115,7 @@ struct Evidence {
     at: usize,
     /// \[ms\] Wall time from the signal until the supply was seen off.
     wall_off: Option<f64>,
-    /// What the run said, and how it ended.
+    /// Output and exit of the run.
     said: harness::Said,
     log: std::path::PathBuf,
     _site: Site,
@@ -193,7 +193,7 @@ impl Evidence {
     }
 }
 
-/// What the processes said between the death and the end of the run.
+/// Output of the processes between the death and the end of the run.
 fn events(e: &Evidence) -> String {
     let until = e.after().last().map_or(0, |s| s.header.tick);
     let mut text: Vec<String> = Vec::new();
@@ -216,7 +216,7 @@ impl Evidence {
     }
 }
 
-/// What must be so. The limits are those of `system.toml` and of the robot's brakes.
+/// Demands. The limits are those of `system.toml` and of the robot's brakes.
 fn judge(e: &Evidence, setup: &Setup) -> Result<(), String> {
     let check = |right: bool, what: &str| if right { Ok(()) } else { Err(what.to_owned()) };
     let said_twice = e.seen.events.iter().find_map(|(process, track)| {

@@ -8,14 +8,14 @@ use std::time::Duration;
 
 const EXE: &str = harness::executable!();
 
-/// \[s\] What the manager bears of silence.
+/// \[s\] Watchdog timeout of the service manager.
 const PATIENCE: f64 = 0.9;
 
 /// The service manager's end of the line.
 struct Manager(UnixDatagram);
 
 impl Manager {
-    /// What is said next, within some seconds.
+    /// Next line of output, within some seconds.
     fn hear(&self, seconds: f64) -> Option<String> {
         self.0.set_read_timeout(Some(Duration::from_secs_f64(seconds))).unwrap();
         let mut said = [0; 256];

@@ -256,7 +256,7 @@ fn documents() -> Vec<PathBuf> {
     files(&[".md"]).into_iter().filter(whole).collect()
 }
 
-/// What stands between backticks in running text; blocks of code aside.
+/// Quotations between backticks in running text, without blocks of code.
 fn quoted(document: &str) -> Vec<String> {
     let prose: String = document.split("```").step_by(2).collect();
     prose

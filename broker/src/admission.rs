@@ -16,7 +16,7 @@ pub struct Sender {
     pub last: [u64; 3],
 }
 
-/// Why the broker does not pass a command on.
+/// Reason of the broker for not passing a command on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Denied {
     /// Age or sequence.

@@ -88,7 +88,7 @@ struct Shared {
     lease: AtomicU64,
 }
 
-/// What a client has seen so far.
+/// Messages a client has read so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClientStatistics {
     /// Whether the broker answers.
@@ -179,12 +179,12 @@ impl Client {
         std::iter::from_fn(|| self.accept().map(|live| live.command)).take(waiting)
     }
 
-    /// How many messages wait.
+    /// Number of messages waiting.
     pub fn waiting(&self) -> usize {
         self.urgent.received.slots() + self.other.received.slots()
     }
 
-    /// What this client has seen so far.
+    /// Messages this client has read so far.
     pub fn statistics(&self) -> ClientStatistics {
         let s = &self.shared;
         ClientStatistics {
@@ -262,7 +262,7 @@ fn token(name: &str) -> u32 {
     (hash & 0x7fff_ffff).max(1)
 }
 
-/// What the thread owns.
+/// State of the thread.
 struct Courier {
     name: String,
     token: u32,

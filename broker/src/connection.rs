@@ -50,7 +50,7 @@ const NAME: usize = 64;
 /// Rights of a connection before it shows a key.
 #[derive(Clone, Debug)]
 pub struct Rights {
-    /// Who it is, for the log and for others that want the lease.
+    /// Identity, for the log and for others that want the lease.
     pub peer: String,
     /// Domains that it may command: bit n for domain n. Whatever they are, it may stop the robot.
     pub may: u32,
@@ -260,7 +260,7 @@ impl Session {
         Ok(())
     }
 
-    /// Who the client is, and whether both sides mean the same by the same bytes.
+    /// Identity of the client, and the check that both sides mean the same by the same bytes.
     async fn hello(&mut self, message: &Message<'_>) -> Result<(), Refusal> {
         let malformed = || Refusal::Malformed("a HELLO without version, schema and nonce".into());
         let (version, rest) = message.payload.split_first_chunk::<2>().ok_or_else(malformed)?;
@@ -325,7 +325,7 @@ impl Session {
         Ok(())
     }
 
-    /// What one frame asks the broker itself for.
+    /// Request to the broker itself in one frame.
     async fn serve_request(&mut self, message: &Message<'_>) -> Result<(), Refusal> {
         let (token, sequence) = (self.token, message.stamp.sequence);
         if message.id == service::PROVE {

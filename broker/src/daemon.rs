@@ -29,7 +29,7 @@ pub struct Tcp {
 }
 
 impl Tcp {
-    /// What `system.toml` says; a relative path of the keys counts from the configuration directory.
+    /// Broker section of `system.toml`; a relative path of the keys counts from the configuration directory.
     pub fn of(system: &System, config: &Path) -> Self {
         let keys = (!system.tcp_keys.is_empty()).then(|| config.join(&system.tcp_keys));
         Self { address: system.tcp_listen, keys }

@@ -59,7 +59,7 @@ pub const TCP_PLACES: Places = Places { total: 32, each: 16, first: 0xc000_0000 
 /// Messages per second, and at once, of a connection that may not command, or not yet.
 const STRANGER_RATE: f64 = 100.0;
 
-/// Who stands at the door.
+/// Peer of a new connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Peer {
     User { uid: u32, own: bool },
@@ -195,7 +195,7 @@ struct Door {
     ends: mpsc::UnboundedSender<End>,
 }
 
-/// Why a connection was closed: number, who, reason.
+/// Closed connection: number, peer, reason.
 type End = (u32, String, Refusal);
 
 impl Door {
@@ -263,7 +263,7 @@ impl Door {
     }
 }
 
-/// What a peer may do before it shows a key.
+/// Rights of a peer before it shows a key.
 fn rights(peer: Peer, name: String, only_stops: bool, keys: Arc<Vec<Key>>) -> Rights {
     let (may, reads) = match peer {
         Peer::User { own: true, .. } => (domain_mask(&Domain::ALL), true),

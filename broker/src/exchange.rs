@@ -35,12 +35,12 @@ const MAX_PROCESSES: usize = 32;
 const AT_ONCE: usize = 64;
 /// Commands of one process that are on their way at once; a stream has a limit of its own.
 const UNANSWERED: usize = 256;
-/// How often silent clients and losses are looked at \[ns\].
+/// Period of the check for silent clients and losses \[ns\].
 const ROUND: u64 = SECOND / 4;
-/// How often the state of the lease is told \[ns\].
+/// Period at which the state of the lease is sent \[ns\].
 const LEASE_ROUND: u64 = SECOND / 20;
 
-/// What the broker has to report, for the log.
+/// The broker's events, for the log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Report {
     /// A command was refused by the broker itself; number of the reason.
@@ -109,7 +109,7 @@ impl<'a> Exchange<'a> {
         self.bell.wait(limit);
     }
 
-    /// What a stream rings after it has handed something in.
+    /// Wake-up that a stream rings after handing something in.
     pub fn doorbell(&self) -> Doorbell {
         self.bell.doorbell()
     }

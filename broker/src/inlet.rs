@@ -11,7 +11,7 @@ use crate::members::Outgoing;
 /// A command's way into the broker: number of the connection and message. It is answered on the connection.
 pub type Publication = (u32, Vec<u8>);
 
-/// What else a connection asks of the broker, each with the sequence of its frame.
+/// Requests of a connection other than commands, each with the sequence of its frame.
 #[allow(missing_docs, reason = "fields are the token of a connection and the contents of its frame")]
 pub enum Request {
     /// The client said who it is.

@@ -137,7 +137,7 @@ impl Half {
         tag.len() == TAG && whole.verify_truncated_left(tag).is_ok()
     }
 
-    /// What shows that the client has the key, before the first tagged frame.
+    /// Proof that the client has the key, before the first tagged frame.
     pub fn proof(&self) -> [u8; 32] {
         mac(&self.key, &[b"proof"]).finalize().into_bytes().into()
     }

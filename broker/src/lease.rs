@@ -13,7 +13,7 @@ use messages::command_stamp::LEASE;
 /// Numbers of grants have 24 bits, so that number and end of a lease are one atomic word for a control cycle.
 const GRANTS: u32 = 0x00ff_ffff;
 
-/// Who holds the lease, and until when.
+/// Holder of the lease, and its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct LeaseKeeper {
     holder: Option<Holder>,
@@ -24,7 +24,7 @@ pub struct LeaseKeeper {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Holder {
     token: u32,
-    /// \[ns\] When it was last heard, by its own clock.
+    /// \[ns\] Time of its last message, by its own clock.
     heard_ns: u64,
 }
 

@@ -44,7 +44,7 @@ pub(crate) struct Watch {
     pub(crate) events: bool,
     /// Time from one state to the next \[ns\]; 0: none.
     pub(crate) period: u64,
-    /// When the next one is due \[ns\].
+    /// Time of the next one \[ns\].
     pub(crate) due: u64,
 }
 

@@ -72,7 +72,7 @@ pub mod service {
     pub const LEASE: u16 = 20;
     /// State of the robot: `[tick u64, lost u32, numbers f32 ...]`; the LINEs of [`WATCH`] say what they are.
     pub const STATE: u16 = 21;
-    /// What a process reported: `[tick u64, code u32, detail u64, PROCESS NAME]`.
+    /// Event of a process: `[tick u64, code u32, detail u64, PROCESS NAME]`.
     pub const EVENT: u16 = 22;
     /// Present value of a parameter that can be changed: `[value f64, name]`.
     pub const PARAMETER: u16 = 23;
@@ -114,11 +114,11 @@ pub struct Message<'a> {
     pub domain: u16,
     /// Which message of the domain.
     pub id: u16,
-    /// How urgent.
+    /// Priority.
     pub priority: Priority,
-    /// Who sent it, and when.
+    /// Sender and time.
     pub stamp: Stamp,
-    /// What it says.
+    /// Payload.
     pub payload: &'a [u8],
 }
 
@@ -239,7 +239,7 @@ pub(crate) fn split_u64(bytes: &[u8]) -> Option<(u64, &[u8])> {
 pub(crate) const PUBLISH: [&str; 3] = ["broker-high", "broker-normal", "broker-low"];
 /// Queue to the broker for registration and verdicts.
 pub(crate) const REGISTRATION: &str = "broker-service";
-/// What the queues to the broker ring.
+/// Wake-up of the queues to the broker.
 pub(crate) const BROKER_BELL: &str = "broker-queues";
 
 /// Queue from the broker to a client, and what it rings.

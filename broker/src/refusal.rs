@@ -4,7 +4,7 @@ use messages::{Command, Reason};
 
 use crate::message::{VERSION, service, service_message};
 
-/// Why a message is refused.
+/// Reason for refusing a message.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Refusal {
     /// No frame of this protocol; the connection is closed.

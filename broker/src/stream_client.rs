@@ -18,12 +18,12 @@ use crate::message::{
     split_u64, write_command,
 };
 
-/// How long the broker may take for an answer; a process that decides has less.
+/// Timeout for the broker's answer; a process that decides has less.
 const ANSWER_TIME: Duration = Duration::from_secs(3);
 /// Sign of life of a client that only listens, and of one that holds the lease.
 pub const PING_TIME: Duration = Duration::from_millis(100);
 
-/// What both kinds of streams can do.
+/// Operations common to Unix and TCP streams.
 trait Stream: Read + Write + Send {
     fn set_timeouts(&self, read: Duration, write: Duration) -> Result<(), Error>;
 }
@@ -40,7 +40,7 @@ impl Stream for TcpStream {
     }
 }
 
-/// What became of a command.
+/// Outcome of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
     /// Number of the command on its connection.
@@ -61,7 +61,7 @@ impl Answer {
     }
 }
 
-/// What the broker sent.
+/// Message from the broker.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
     /// A command of a domain subscribed to.
@@ -82,7 +82,7 @@ pub enum News {
     Parameter(String, f64),
 }
 
-/// What the broker says of itself and of the connection.
+/// The broker's description of itself and of the connection.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Welcome {
     nonce: [u8; NONCE],
@@ -98,7 +98,7 @@ pub struct StreamClient {
     stream: Box<dyn Stream>,
     /// Bytes read, not yet a whole frame.
     partial: Vec<u8>,
-    /// What came while an answer was waited for.
+    /// Messages received while waiting for an answer.
     waiting: VecDeque<News>,
     sequence: u64,
     /// Tags of frames to the broker and from it, once a key is proved.
@@ -310,7 +310,7 @@ impl StreamClient {
         self.request(service::PING, &[]).map(drop)
     }
 
-    /// What comes next; none if nothing comes in this time. Gives signs of life meanwhile.
+    /// Next message; none if the timeout passes. Sends heartbeats meanwhile.
     ///
     /// # Errors
     /// The connection is lost.

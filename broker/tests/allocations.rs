@@ -16,7 +16,7 @@ fn process() {
     play_role(|role, _| panic!("no role {role}"));
 }
 
-/// What a control cycle does with a client: commands in, verdicts and commands out, answers in.
+/// Use of a client by a control cycle: commands in, verdicts and commands out, answers in.
 fn cycle(client: &mut Client, heard: &mut u32) {
     while let Some(live) = client.next() {
         client.answer(&live, Ok(()));

@@ -256,7 +256,7 @@ fn a_stalled_broker_forwards_no_old_command() {
     assert_eq!(client.answer(stop).unwrap().accepted(), Ok("planner".into()));
 }
 
-/// Who closes the link commands nothing any more: neither what is on its way, nor what goes on by it.
+/// A client that closes its link commands nothing any more, neither by what is on its way nor by what goes on.
 #[test]
 fn a_closed_connection_loses_its_lease_and_its_commands() {
     let system = System::start("closed");

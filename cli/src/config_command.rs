@@ -23,7 +23,7 @@ pub(crate) enum SceneTask {
     List,
 }
 
-/// Where it is, or a copy.
+/// Location of the configuration, or a copy of it.
 ///
 /// # Errors
 /// None is found where one is named; the copy cannot be written.

@@ -9,7 +9,7 @@ use std::time::Duration;
 use ipc::{StopAnswer, StopButton, StopName};
 use realtime::clock;
 
-/// How long an answer is waited for, and how often the question is repeated meanwhile \[ns\].
+/// Timeout for an answer, and period of the repeated question \[ns\].
 const PATIENCE: u64 = clock::SECOND;
 const REPEAT: u64 = clock::SECOND / 20;
 /// Between two looks for an answer.
@@ -25,16 +25,16 @@ Without options: your robot in the default run directory; if there is none, ever
   --dir DIR  the robot that runs there
 Exit code 0: the supply of every robot asked is off. 1: somebody did not answer, or there is no robot.";
 
-/// What became of one robot.
+/// Answer of one robot.
 #[derive(Clone, Debug)]
 pub struct Stopped {
     /// Which.
     pub name: StopName,
-    /// What became of it.
+    /// Its result.
     pub outcome: Outcome,
 }
 
-/// What a robot answered.
+/// Answer of a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// Its supply is off since this tick.

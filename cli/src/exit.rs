@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use crate::ending::{End, Ending};
 
-/// What the command line says of them.
+/// Command-line options of the faults.
 pub const HELP: &str = "\
 Exit codes:
   0    the scene was done, or ended in order by system/end
@@ -14,7 +14,7 @@ Exit codes:
   4    the motor supply was lost, the joints were stopped, or a command of the scene was refused
   130  Ctrl-C, or another signal that asks for the end";
 
-/// How a command ended.
+/// Exit of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
     /// As it was told to.

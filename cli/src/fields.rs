@@ -13,7 +13,7 @@ pub struct Number {
     pub value: Value,
 }
 
-/// What a number is.
+/// Name and unit of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     /// Measured or computed.

@@ -21,7 +21,7 @@ pub struct Report {
     coupled: Fit<HarmonicFriction>,
 }
 
-/// What `--json` prints of one model; parameters in SI units on the motor's side.
+/// One model as `--json` prints it; parameters in SI units on the motor's side.
 #[derive(Serialize)]
 struct Row {
     parameters: BTreeMap<&'static str, f64>,

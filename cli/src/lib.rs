@@ -1,4 +1,4 @@
-//! What the command `gangwerk` is made of, for the command itself and for tests and studies.
+//! Parts of the command `gangwerk`, for the command itself and for tests.
 
 // println! and eprintln! here do not panic: a result that cannot be written is an error, a remark is dropped.
 #[macro_use(println, eprintln)]

@@ -135,7 +135,7 @@ struct Compare<'a> {
 }
 
 impl ForType<Result<Option<String>, Box<dyn Error>>> for Compare<'_> {
-    /// Where the records of a topic differ first; none: nowhere.
+    /// First difference between the records of a topic, if any.
     fn call<T: Record>(self, topic: &'static Topic) -> Result<Option<String>, Box<dyn Error>> {
         let (a, b) = (self.a.records::<T>(topic)?, self.b.records::<T>(topic)?);
         let differs =
@@ -201,7 +201,7 @@ fn words_of(log: &Log) -> Words {
     Words { joints: log.robot().joints.clone(), ..Words::default() }
 }
 
-/// Who wanted what, and the answer.
+/// Command with sender and answer.
 fn line(taken: &CommandTaken, process: &str) -> String {
     let name = taken.command().map_or_else(
         || "?".into(),

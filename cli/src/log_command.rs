@@ -9,7 +9,7 @@ use cli::topic::Echo;
 
 #[derive(Subcommand)]
 pub(crate) enum LogTask {
-    /// What it is of, how long it is, and how many messages each channel has.
+    /// Origin, length, and number of messages per channel.
     Info {
         /// An MCAP file.
         log: PathBuf,

@@ -22,8 +22,8 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use cli::run::Order;
-use daemon::Commands;
 use config::BusAddress;
+use daemon::Commands;
 use ipc::{Mode, Space};
 use messages::Process;
 use messages::command::Domain;
@@ -107,7 +107,7 @@ enum Task {
     Topic {
         #[command(subcommand)]
         what: topic_command::TopicTask,
-        /// Where the processes meet.
+        /// Run directory.
         #[arg(long, global = true, value_name = "DIR", default_value_os_t = ipc::default_dir())]
         dir: PathBuf,
     },
@@ -115,7 +115,7 @@ enum Task {
     Param {
         #[command(subcommand)]
         what: param_command::ParamTask,
-        /// Where the processes meet.
+        /// Run directory.
         #[arg(long, global = true, value_name = "DIR", default_value_os_t = ipc::default_dir())]
         dir: PathBuf,
     },

@@ -16,7 +16,7 @@ use messages::topics::CONTROLLER_STATE;
 use messages::{Command, ControllerState, GaitState, Process};
 use realtime::{Stop, clock};
 
-/// What to send, and how.
+/// Command to send, and options.
 #[derive(Clone, Debug)]
 pub struct Order {
     /// Name of the command.

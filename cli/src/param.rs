@@ -14,7 +14,7 @@ use realtime::clock;
 
 use crate::topic::Robot;
 
-/// How long a new value may take to show \[ns\].
+/// Timeout until a new value shows \[ns\].
 const PATIENCE: u64 = clock::SECOND;
 
 /// The parameters of a running robot; it needs no broker to be looked at.

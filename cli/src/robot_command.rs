@@ -5,31 +5,29 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use config::Robot;
-use config::dbc_writer::{FrameForm, dbc_text};
+use config::dbc_writer::{FrameForm, WRITTEN_BY, dbc_text};
 
 #[derive(Subcommand)]
 pub(crate) enum RobotTask {
     /// Write the DBC files of a robot's bus, classic CAN and CAN FD, from the local controllers in its robot.toml.
     ///
-    /// On shared memory and CAN FD a robot needs no file: without one its frames are those written here.
+    /// On shared memory and CAN FD a robot needs no file: without one its frames are those written here. Files that this
+    /// command did not write are left alone.
     Frames {
         /// Name of the robot's directory in robots/.
         name: String,
         /// Directory for NAME.dbc and NAME_fd.dbc; without it, can/ beside robot.toml.
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// Overwrite files that are there.
-        #[arg(long)]
-        force: bool,
     },
 }
 
 /// Writes the files, and names each.
 ///
 /// # Errors
-/// The robot's files are wrong or name no local controllers; one is there already; it cannot be written.
+/// The robot's files are wrong or name no local controllers; a file cannot be written.
 pub(crate) fn run(config: &Path, what: RobotTask) -> Result<(), Box<dyn Error>> {
-    let RobotTask::Frames { name, out, force } = what;
+    let RobotTask::Frames { name, out } = what;
     let place = config.join("robots").join(&name);
     let Robot { can, .. } = Robot::load(&place)?;
     if can.nodes.is_empty() {
@@ -48,8 +46,9 @@ pub(crate) fn run(config: &Path, what: RobotTask) -> Result<(), Box<dyn Error>> 
             }
             Err(why) => return Err(why.into()),
         };
-        if path.exists() && !force {
-            return Err(format!("{}: is there already; --force overwrites it", path.display()).into());
+        if std::fs::read_to_string(&path).is_ok_and(|there| !there.contains(WRITTEN_BY)) {
+            println!("{}: left alone: `gangwerk robot frames` did not write it", path.display());
+            continue;
         }
         std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
         println!("{}", path.display());

@@ -11,10 +11,10 @@ use config::Setup;
 use realtime::{Stop, clock};
 use terminal::Console;
 
-/// How long the terminal may take for what is left to say when a run has ended.
+/// Timeout for the terminal to take the remaining output when a run has ended.
 const LAST_WORDS: Duration = Duration::from_secs(2);
 
-/// Where log and pictures go: what was asked for, else `runs/latest`, else where this user's programs keep such things.
+/// Directory for log and pictures: the one asked for, else `runs/latest`, else the user's data directory.
 ///
 /// # Errors
 /// Neither can be made.
@@ -40,7 +40,7 @@ pub(crate) fn place(asked: Option<PathBuf>) -> Result<PathBuf, String> {
     Ok(own)
 }
 
-/// What is made of the log of a run.
+/// Results made from the log of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Results {
     /// Its figures, for other programs.

@@ -76,7 +76,7 @@ pub fn run(
     Ok((figures.ended(&ending), Exit::of(&ending, false)))
 }
 
-/// Where in a walk the robot is; the simulation knows of a fall that the robot does not notice.
+/// State of the walk; the simulation knows of a fall that the robot does not notice.
 fn gait(cycle: &Cycle) -> GaitState {
     if cycle.sim_state.fallen == 1 { GaitState::Fallen } else { cycle.controller_state.gait.into() }
 }

@@ -1,4 +1,4 @@
-//! What shells and `man` want to know of the command line.
+//! Shell completions and man pages.
 
 use std::error::Error;
 use std::io::Write;

@@ -1,4 +1,4 @@
-//! Which bus a run uses, as it is written on the command line.
+//! Bus of a run, as written on the command line.
 
 use std::fmt;
 use std::str::FromStr;

@@ -13,7 +13,7 @@
 
 use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 
-/// What goes wrong.
+/// Kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultKind {
     /// Frames vanish: each with probability `share`; or, with `cycles`, all of a line for that many cycles at a time.
@@ -71,11 +71,11 @@ pub enum Way {
 /// One `[[bus_fault]]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BusFault {
-    /// \[s\] When it begins.
+    /// \[s\] Begin.
     pub time: f64,
-    /// \[s\] How long it lasts; infinite if the row does not say it.
+    /// \[s\] Duration; infinite if the row does not say it.
     pub duration: f64,
-    /// What goes wrong.
+    /// Kind of fault.
     pub kind: FaultKind,
     /// Name of the local controller whose line it happens to; none: all lines.
     pub node: Option<String>,

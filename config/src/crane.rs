@@ -1,4 +1,4 @@
-//! How a scene begins when the robot does not simply stand there: `[crane]` and `[drives]` of a scene.
+//! Start of a scene in which the robot does not simply stand: `[crane]` and `[drives]`.
 //!
 //! ```toml
 //! [crane] # holds the robot at the start, and is lowered by sim/lower; without it the robot stands

@@ -26,14 +26,14 @@ pub struct Described {
     pub name: String,
     /// \[B\] Its length.
     pub len: u64,
-    /// What the file says about it (`CM_`); empty if nothing.
+    /// Comment in the file (`CM_`); may be empty.
     pub comment: String,
     /// \[s\] Time from one to the next (`GenMsgCycleTime`).
     pub cycle: Option<f64>,
     fields: Vec<Field>,
 }
 
-/// What a frame carries in one signal.
+/// Value of one signal in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried<'a> {
     /// Name of the signal.
@@ -63,7 +63,7 @@ struct Field {
     switch: Option<(usize, Vec<(u64, u64)>)>,
 }
 
-/// How the bits of a signal are read.
+/// Number format of a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Number {
     Unsigned,
@@ -172,7 +172,7 @@ impl Field {
 /// Name of the signal that switches another one, and the ranges of its values with which that one is there.
 type Switch<'a> = (&'a str, Vec<(u64, u64)>);
 
-/// What the file says about its signals further down, by message and signal.
+/// Attributes of the signals from further down in the file, by message and signal.
 struct Details<'a> {
     words: HashMap<(MessageId, &'a str), Vec<(i64, String)>>,
     floats: HashMap<(MessageId, &'a str), SignalExtendedValueType>,

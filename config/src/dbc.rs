@@ -168,7 +168,7 @@ impl Reader<'_> {
         Some(Signal { name: s.name.clone(), start, bits, signed, scale: s.factor, offset: s.offset, carries })
     }
 
-    /// What a signal carries, by its name.
+    /// Meaning of a signal, by its name.
     fn carries(&self, name: &str, to_drives: bool) -> Result<Carries, String> {
         match (name, to_drives) {
             ("counter", _) => return Ok(Carries::Counter),
@@ -233,7 +233,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What every robot needs comes once; nothing comes twice.
+    /// Completeness: every robot's signals come once, and nothing twice.
     fn everything_once(&mut self, messages: &[Message]) {
         let mut all: Vec<(Carries, &str)> = Vec::new();
         for signal in messages.iter().flat_map(|m| &m.signals) {

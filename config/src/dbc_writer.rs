@@ -25,8 +25,10 @@ const CLASSIC_NODES: usize = 16;
 const FD_LENGTHS: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
 /// \[ms\] Bus cycle for which the files are written; readers of traffic take it as the expected period of each frame.
 const CYCLES: [&str; 2] = ["3.5", "1"];
+/// Mark of a file that was written here, in its comment.
+pub const WRITTEN_BY: &str = "Written by `gangwerk robot frames`";
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// What a local controller can read besides its drives.
+/// Sensors of a local controller besides its drives.
 const SENSORS: [&str; 3] = ["right_foot", "left_foot", "imu"];
 
 /// CAN with 8 bytes per frame, or CAN FD with up to 64.
@@ -54,7 +56,10 @@ impl LocalController {
     pub(crate) fn build(node: &Section<'_, '_>) -> Self {
         let sensors = if node.has("sensors") { node.texts("sensors") } else { Vec::new() };
         for sensor in sensors.iter().filter(|sensor| !SENSORS.contains(&sensor.as_str())) {
-            node.problem("sensors", format!("there is no sensor `{sensor}`; there is {}", SENSORS.join(", ")));
+            node.problem(
+                "sensors",
+                format!("there is no sensor `{sensor}`; there is {}", SENSORS.join(", ")),
+            );
         }
         Self { name: node.text("name"), joints: node.texts("joints"), sensors }
     }
@@ -164,7 +169,8 @@ struct File {
     frames: Vec<Frame>,
 }
 
-const SYNC: &str = "Ends the cycle: what was sent before takes effect, sensors are read, and the answer is sent.";
+const SYNC: &str =
+    "Ends the cycle: what was sent before takes effect, sensors are read, and the answer is sent.";
 const WRENCH: &str = "Ground on the foot, sensor frame.";
 
 impl File {
@@ -214,7 +220,12 @@ impl File {
         let form = FrameForm::Classic;
         let sides = [
             (0x180, "link", ["angle", "speed"], "Link side: absolute encoder."),
-            (0x1c0, "shaft", ["motor", "mspeed"], "Motor side: incremental encoder, divided by the gear ratio."),
+            (
+                0x1c0,
+                "shaft",
+                ["motor", "mspeed"],
+                "Motor side: incremental encoder, divided by the gear ratio.",
+            ),
         ];
         for (k, joint) in (0..).zip(&node.joints) {
             for (base, side, [angle, speed], comment) in &sides[..1 + usize::from(motor_side)] {
@@ -228,13 +239,17 @@ impl File {
         let mut of_drives = |base: u32, name: &str, comment, fill: &dyn Fn(&mut Filling)| {
             self.frame(form, (base + 4 * n, format!("node{n}_{name}")), (node, false), comment, fill);
         };
-        of_drives(0x200, "current", "Motor currents.", &|frame| frame.each(node, "current", || signed(16, 7, "A")));
+        of_drives(0x200, "current", "Motor currents.", &|frame| {
+            frame.each(node, "current", || signed(16, 7, "A"))
+        });
         of_drives(0x240, "status", "Motor supply, and statuswords of CiA 402.", &|frame| {
             frame.put("supply", unsigned(8));
             frame.each(node, "status", || unsigned(16));
         });
         of_drives(0x280, "health", "Windings.", &|frame| frame.each(node, "temp", || TEMPERATURE));
-        of_drives(0x2c0, "error", "Error codes of CiA 402.", &|frame| frame.each(node, "error", || unsigned(16)));
+        of_drives(0x2c0, "error", "Error codes of CiA 402.", &|frame| {
+            frame.each(node, "error", || unsigned(16))
+        });
         for sensor in &node.sensors {
             self.sensor_classic(n, node, sensor);
         }
@@ -378,7 +393,7 @@ impl File {
         let _ = write!(
             out,
             "\nCM_ \"Frames of {robot} on {place}. One line per node, point to point. PC is the on-board computer \
-             (lowlevel). Names of signals say what they carry: docs/can.md. Written by `gangwerk robot frames`.\";\n"
+             (lowlevel). Names of signals say what they carry: docs/can.md. {WRITTEN_BY}.\";\n"
         );
         for node in nodes {
             let all: Vec<&str> = node.joints.iter().chain(&node.sensors).map(String::as_str).collect();
@@ -409,7 +424,9 @@ impl File {
         let _ = writeln!(out, "BA_DEF_DEF_ \"GenMsgCycleTime\" {};", CYCLES[form as usize]);
         if form == FrameForm::Fd {
             out.push_str("BA_ \"BusType\" \"CAN FD\";\n");
-            self.frames.iter().for_each(|frame| _ = writeln!(out, "BA_ \"VFrameFormat\" BO_ {} 14;", frame.id));
+            self.frames
+                .iter()
+                .for_each(|frame| _ = writeln!(out, "BA_ \"VFrameFormat\" BO_ {} 14;", frame.id));
         }
     }
 
@@ -495,7 +512,9 @@ fn statuswords() -> String {
     let mut words = Vec::new();
     for (known, angle) in [(0, ", angle unknown"), (0x8000, "")] {
         for (bit, warning) in [(0, ""), (0x80, ", warning")] {
-            words.extend(STATES.map(|(word, state)| format!("{} \"{state}{warning}{angle}\"", known | bit | word)));
+            words.extend(
+                STATES.map(|(word, state)| format!("{} \"{state}{warning}{angle}\"", known | bit | word)),
+            );
         }
     }
     words.join(" ")

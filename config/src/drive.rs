@@ -47,7 +47,7 @@ pub struct Drive {
     pub winding: Option<[f64; 2]>,
     /// \[1\] Counts of the motor's encoder in a turn, if they are not those of the other drives.
     pub encoder_counts: Option<u32>,
-    /// How it is controlled: as the row says, or the robot, or the scene instead of both.
+    /// Joint control: the row's, or the robot's, or the scene's instead of both.
     pub control: JointControl,
 }
 
@@ -69,7 +69,7 @@ struct GearType {
     elasticity: Option<Elasticity>,
 }
 
-/// What a row says about transmission and friction.
+/// Transmission and friction of a row.
 struct Train {
     transmission: Transmission,
     joints: Vec<usize>,
@@ -77,7 +77,7 @@ struct Train {
     elasticity: Option<Elasticity>,
 }
 
-/// How far the length of a unit vector may be from 1.
+/// Tolerance of the length of a unit vector.
 const UNIT_TOLERANCE: f64 = 1e-6;
 /// Angles per joint at which a linkage is tried over the joint's range.
 const TRIED: usize = 17;

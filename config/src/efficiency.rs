@@ -14,7 +14,7 @@ use crate::section;
 pub struct Efficiencies {
     /// Name of the gear.
     pub name: String,
-    /// Where the figures come from.
+    /// Source of the figures.
     pub source: String,
     /// \[1\] N of the gear, positive.
     pub ratio: f64,
@@ -22,7 +22,7 @@ pub struct Efficiencies {
     pub points: Vec<Efficiency>,
 }
 
-/// What a row may hold: name, unit, largest value; all above 0.
+/// Keys of a row: name, unit, largest value; all above 0.
 const COLUMNS: [(&str, &str, f64); 3] =
     [("speed", "rpm of the motor", 1e5), ("load torque", "N m at the output", 1e5), ("efficiency", "", 1.0)];
 

@@ -19,7 +19,7 @@ pub struct Problem {
     pub line: usize,
     /// Key with the tables around it, as in `step.width`; empty if no key is meant.
     pub key: String,
-    /// What is wrong and what would be right.
+    /// Problem, and what would be right.
     pub text: String,
 }
 

@@ -1,4 +1,4 @@
-//! What can be set, checked once: after loading, every number is finite, in its range and fits the others.
+//! Configuration, checked once: after loading, every number is finite, in its range and fits the others.
 //!
 //! - [`robot::Robot`]: `robots/NAME/robot.toml` and the URDF beside it.
 //! - [`gait::Gait`]: `gaits/NAME.toml`: how the robot walks and how it is stabilized.
@@ -13,8 +13,8 @@
 
 mod acceleration;
 pub mod brake;
-pub mod bus_fault;
 mod bus_address;
+pub mod bus_fault;
 pub mod crane;
 pub mod database;
 pub mod dbc;

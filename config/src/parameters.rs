@@ -13,7 +13,7 @@ pub struct Parameter<T: 'static> {
     pub unit: &'static str,
     /// Least and greatest value.
     pub range: [f64; 2],
-    /// What it is.
+    /// Kind.
     pub about: &'static str,
     get: fn(&T) -> f64,
     put: fn(&mut T, f64),

@@ -1,4 +1,4 @@
-//! What a robot's drives do for themselves: limits at which they fail safe, and home switches of joints without absolute
+//! Functions of the drives themselves: limits at which they fail safe, and home switches of joints without absolute
 //! encoder.
 
 use drives::homing::HomeSwitch;

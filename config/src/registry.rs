@@ -1,7 +1,7 @@
 //! Parameters of every process: name, unit, range, default, meaning, and whether they can be changed while it runs.
 //!
-//! What can be changed is in [`crate::parameters`] and named as in the gait file; everything else is fixed at start and
-//! named as in the file that it comes from. A value that a configuration does not have (no core, no obstacles) is not listed.
+//! Parameters that can be changed are in [`crate::parameters`] and named as in the gait file; everything else is fixed at start
+//! and named as in the file that it comes from. A value that a configuration does not have (no core, no obstacles) is not listed.
 
 use messages::Command;
 use messages::command::ParameterCommand;

@@ -1,10 +1,10 @@
-//! What a URDF cannot say about a robot: soles, contact points, sensors, limits, bus.
+//! Robot file: soles, contact points, sensors, limits, bus, beside the URDF.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use drives::homing::HomeSwitch;
 use codec::layout::Layout;
+use drives::homing::HomeSwitch;
 use messages::{MAX_JOINTS, nearest};
 
 use crate::acceleration;
@@ -43,7 +43,7 @@ pub struct Robot {
     pub layout: Layout,
     /// Frames of classic CAN, or why there are none.
     pub classic: Result<Layout, String>,
-    /// What both come from.
+    /// Local controllers and DBC files that both come from.
     pub can: Can,
     /// Local controllers (indices) that the robot can walk without: nobody stops it if one of them falls silent.
     pub spare: Vec<usize>,
@@ -68,9 +68,9 @@ pub struct Joint {
     pub range: [f64; 2],
     /// \[rad/s\]
     pub speed_limit: f64,
-    /// \[rad/s^2\] How fast the joint may be brought to rest.
+    /// \[rad/s^2\] Deceleration for bringing the joint to rest.
     pub braking: f64,
-    /// \[rad/s^2\] What its drives can accelerate it with at any angle of its range ([`Robot::acceleration`] is exact);
+    /// \[rad/s^2\] Acceleration that its drives can give it at any angle of its range ([`Robot::acceleration`] is exact);
     /// infinite for a robot of ideal drives.
     pub acceleration: f64,
     /// \[rad\] Comfortable angle for redundancy resolution.
@@ -128,7 +128,7 @@ pub struct Pads {
     pub poisson: f64,
 }
 
-/// \[kg\] How far the URDF's masses may be from the robot's total mass.
+/// \[kg\] Tolerance between the URDF's masses and the robot's total mass.
 const MASS_TOLERANCE: f64 = 1e-3;
 
 impl Robot {

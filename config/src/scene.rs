@@ -1,4 +1,4 @@
-//! What is simulated: nothing that a scene does not name is computed.
+//! Scene file. Only the effects it names are simulated.
 
 use std::path::Path;
 
@@ -23,14 +23,14 @@ use crate::unknown::Unknown;
 pub struct Scene {
     /// Name of the file without its extension.
     pub name: String,
-    /// What the scene shows, one sentence.
+    /// Purpose of the scene in one sentence.
     pub about: String,
     /// Name of the robot's directory.
     pub robot: String,
     /// Name of the gait file.
     pub gait: String,
-    /// What `depth = "auto"` is to reach. While this is there, depth, integrator and steps are stand-ins that nothing may be
-    /// simulated with: [`Scene::choose`] them.
+    /// Accuracy that `depth = "auto"` must reach. While this is there, depth, integrator and steps are stand-ins that nothing may
+    /// be simulated with: [`Scene::choose`] them.
     pub auto: Option<Tolerance>,
     /// Modelling depth; type 1 is the reduced model (thesis table 2.4).
     pub depth: u8,
@@ -48,13 +48,13 @@ pub struct Scene {
     pub duration: f64,
     /// Seed of everything random.
     pub seed: u64,
-    /// What lies on the ground.
+    /// Objects on the ground.
     pub objects: Vec<TerrainObject>,
     /// Errors of the sensors.
     pub sensors: Sensors,
-    /// How all drives are controlled, instead of what the robot says.
+    /// Joint control of all drives, instead of the robot's.
     pub joint_control: Option<JointControl>,
-    /// What the robot's software is not told.
+    /// Plant mismatch: differences from the model of the robot's software.
     pub unknown: Unknown,
     /// Crane that holds the robot at the start; none: it stands.
     pub crane: Option<Crane>,
@@ -68,7 +68,7 @@ pub struct Scene {
     pub bus_faults: Vec<BusFault>,
 }
 
-/// How the equations of motion are integrated.
+/// Integrator of the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
     /// Explicit Euler, first order.
@@ -150,7 +150,7 @@ impl Scene {
         scene
     }
 
-    /// How the scene is simulated.
+    /// Method of simulation.
     pub fn method(&self) -> Method {
         Method { depth: self.depth, integrator: self.integrator, substeps: self.substeps }
     }

@@ -24,14 +24,14 @@ const VARIABLE: &str = "GANGWERK_CONFIG";
 pub struct Found {
     /// The directory, or [`BUILT_IN`].
     pub dir: PathBuf,
-    /// Why it was taken.
+    /// Reason for taking it.
     pub why: String,
 }
 
 /// Configuration directory of a command, in the order of this module's table; `asked` is its `--config`.
 ///
 /// # Errors
-/// What was named by `--config` or by the environment is no configuration: nothing else is taken instead.
+/// The directory named by `--config` or the environment is no configuration; nothing else is taken instead.
 pub fn find(asked: Option<&Path>) -> Result<Found, ConfigError> {
     search(asked, |name| std::env::var_os(name).filter(|value| !value.is_empty()), Path::new(""))
 }

@@ -22,7 +22,7 @@ pub(crate) const NOT_NEGATIVE: RangeInclusive<f64> = 0.0..=1e9;
 
 type Value<'t> = Spanned<DeValue<'t>>;
 
-/// What is shared by all sections of one file.
+/// State shared by all sections of one file.
 struct File<'t> {
     text: &'t str,
     problems: RefCell<Vec<Problem>>,
@@ -40,7 +40,7 @@ pub(crate) struct Section<'a, 't> {
     file: &'a File<'t>,
     /// Name with the tables around it; empty at the top.
     name: String,
-    /// Where the table begins, in bytes.
+    /// Offset of the table \[byte\].
     at: usize,
     table: &'a DeTable<'t>,
     asked: RefCell<Vec<String>>,

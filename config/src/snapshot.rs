@@ -7,7 +7,7 @@ use crate::System;
 use crate::error::ConfigError;
 use crate::file::{BUILT_IN, embedded};
 
-/// What belongs to a configuration; sources and notes beside it do not.
+/// Files that belong to a configuration; sources and notes beside them do not.
 const PARTS: [&str; 6] = ["system.toml", "robots", "gaits", "scenes", "gears", "objects"];
 /// Deepest folder, and most bytes: beyond them it is no configuration (a link in a circle, somebody's home).
 const DEEPEST: u32 = 8;

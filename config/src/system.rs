@@ -33,9 +33,9 @@ pub struct System {
     pub tcp_listen: Option<SocketAddr>,
     /// File of keys for clients on the network, relative to the configuration directory; empty: none.
     pub tcp_keys: String,
-    /// \[s\] How long a process waits for a missing peer before it names it and ends.
+    /// \[s\] Timeout after which a process names a missing peer and ends.
     pub peer_timeout: f64,
-    /// What lowlevel bears of the field bus.
+    /// Tolerances of lowlevel for bus faults.
     pub bus: BusLimits,
     /// The watchdog's thread that listens for the emergency stop.
     pub emergency_stop: ThreadRow,
@@ -50,7 +50,7 @@ pub struct ThreadRow {
     pub priority: u8,
 }
 
-/// What lowlevel bears of the field bus: `[bus]`.
+/// Tolerances of lowlevel for bus faults: `[bus]`.
 #[derive(Clone, Copy, Debug)]
 pub struct BusLimits {
     /// \[1\] Cycles without a node's frames in which its joints are taken to move on at their last speed.

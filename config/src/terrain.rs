@@ -1,4 +1,4 @@
-//! What lies on the ground of a scene: boxes and meshes, some of them in time.
+//! Objects on the ground of a scene: boxes and meshes, some of them moving.
 
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
@@ -12,9 +12,9 @@ use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 pub struct TerrainObject {
     /// In messages.
     pub name: String,
-    /// What it is.
+    /// Kind.
     pub shape: Shape,
-    /// Where it is at the beginning.
+    /// Pose at the beginning.
     pub pose: TerrainPose,
     /// \[1\] Coefficient of friction, if not that of the robot's soles.
     pub friction: Option<f64>,
@@ -24,7 +24,7 @@ pub struct TerrainObject {
     pub vanishes: f64,
     /// The planner knows of it: an obstacle to step over.
     pub known: bool,
-    /// Where it is later, by time \[s\], ascending; it moves straight from one pose to the next.
+    /// Later poses, by time \[s\], ascending; it moves straight from one pose to the next.
     pub poses: Vec<(f64, TerrainPose)>,
 }
 
@@ -37,14 +37,14 @@ pub enum Shape {
     Mesh {
         /// The file.
         file: PathBuf,
-        /// What it holds.
+        /// Contents.
         bytes: Arc<[u8]>,
         /// \[m\] One unit of the file.
         scale: f64,
     },
 }
 
-/// Where an object is.
+/// Pose of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainPose {
     /// \[m\] @world

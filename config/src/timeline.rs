@@ -5,7 +5,7 @@ use messages::command::Domain;
 
 use crate::Scene;
 
-/// What is still to come, for one process.
+/// Commands still to come, for one process.
 #[derive(Clone, Debug)]
 pub struct Timeline {
     /// (first tick at or after the command's time, command), ascending.
@@ -14,7 +14,7 @@ pub struct Timeline {
     domains: Vec<Domain>,
 }
 
-/// When the operator of a scene that does not say so itself presses reset and enable \[s\].
+/// Time of reset and enable in a scene that gives none \[s\].
 const ARMING: [(f64, Command); 2] = [(0.02, Command::Reset), (0.04, Command::Enable)];
 
 impl Timeline {

@@ -27,7 +27,7 @@ pub enum Output {
     FootForce,
     /// \[rad\] Joint angles: largest difference over time and joints.
     JointAngle,
-    /// \[N m\] What the motors apply to a joint through their gears: largest difference over time and joints.
+    /// \[N m\] Torque of the motors on a joint through their gears: largest difference over time and joints.
     JointTorque,
     /// \[A\] Motor currents: largest difference over time and motors.
     MotorCurrent,
@@ -67,12 +67,12 @@ impl Output {
     }
 }
 
-/// How accurate a scene must be.
+/// Required accuracy of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
     /// At least one output, each with the largest error allowed, in its unit.
     pub outputs: Vec<(Output, f64)>,
-    /// \[s\] How much of the scene methods are tried on; none: as the chooser thinks right.
+    /// \[s\] Part of the scene on which methods are tried; none: chosen automatically.
     pub trial: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What the robot's software is not told: `[unknown]` of a scene. What is not named is as the software believes.
+//! Plant mismatch, `[unknown]` of a scene: differences between the simulated robot and the model of the robot's software.
 //!
 //! ```toml
 //! [unknown]

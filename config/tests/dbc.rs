@@ -1,10 +1,10 @@
 //! Layouts from DBC files: the shipped ones carry everything, and a broken one says what is wrong with it.
 
+use codec::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
+use codec::layout::{Carries, Layout};
 use config::database::Database;
 use config::{Robot, dbc};
 use drives::cia402::{self, Fault, REFERENCED, State, VOLTAGE, WARNING};
-use codec::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
-use codec::layout::{Carries, Layout};
 use messages::{BusFrames, JointTargets, Sensors};
 
 fn robots() -> Vec<Robot> {
@@ -215,7 +215,9 @@ fn words(carries: Carries) -> Vec<(u16, &'static str)> {
 #[test]
 fn shipped_files_name_modes_states_and_errors_and_say_what_messages_are_and_how_often_they_come() {
     for (robot, cycle) in robots().iter().zip([3.5e-3, 1.5e-3, 3.5e-3]) {
-        for (layout, file, cycle) in [(robot.classic.as_ref().unwrap(), "", cycle), (&robot.layout, "_fd", 1e-3)] {
+        for (layout, file, cycle) in
+            [(robot.classic.as_ref().unwrap(), "", cycle), (&robot.layout, "_fd", 1e-3)]
+        {
             let name = &robot.name;
             let path = config::root(None).join(format!("robots/{name}/can/{name}{file}.dbc"));
             let database = Database::load(&path).unwrap();

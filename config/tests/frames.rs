@@ -28,7 +28,7 @@ fn without_files(test: &str, name: &str, change: impl FnOnce(String) -> String) 
     robot
 }
 
-/// `gangwerk robot frames NAME --force` writes them; the classic files of Johnnie and Archie describe drives that were bought.
+/// `gangwerk robot frames NAME` writes them; the classic files of Johnnie and Archie describe drives that were bought.
 #[test]
 fn shipped_files_are_those_that_the_robots_file_gives() {
     let (fd, classic) = (("_fd", FrameForm::Fd), ("", FrameForm::Classic));
@@ -38,13 +38,14 @@ fn shipped_files_are_those_that_the_robots_file_gives() {
         let file = shipped(name).join(format!("can/{name}{ending}.dbc"));
         let text = fs::read_to_string(&file).unwrap();
         let other = made.lines().zip(text.lines()).find(|(made, there)| made != there);
-        assert!(made == text, "{}: `gangwerk robot frames {name} --force` writes {other:?}", file.display());
+        assert!(made == text, "{}: `gangwerk robot frames {name}` writes {other:?}", file.display());
     }
 }
 
 #[test]
 fn a_robot_without_files_has_the_same_frames() {
-    let (with, without) = (Robot::load(&shipped("lola")).unwrap(), without_files("same", "lola", |t| t).unwrap());
+    let (with, without) =
+        (Robot::load(&shipped("lola")).unwrap(), without_files("same", "lola", |t| t).unwrap());
     assert_eq!(with.layout, without.layout);
     assert_eq!(with.classic, without.classic);
     assert_eq!(with.spare, without.spare);

@@ -21,7 +21,7 @@ pub const RUN: &str = "run";
 const NAP_REAL_TIME: Duration = Duration::from_millis(5);
 const NAP_LOCKSTEP: Duration = Duration::from_millis(2);
 
-/// How much of the log the death of this very process may cost.
+/// Part of the log that the death of this very process may cost.
 const FLUSH_NS: u64 = 500_000_000;
 
 /// At the end: writers that go on writing are not waited for longer than this.
@@ -61,7 +61,7 @@ fn again(space: &Space) -> bool {
     events.is_ok_and(|mut events| events.latest().is_some())
 }
 
-/// How the parts of the log are made. A logger that was started again leaves the parts alone that are there.
+/// Parts of the log. A logger that was restarted leaves existing parts alone.
 fn open(run: &Run, again: bool) -> Result<Open, String> {
     let setup = Setup::load(&run.config, &run.scene).map_err(|e| e.to_string())?;
     let parts = Parts::new(run.log.as_deref().ok_or("this run has no log")?);
@@ -74,7 +74,7 @@ fn open(run: &Run, again: bool) -> Result<Open, String> {
     }))
 }
 
-/// What became of a log.
+/// Outcome of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Logged {
     /// Records that are missing.
@@ -153,7 +153,7 @@ impl ForType<Result<(), IpcError>> for FollowTopic<'_> {
     }
 }
 
-/// What the logger says to others.
+/// Reports of the logger to others.
 struct Signals {
     tick: Writer<Event>,
     bell: Bell,
@@ -175,7 +175,7 @@ impl Signals {
         self.events.write(&Event { code: code as u64, ..Event::default() });
     }
 
-    /// How far the log has come, and what was lost.
+    /// Progress and losses of the log.
     fn after(&mut self, pass: &Pass) {
         if let Some(header) = pass.caught_up.filter(|h| self.said != Some(h.tick)) {
             self.said = Some(header.tick);

@@ -3,7 +3,7 @@
 use crate::output::Output;
 use messages::{Header, Record, Topic};
 
-/// Where the records of a topic come from, one after the other.
+/// Source of the records of a topic, in order.
 pub trait Source<T> {
     /// The next record in the order of writing, and its number; none if there is no more yet.
     fn follow(&mut self) -> Option<(u64, &T)>;

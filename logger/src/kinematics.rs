@@ -62,7 +62,7 @@ impl LinkPoses for Kinematics {
         }
     }
 
-    /// What the motors give to the joints, before friction of the gears and inertia of the rotors take their part.
+    /// Torque of the motors on the joints, before friction of the gears and inertia of the rotors.
     fn torques(&mut self, sensors: &Sensors, out: &mut Joints) -> bool {
         // A model without motors says nothing, or zeros where the bus knows no NaN.
         let silent = |current: &f64| current.is_nan() || *current == 0.0;

@@ -11,7 +11,7 @@ const IN_A_ROW: usize = 8;
 /// Rounds over all topics after which a pass ends even if writers are faster than the log.
 const MOST_ROUNDS: usize = 256;
 
-/// What a pass over all topics did.
+/// Outcome of a pass over all topics.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pass {
     /// Records handled.

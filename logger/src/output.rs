@@ -117,7 +117,7 @@ impl Output {
         self.broken
     }
 
-    /// Why writing failed, once for each failure.
+    /// Cause of a failed write, once for each failure.
     pub fn complaint(&mut self) -> Option<String> {
         self.complaint.take()
     }

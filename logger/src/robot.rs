@@ -14,7 +14,7 @@ pub struct Origin {
     pub commit: String,
     /// Whether the robot is a simulated one.
     pub simulated: bool,
-    /// Where and when it began in real time; none in simulated time.
+    /// Host and start time in real time; none in simulated time.
     pub clock: Option<WallClock>,
 }
 
@@ -31,7 +31,7 @@ impl Origin {
     }
 }
 
-/// What a log says about a robot.
+/// Robot of a log.
 pub fn robot_info(robot: &Robot) -> RobotInfo {
     let foot = |foot: &config::robot::Foot| FootInfo {
         link: foot.link.clone(),
@@ -51,7 +51,7 @@ pub fn robot_info(robot: &Robot) -> RobotInfo {
     }
 }
 
-/// Where the files of the configuration are among the attachments of a log.
+/// Prefix of the configuration's files among the attachments of a log.
 pub const CONFIG: &str = "config/";
 
 /// Makes a log of a robot in a scene, with the poses of its links and the files of the configuration.
@@ -85,7 +85,7 @@ pub fn recorder(path: &Path, setup: &Setup, origin: &Origin) -> Result<Recorder,
     }
 }
 
-/// \[m, m, rad\] Where odometry begins: in the middle of the soles, the torso being upright at the world's origin.
+/// \[m, m, rad\] Start of odometry: the middle of the soles, the torso being upright at the world's origin.
 fn between_soles(kinematics: &mut Kinematics, info: &RobotInfo, pose: &[f64]) -> [f64; 3] {
     let mut angle = [0.0; MAX_JOINTS];
     angle[..pose.len()].copy_from_slice(pose);

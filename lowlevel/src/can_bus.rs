@@ -3,11 +3,11 @@
 use std::error::Error;
 use std::time::Duration;
 
+use codec::frames::{self, DriveCommand, Received, encode_targets};
+use codec::layout::Layout;
 use daemon::Daemon;
 use fieldbus::{End, Lines};
 use ipc::{Mode, Waiter};
-use codec::frames::{self, DriveCommand, Received, encode_targets};
-use codec::layout::Layout;
 use messages::{BusFrames, MAX_FRAMES};
 use realtime::clock;
 

@@ -1,7 +1,7 @@
 //! One cycle of the joint loop. Pure: no clock, no bus, no shared memory.
 
-use config::{Robot, System};
 use codec::frames::{DriveCommand, Received, decode_sensors, encode_targets};
+use config::{Robot, System};
 use messages::{
     BusCounters, BusFrames, Command, EventCode, Header, JointMode, JointTargets, Sensors, StartUp, Verdict,
     WatchdogReset,

@@ -10,12 +10,12 @@
 //! counted. A reading that cannot be ([`crate::reading`]) makes its node missing for the cycle. A controller that left the
 //! bus is a stop and no power ([`EventCode::BusOff`]), until it takes part again.
 
+use codec::frames::Received;
+use codec::layout::{Carries, Layout};
 use config::{Robot, System};
 use drives::cia402::REFERENCED;
 use fieldbus::{ErrorFrame, ErrorState};
 use messages::event::Refused;
-use codec::frames::Received;
-use codec::layout::{Carries, Layout};
 use messages::{BusCounters, BusFrames, EventCode, Sensors};
 
 use crate::reading::{Bounds, Readings, copy_joint};

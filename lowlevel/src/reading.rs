@@ -3,9 +3,9 @@
 //! A checksum lets some flipped bits pass, and a counter does not see them. What they do to a number is seen only if it is
 //! more than the robot can do in the time since the last reading.
 
+use codec::layout::Carries;
 use config::Robot;
 use config::system::BusLimits;
-use codec::layout::Carries;
 use messages::{MAX_JOINTS, Sensors};
 
 /// \[m/s^2\] Standard gravity.

@@ -3,9 +3,9 @@
 use std::error::Error;
 use std::time::Duration;
 
+use codec::layout::Layout;
 use daemon::Daemon;
 use ipc::Waiter;
-use codec::layout::Layout;
 use messages::{BusFrames, EventCode};
 use realtime::clock;
 use sercos::packing::{Interfaces, Packing, stations};

@@ -1,13 +1,13 @@
 //! What the joint loop makes of a bus that loses, repeats, delays and bends frames. On Lola's limits and layout.
 
+use codec::frames::{DriveCommand, decode_targets, encode_sensors};
+use codec::layout::Carries;
 use config::bus_fault::{BusFault, FaultKind, Way};
 use config::{Robot, System};
 use drives::cia402::{self, REFERENCED, status_of};
 use fieldbus::{ErrorFrame, ErrorState, Injector};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::State;
-use codec::frames::{DriveCommand, decode_targets, encode_sensors};
-use codec::layout::Carries;
 use messages::{BusFrames, EventCode, Frame, JointMode, JointTargets, Sensors};
 use proptest::prelude::*;
 

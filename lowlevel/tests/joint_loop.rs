@@ -1,10 +1,10 @@
 //! The joint loop's transition table and its last word on every command, on Lola's limits.
 
+use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use config::{Robot, System};
 use drives::cia402::{self, REFERENCED, status_of};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::State;
-use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Sensors};
 use proptest::prelude::*;
 

@@ -1,11 +1,11 @@
 //! The start-up against drives that behave as CiA 402 says: what is asked of them, what is refused, what is told.
 
+use codec::frames::{DriveCommand, decode_targets, encode_sensors};
+use codec::layout::Carries;
 use config::{Robot, System};
 use drives::cia402::{self, Fault, Inputs, REFERENCED};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::State;
-use codec::frames::{DriveCommand, decode_targets, encode_sensors};
-use codec::layout::Carries;
 use messages::{BusFrames, Command, EventCode, JointMode, JointTargets, Reason, Sensors, StartUp, Verdict};
 
 /// \[N\] Lola's weight.

@@ -5,9 +5,9 @@
 use std::error::Error;
 use std::time::Duration;
 
+use codec::layout::{Carries, Layout, MAX_NODES};
 use daemon::Daemon;
 use fieldbus::{End, Lines};
-use codec::layout::{Carries, Layout, MAX_NODES};
 use messages::{BusFrames, Frame};
 use realtime::clock;
 
@@ -213,8 +213,8 @@ impl Gathering {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use config::Robot;
     use codec::frames::{DriveCommand, encode_targets, look};
+    use config::Robot;
 
     fn layout() -> Layout {
         Robot::load(&config::root(None).join("robots/lola")).unwrap().classic.unwrap()

@@ -3,8 +3,8 @@
 use std::error::Error;
 use std::time::Duration;
 
-use daemon::Daemon;
 use config::BusAddress;
+use daemon::Daemon;
 use ipc::{IpcError, Reader, Waiter, Writer};
 use messages::BusFrames;
 use messages::topics::{BUS_RX, BUS_TX, Process};

@@ -4,9 +4,9 @@
 //! drives have a fault. They bring their joints to rest by themselves, and only a reset leads back: whoever was silent for
 //! so long does not get a joint back in mid-motion.
 
-use messages::MAX_JOINTS;
 use codec::frames::Received;
 use codec::layout::{Carries, Layout, MAX_NODES};
+use messages::MAX_JOINTS;
 
 /// Cycles without targets after which the drives of a local controller have a fault.
 pub const UNHEARD_CYCLES: u32 = 20;

@@ -2,11 +2,11 @@
 
 use std::error::Error;
 
+use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use config::bus_fault::{BusFault, Way};
 use config::{Robot, Scene};
 use fieldbus::Injector;
 use messages::command::{LowerCommand, PushCommand};
-use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use messages::{BusFrames, EventCode, Imu, Power, Sensors, SimState, Wrench};
 use multibody::Frame;
 use nalgebra::Vector3;

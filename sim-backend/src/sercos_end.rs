@@ -6,9 +6,9 @@
 use std::error::Error;
 use std::time::Duration;
 
+use codec::layout::Layout;
 use daemon::Daemon;
 use messages::BusFrames;
-use codec::layout::Layout;
 use realtime::clock;
 use sercos::packing::{Interfaces, Packing, stations, sync_counter};
 use sercos::{Far, Phase, Slave};

@@ -214,9 +214,9 @@ impl Stages {
 mod tests {
     use super::*;
     use crate::hearing::UNHEARD_CYCLES;
+    use codec::frames::Received;
     use config::{Setup, root};
     use drives::cia402::{DISABLE_VOLTAGE, ENABLE_OPERATION, FAULT_RESET, SHUTDOWN, State};
-    use codec::frames::Received;
 
     const KNEE: usize = 5;
     const HEAD: usize = 22;

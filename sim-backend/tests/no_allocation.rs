@@ -2,11 +2,11 @@
 
 mod rig;
 
+use codec::frames::{DriveCommand, encode_targets};
 use config::scene::Integrator;
 use config::{Setup, root};
 use drives::Resolution;
 use environment::Environment;
-use codec::frames::{DriveCommand, encode_targets};
 use messages::{BusFrames, JointMode, JointTargets, MAX_JOINTS, Power};
 use realtime::allocations::{arm, counted, disarm};
 use rig::Rig;

@@ -1,8 +1,8 @@
 //! The simulated robot at the end of the bus: power, pushes, falls, repeatability.
 
+use codec::frames::{DriveCommand, decode_sensors, encode_targets};
 use config::{Setup, root};
 use messages::command::PushCommand;
-use codec::frames::{DriveCommand, decode_sensors, encode_targets};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, Sensors, SimState};
 use sim_backend::SimBackend;
 

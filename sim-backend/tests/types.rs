@@ -1,11 +1,11 @@
 //! Every type of model as a robot at the end of the bus: repeatable, harmless when the supply fails, and never a number
 //! that is none.
 
+use codec::frames::{DriveCommand, encode_targets};
 use config::brake::Brake;
 use config::scene::Integrator;
 use config::{Setup, root};
 use messages::command::PushCommand;
-use codec::frames::{DriveCommand, encode_targets};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, MAX_JOINTS, Power, SimState};
 use sim_backend::SimBackend;
 

@@ -4,12 +4,12 @@
 use std::hint::black_box;
 use std::path::Path;
 
+use codec::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
+use codec::layout::{Carries, Layout};
 use config::scene::Integrator;
 use config::tolerance::Method;
 use config::{Robot, Setup};
 use fieldbus::load::{BIT_RATE, DATA_BIT_RATE, Rates, cycle_time};
-use codec::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
-use codec::layout::{Carries, Layout};
 use messages::{BusFrames, Sensors};
 use realtime::clock::thread_time;
 use serde::Serialize;
@@ -93,7 +93,13 @@ pub fn run(root: &Path) -> Result<Report, Error> {
     let mut buses = Vec::new();
     for (name, cycle) in ROBOTS {
         let robot = Robot::load(&root.join("robots").join(name))?;
-        buses.push(bus(&robot, "classic CAN, 1 Mbit/s", robot.classic.as_ref().map_err(String::as_str)?, CLASSIC, cycle));
+        buses.push(bus(
+            &robot,
+            "classic CAN, 1 Mbit/s",
+            robot.classic.as_ref().map_err(String::as_str)?,
+            CLASSIC,
+            cycle,
+        ));
         buses.push(bus(&robot, "CAN FD, 1 and 5 Mbit/s", &robot.layout, FD, FD_CYCLE));
     }
     let mut walks = Vec::new();
@@ -236,7 +242,9 @@ mod tests {
         let root = config::root(None);
         for (name, cycle) in ROBOTS {
             let robot = Robot::load(&root.join("robots").join(name)).unwrap();
-            for (layout, rates, cycle) in [(robot.classic.as_ref().unwrap(), CLASSIC, cycle), (&robot.layout, FD, FD_CYCLE)] {
+            for (layout, rates, cycle) in
+                [(robot.classic.as_ref().unwrap(), CLASSIC, cycle), (&robot.layout, FD, FD_CYCLE)]
+            {
                 for (time, node) in cycle_time(layout, rates).iter().zip(&layout.nodes) {
                     assert!(*time < cycle, "{name}, {node}: {time} s of {cycle}");
                 }

@@ -8,10 +8,10 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use config::Robot;
-use fieldbus::{End, Lines};
 use codec::frames::{DriveCommand, decode_sensors, encode_sensors, encode_targets};
 use codec::layout::Layout;
+use config::Robot;
+use fieldbus::{End, Lines};
 use messages::{BusFrames, Frame, MAX_FRAMES, Sensors};
 use realtime::{Histogram, Period, Schedule, allocations, clock, prepare_thread};
 use serde::Serialize;

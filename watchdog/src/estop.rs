@@ -20,20 +20,20 @@ use std::time::Duration;
 /// Requests answered together, and the time from one such lot to the next \[ns\].
 const BATCH: usize = 64;
 const PAUSE: u64 = 5_000_000;
-/// How long a lot waits for the supply to be off before it is told "pending", and between two looks \[ns\].
+/// Wait for the supply to be off before the answer "pending", and period of the check \[ns\].
 const OUTCOME: u64 = 20_000_000;
 const LOOK: u64 = 100_000;
 /// Between two looks whether the watchdog is gone.
 const IDLE: Duration = Duration::from_millis(100);
 const STACK: usize = 256 << 10;
 
-/// What the thread and the cycle share. Each number has one writer.
+/// State shared by thread and cycle. Each number has one writer.
 #[derive(Debug, Default)]
 struct Shared {
     /// Requests so far, and who sent the newest; the thread's.
     asked: AtomicU64,
     from: AtomicU64,
-    /// How many of them were acted on, and since when the supply is off; the cycle's.
+    /// Number of them acted on, and time since when the supply is off; written by the cycle.
     served: AtomicU64,
     tick: AtomicU64,
     stamp_ns: AtomicU64,
@@ -111,7 +111,7 @@ fn answer_lot(line: &StopLine, shared: &Shared) {
     }
 }
 
-/// What became of all requests so far. Looks again and again instead of being woken: the cycle makes no system call for it.
+/// Outcome of all requests so far. Polled instead of being woken: the cycle makes no system call for it.
 fn outcome(shared: &Shared) -> StopAnswer {
     let (asked, begun) = (shared.asked.load(Acquire), clock::now());
     let mut look = begun;

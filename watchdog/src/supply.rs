@@ -33,7 +33,7 @@ pub enum Supply {
     On,
 }
 
-/// What the log says of a change of the supply: code and detail.
+/// Event of a change of the supply: code and detail.
 pub fn supply_event(before: Supply, after: Supply) -> Option<(EventCode, u64)> {
     match (before, after) {
         (Supply::On, Supply::Off(reason)) => Some((EventCode::PowerOff, reason as u64)),
@@ -52,7 +52,7 @@ pub fn verdict(command: &Command, before: Supply, after: Supply) -> Verdict {
     if done { Ok(()) } else { Err(Reason::NotNow) }
 }
 
-/// What one cycle of the watchdog sees.
+/// Inputs of one cycle of the watchdog.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Inputs<'a> {
     /// The newest sign of life of the joint loop; none before the first one.
@@ -65,7 +65,7 @@ pub struct Inputs<'a> {
     pub late: bool,
 }
 
-/// What can happen to the supply in one cycle.
+/// Changes of the supply in one cycle.
 #[derive(Clone, Copy, Debug)]
 enum Happening {
     Trip(EventCode),
@@ -196,7 +196,7 @@ impl Watchdog {
         self.closing = self.closing.filter(|_| !measured).map(|cycles| cycles.saturating_add(1));
     }
 
-    /// Why the supply must be off in this cycle, whatever anybody commands.
+    /// Reason for the supply to be off in this cycle, whatever anybody commands.
     fn fault(&self, inputs: &Inputs) -> Option<EventCode> {
         match inputs.reset {
             _ if inputs.skipped >= self.most_skipped => Some(EventCode::WatchdogSilent),

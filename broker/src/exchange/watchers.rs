@@ -72,7 +72,7 @@ impl Exchange<'_> {
         }
     }
 
-    /// Who holds the lease, to one client.
+    /// Holder of the lease, sent to one client.
     pub(super) fn show_lease(&mut self, token: u32) {
         let news = self.lease_message();
         self.members.iter_mut().filter(|m| m.sender.token == token).for_each(|m| m.deliver(&news));

@@ -105,7 +105,7 @@ impl System {
         StreamClient::connect(self.dir(), "test").expect("connection")
     }
 
-    /// Where TCP is served.
+    /// Address on which TCP is served.
     pub(crate) fn tcp(&self) -> SocketAddr {
         let text = std::fs::read_to_string(self.dir().join(broker::doors::TCP_FILE)).expect("address");
         text.trim().parse().expect("address")
@@ -132,7 +132,7 @@ pub(crate) fn wait_for(what: &str, mut come: impl FnMut() -> bool) {
     panic!("{what} did not come");
 }
 
-/// What a started process does: nothing in the test run itself.
+/// Body of a started process; does nothing in the test run itself.
 pub(crate) fn play_role(other: impl Fn(&str, &Space)) {
     let Ok(role) = std::env::var(ROLE) else { return };
     let var = |name| std::env::var(name).expect("set by the test");

@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use codec::frames::encode_sensors;
+use codec::layout::Layout;
 use config::Setup;
 use fieldbus::Capture;
 use fieldbus::capture::Form;
 use fieldbus::cycles::Cycles;
 use fieldbus::owners::Owners;
 use lowlevel::JointLoop;
-use codec::frames::encode_sensors;
-use codec::layout::Layout;
 use messages::topics::{JOINT_TARGETS, SENSORS};
 use messages::{BusFrames, Frame, Header, JointTargets, Sensors};
 use recording::Log;
@@ -22,7 +22,7 @@ use recording::cdr::Encoder;
 
 use super::file;
 
-/// What to compare.
+/// Inputs of the comparison.
 #[derive(clap::Args)]
 pub struct Order {
     /// A candump log, ASC, TRC or MCAP file of the bus, from the begin of the run on.
@@ -59,7 +59,7 @@ pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What was found equal.
+/// Counts of equal frames and values.
 struct Equal {
     cycles: u64,
     answers: u64,

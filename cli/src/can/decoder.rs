@@ -1,13 +1,13 @@
-//! What the frames of a robot carry.
+//! Decoded frames of a robot.
 
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
+use codec::layout::{Carries, Layout, Message};
 use config::Robot;
 use fieldbus::capture::{Captured, Form};
 use fieldbus::owners::Owners;
-use codec::layout::{Carries, Layout, Message};
 
 use super::Only;
 

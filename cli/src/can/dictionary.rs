@@ -1,4 +1,4 @@
-//! What identifiers and bytes mean: by the layouts of one of our robots, or by any DBC file.
+//! Meaning of identifiers and bytes: by the layouts of one of our robots, or by any DBC file.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -11,7 +11,7 @@ use fieldbus::cycles::counter;
 use super::Only;
 use super::decoder::{Decoder, signals};
 
-/// Where to look.
+/// Source of the frames.
 #[derive(clap::Args)]
 pub struct Source {
     /// Robot whose frames these are.
@@ -44,7 +44,7 @@ pub(super) enum Dictionary {
     File(Database),
 }
 
-/// What a frame is.
+/// Meaning of a frame.
 pub(super) enum Meaning {
     /// Its identifier is not known.
     Unknown,
@@ -88,7 +88,7 @@ impl Dictionary {
         known.unwrap_or_else(|| "unknown".into())
     }
 
-    /// What a frame is; of a remote frame its name alone.
+    /// Meaning of a frame; of a remote frame its name alone.
     pub(super) fn meaning(&self, frame: &Captured) -> Meaning {
         let (name, len) = match self {
             Self::Robot(decoder) => match decoder.message(frame) {

@@ -9,7 +9,7 @@ use fieldbus::capture::Captured;
 use super::dictionary::{Dictionary, Meaning, Source};
 use super::{Only, file, source};
 
-/// What to print.
+/// Output options.
 #[derive(clap::Args)]
 pub struct Order {
     /// A recording, or interfaces: can0 or can0,can1 or vcan0-8.

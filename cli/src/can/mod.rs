@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 
-/// What to do with the traffic of a bus.
+/// Task on the traffic of a bus.
 #[derive(Subcommand)]
 pub enum Task {
     /// Record interfaces to a file: candump log, or MCAP if it ends in .mcap. Ctrl-C ends it.
@@ -45,9 +45,9 @@ pub enum Task {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub enum Only {
-    /// What lowlevel sends.
+    /// Frames that lowlevel sends.
     ToDrives,
-    /// What the local controllers answer.
+    /// Frames that the local controllers answer.
     FromDrives,
 }
 

@@ -5,9 +5,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use codec::layout::Layout;
 use fieldbus::capture::{Captured, Form};
 use ipc::{Reader, Run, Space};
-use codec::layout::Layout;
 use messages::topics::{BUS_RX, BUS_TX};
 use messages::{BusFrames, Process};
 use realtime::{Stop, clock};
@@ -23,7 +23,7 @@ const HELD_CYCLES: usize = 64;
 /// The bus in shared memory has the frames of CAN FD: bit rate switch, FD.
 const SHARED_MEMORY: Form = Form::Fd { flags: 5 };
 
-/// What to record.
+/// Recording options.
 #[derive(clap::Args)]
 pub struct Order {
     /// Interfaces: can0 or can0,can1 or vcan0-8; or shm: the bus of a running robot in shared memory.
@@ -39,7 +39,7 @@ pub struct Order {
     /// Robot whose frames these are.
     #[arg(long, value_name = "NAME")]
     pub robot: Option<String>,
-    /// Where the processes of the robot meet, for shm.
+    /// Run directory of the robot, for shm.
     #[arg(long, value_name = "DIR", default_value_os_t = ipc::default_dir())]
     pub dir: PathBuf,
 }

@@ -25,7 +25,7 @@ const LOOK: Duration = Duration::from_millis(50);
 /// A peer that consumes sends its next SYNC within this time \[ns\].
 const PATIENCE: u64 = 10 * clock::SECOND;
 
-/// What to replay and how.
+/// Replay options.
 #[derive(clap::Args)]
 pub struct Order {
     /// A candump log, ASC, TRC or an MCAP file.
@@ -36,7 +36,7 @@ pub struct Order {
     /// So many times as fast as it was.
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed, conflicts_with = "as_fast_as_consumed")]
     pub speed: f64,
-    /// What the drives said, cycle by cycle, as the peer's SYNC frames ask for it; for a joint loop in lockstep.
+    /// The drives' recorded answers, cycle by cycle, as the peer's SYNC frames ask for them; for a joint loop in lockstep.
     #[arg(long, requires = "robot")]
     pub as_fast_as_consumed: bool,
     /// Only one direction; needs --robot.

@@ -1,11 +1,11 @@
-//! Where frames come from: a file, or interfaces of this machine.
+//! Sources of frames: a file, or interfaces of this machine.
 
 use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
-use fieldbus::capture::Captured;
 use config::interface_names;
+use fieldbus::capture::Captured;
 use fieldbus::tap::Tap;
 use realtime::{Stop, clock};
 

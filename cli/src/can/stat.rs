@@ -14,7 +14,7 @@ use serde::Serialize;
 use super::dictionary::{Dictionary, Source};
 use super::{file, load_picture, source};
 
-/// What to count.
+/// Input of the statistics.
 #[derive(clap::Args)]
 pub struct Order {
     /// A recording, or interfaces: can0 or can0,can1 or vcan0-8.
@@ -135,7 +135,7 @@ pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What was counted so far.
+/// Counts so far.
 struct Count {
     dictionary: Option<Dictionary>,
     statistics: Statistics,

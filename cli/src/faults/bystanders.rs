@@ -1,5 +1,5 @@
-//! What must not matter to a walking robot: broker, logger, observers, operators, strangers. One walk bears them all, then the
-//! emergency stop ends it: F5, F6, F10 to F14, F20, F21, F26, F29, F30, F38.
+//! Faults that must not matter to a walking robot: broker, logger, observers, operators, strangers. One walk bears them all, then
+//! the emergency stop ends it: F5, F6, F10 to F14, F20, F21, F26, F29, F30, F38.
 
 use std::io::{Read as _, Write as _};
 use std::net::{Ipv4Addr, TcpStream};

@@ -15,7 +15,7 @@ const LINE: u64 = 3;
 const AT_REST: u64 = 150;
 /// \[ms\] After which a process counts as hung, with what it takes to look and to end it.
 const HUNG: [f64; 2] = [1900.0, 3500.0];
-/// \[cycle\] How long an operator is believed alive, and a look at his link.
+/// \[cycle\] Time until a silent operator counts as dead, and period of the check.
 const LEASE: u64 = 600;
 
 fn rests(seen: Seen, robot: &Robot, reaction: Option<u64>) -> Seen {

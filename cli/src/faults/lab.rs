@@ -1,4 +1,4 @@
-//! What every scenario is given, and what it finds.
+//! Inputs and findings of every scenario.
 
 use config::Setup;
 use harness::Site;
@@ -32,16 +32,16 @@ impl Random {
     }
 }
 
-/// What was seen of one fault.
+/// Observations of one fault.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Seen {
     pub(super) fault: &'static str,
-    /// What happened.
+    /// Observed behaviour.
     pub(super) reaction: String,
     /// From fault to reaction, in bus cycles and \[ms\].
     pub(super) cycles: Option<u64>,
     pub(super) ms: Option<f64>,
-    /// What of the expectation was not met.
+    /// Unmet part of the expectation.
     pub(super) unmet: Vec<String>,
 }
 
@@ -83,7 +83,7 @@ impl Seen {
     }
 }
 
-/// What a scenario found, and what spoilt it from outside, if something did.
+/// Finding of a scenario, and the disturbance from outside that spoilt it, if any.
 pub(super) type Found = Result<(Vec<Seen>, Option<String>), String>;
 
 /// The laboratory.
@@ -125,7 +125,7 @@ impl Lab {
     }
 }
 
-/// What the configuration of a robot says about its limits.
+/// Limits from the robot's configuration.
 pub(super) fn limits(setup: &Setup) -> (u64, u64) {
     (u64::from(setup.system.watchdog_missed), u64::from(setup.system.targets_missed))
 }

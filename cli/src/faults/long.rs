@@ -13,12 +13,12 @@ const STOPS: [f64; 7] = [0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 1.0];
 /// \[s\] After which the robot is judged.
 const WATCHED: f64 = 2.5;
 
-/// What was done in a trial, and what was wrong.
+/// Actions of a trial, and their failures.
 #[derive(Clone, Debug)]
 pub struct Trial {
-    /// What was done.
+    /// Fault injected.
     pub what: String,
-    /// What was wrong; empty: nothing.
+    /// Failures; empty if none.
     pub wrong: Vec<String>,
 }
 

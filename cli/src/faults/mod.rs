@@ -66,7 +66,7 @@ const SCENARIOS: [Scenario; 20] = [
 const UNPRIVILEGED: [Scenario; 2] =
     [Scenario(&["F34"], starts::few_descriptors), Scenario(&["F35"], starts::no_rights)];
 
-/// What became of a fault.
+/// Result of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -83,11 +83,11 @@ pub enum Verdict {
 pub struct Row {
     /// Number, as `F3`.
     pub fault: &'static str,
-    /// What was done.
+    /// Fault injected.
     pub name: &'static str,
-    /// What was to happen.
+    /// Expected behaviour.
     pub expected: &'static str,
-    /// What happened, or what bounds it.
+    /// Observed behaviour, or its bound.
     pub observed: String,
     /// From the fault to the reaction, in bus cycles.
     pub cycles: Option<u64>,
@@ -95,13 +95,13 @@ pub struct Row {
     pub ms: Option<f64>,
     /// Whether that is as expected.
     pub verdict: Verdict,
-    /// What of the expectation was not met.
+    /// Unmet part of the expectation.
     pub unmet: Vec<String>,
     /// Runs that were disturbed from outside and done again, and by what.
     pub repeated: Vec<String>,
 }
 
-/// What is to be tried.
+/// Faults to try.
 #[derive(Clone, Debug)]
 pub struct Order {
     /// The executable `gangwerk`.

@@ -78,7 +78,7 @@ impl Robot {
         Self::of(site, run)
     }
 
-    /// What was started at a site.
+    /// Processes started at a site.
     pub(super) fn of(site: Site, mut run: Running) -> Result<Self, String> {
         let setup = Setup::load(&site.config(""), "fault").map_err(|e| e.to_string())?;
         let space = run.try_space()?;
@@ -227,7 +227,7 @@ impl Robot {
         self.gaits.iter().rev().find(|(tick, _)| *tick < off).map_or(GaitState::from(0), |(_, gait)| *gait)
     }
 
-    /// What is wrong with a robot that is to walk on: it does not.
+    /// Reason why a robot that should walk on does not.
     pub(super) fn walks_on(&self) -> Option<&'static str> {
         let after = self.after();
         let way = after.last().map_or(0.0, |s| s.position[0]) - after.first().map_or(0.0, |s| s.position[0]);
@@ -247,7 +247,7 @@ impl Robot {
         self.readers.stats.each_mut().map(|r| r.latest().map_or(0, |s| s.overruns + s.skipped))
     }
 
-    /// What spoilt the run from outside; none: what the robot did is what it does.
+    /// Disturbance from outside that spoilt the run; none: the observation is the robot's own.
     pub(super) fn disturbance(&mut self) -> Option<String> {
         if self.sims[..self.at].last().is_some_and(|s| s.fallen == 1 || s.power == 0) {
             return Some("did not walk any more before the fault".into());

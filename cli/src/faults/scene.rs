@@ -1,4 +1,4 @@
-//! What the robot does while it is hurt, as scenes.
+//! Scenes of a robot under fault.
 
 /// Lola stands up, walks, and walks on until somebody stops her.
 pub(super) const WALK: &str = "

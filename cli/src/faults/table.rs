@@ -1,6 +1,6 @@
 //! The faults, one row each: what is done, what is expected, and for those that no running robot can be given, what bounds them.
 
-/// How a fault is tried.
+/// Procedure of a fault.
 #[derive(Clone, Copy, Debug)]
 pub enum Proof {
     /// At a running robot: by the scenario that names it.
@@ -14,11 +14,11 @@ pub enum Proof {
 pub struct Fault {
     /// Number, as `F3`.
     pub id: &'static str,
-    /// What is done to the robot.
+    /// Fault injected into the robot.
     pub name: &'static str,
-    /// What must happen.
+    /// Expected behaviour.
     pub expected: &'static str,
-    /// How that is shown.
+    /// Evidence.
     pub proof: Proof,
 }
 

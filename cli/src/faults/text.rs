@@ -17,7 +17,7 @@ pub fn line(row: &Row) -> String {
     text
 }
 
-/// What happened, and what of the expectation did not.
+/// Observed behaviour, and what is missing of the expected.
 fn observed(row: &Row) -> String {
     if row.unmet.is_empty() {
         row.observed.clone()

@@ -29,7 +29,7 @@ const PAUSE_NS: u64 = 500_000;
 const HELLO: u64 = 1;
 const LAST: u64 = u64::MAX;
 
-/// How the other end notices a message.
+/// Wake-up of the other end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {

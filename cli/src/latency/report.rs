@@ -1,4 +1,4 @@
-//! What was measured: as a table, as JSON, and as a picture.
+//! Measurements as a table, as JSON, and as a picture.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -14,13 +14,13 @@ use super::Kind;
 pub struct Row {
     /// Its name.
     pub way: &'static str,
-    /// How the other end notices a message.
+    /// Wake-up of the other end.
     pub kind: Kind,
     /// \[us\] Half of a round trip: p50, p99, p99.9, max.
     pub us: Option<[f64; 4]>,
     /// Messages sent to and fro.
     pub messages: usize,
-    /// Why it was not measured, or not in every round.
+    /// Reason why it was not measured, or not in every round.
     pub problem: Option<String>,
     #[serde(skip)]
     ns: Vec<u64>,

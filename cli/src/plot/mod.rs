@@ -18,7 +18,7 @@ use drawing::Figure;
 use std::path::{Path, PathBuf};
 use walk::Walk;
 
-/// What was drawn.
+/// Pictures drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Pictures {
     /// PNG files.

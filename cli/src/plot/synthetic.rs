@@ -26,7 +26,7 @@ const LINKS: [(&str, Option<usize>); 10] = [
     ("left_arm", Some(0)),
 ];
 
-/// Where everything is at a time.
+/// Poses of all bodies at a time.
 struct Pace {
     com: [f64; 3],
     zmp: [f64; 2],
@@ -104,7 +104,7 @@ impl LinkPoses for Sticks {
     }
 }
 
-/// What a log may be without.
+/// Optional parts of a log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Part {
     Links,

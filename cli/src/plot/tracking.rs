@@ -1,4 +1,4 @@
-//! How well the joints of the legs follow their targets.
+//! Tracking error of the leg joints.
 
 use super::walk::Walk;
 use drawing::color::{BLUE, VERMILION};

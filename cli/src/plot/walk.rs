@@ -13,7 +13,7 @@ const LOADED: f64 = 30.0;
 /// \[s\] A footprint is where a foot stood at least this long.
 const FOOTHOLD: f64 = 0.15;
 
-/// What the figures are made of.
+/// Inputs of the figures.
 pub(super) struct Walk {
     /// Robot, scene, duration: the line under every title.
     pub(super) about: String,
@@ -37,7 +37,7 @@ pub(super) struct Cycle {
     pub(super) angle: Joints,
 }
 
-/// Where a foot stood.
+/// Place where a foot stood.
 pub(super) struct Footprint {
     /// 0 right, 1 left.
     pub(super) foot: usize,

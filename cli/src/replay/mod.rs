@@ -13,8 +13,8 @@ use std::error::Error;
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 
-use config::{BusAddress, Setup};
 use config::tolerance::Method;
+use config::{BusAddress, Setup};
 
 use messages::Process;
 use recording::Log;
@@ -26,7 +26,7 @@ use tape::Tape;
 pub const PROCESSES: [Process; 4] =
     [Process::Planner, Process::Controller, Process::Lowlevel, Process::Watchdog];
 
-/// What was replayed, and is the same.
+/// Replayed records that are equal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Replayed {
     /// Cycles of the process.

@@ -22,7 +22,7 @@ use super::tape::Tape;
 
 /// One process.
 pub(super) trait Part {
-    /// What it writes before its first cycle.
+    /// Records written before its first cycle.
     fn begin(&mut self, _: &mut Tape) -> Result<(), Problem> {
         Ok(())
     }

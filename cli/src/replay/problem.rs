@@ -1,10 +1,10 @@
-//! Why a replay is not the run.
+//! First difference between a replay and its run.
 
 use std::fmt;
 
 use messages::Process;
 
-/// What was found, at the first place.
+/// First difference.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Problem {
     /// The log holds nothing of the cycles of this process.

@@ -97,7 +97,7 @@ impl Tape {
         self.not_ours = |code| OF_DAEMONS.contains(&code) || OF_BUSES.contains(&code);
     }
 
-    /// What the next cycle began with; none at the end of the log.
+    /// Inputs of the next cycle; none at the end of the log.
     pub(super) fn inputs(&mut self) -> Result<Option<CycleInputs>, Problem> {
         let at = self.queue_of("cycle_inputs/");
         let next = match self.next(at) {

@@ -1,11 +1,11 @@
-//! When a process that died is started again: soon, then later and later, and not for ever. Pure: time is an argument.
+//! Back-off of restarts: soon, then later and later, and not for ever. Pure: time is an argument.
 
 use realtime::clock::SECOND;
 
 /// The first pause, and the longest \[ns\].
 const FIRST: u64 = SECOND / 5;
 const LONGEST: u64 = 10 * SECOND;
-/// Who lived this long begins with the first pause again.
+/// Lifetime after which a process begins with the first pause again.
 const HEALTHY: u64 = 60 * SECOND;
 /// Starts in a row after which it is left dead.
 const MOST: u32 = 8;

@@ -1,4 +1,4 @@
-//! When a run ends, and what is done before: pure, time is an argument.
+//! Course of a run to its end: pure, time is an argument.
 //!
 //! ```text
 //! first Ctrl-C ──► walk/stop over the broker ──► it stands ──► end
@@ -12,7 +12,7 @@ use ipc::Mode;
 use messages::Process;
 use realtime::clock::SECOND;
 
-/// How long the broker has to pass a stop on.
+/// Timeout for the broker to pass a stop on.
 const BROKER_PATIENCE: u64 = SECOND / 2;
 /// After a first request to end the robot gets this long to come to a stand.
 const STAND_PATIENCE: u64 = 8 * SECOND;
@@ -21,7 +21,7 @@ const AFTERMATH: u64 = 3 * SECOND;
 /// After the death of the planner: its last plan is walked to its end, up to seven steps and the time to come to rest.
 const LAST_PLAN: u64 = 12 * SECOND;
 
-/// What one look saw.
+/// Observation of one check.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Seen {
     /// Somebody asked for the end since the last look.
@@ -34,7 +34,7 @@ pub(super) struct Seen {
     pub(super) finished: bool,
 }
 
-/// What is to be done.
+/// Actions to take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Act {
     /// Nothing.

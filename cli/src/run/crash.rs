@@ -23,7 +23,7 @@ use super::Cause;
 /// The attachment with the text.
 pub const TEXT: &str = "crash";
 
-/// Where crash records go.
+/// Directory of crash records.
 pub(super) struct Crashes {
     setup: Setup,
     origin: Origin,
@@ -97,7 +97,7 @@ impl ForType<Result<(), RecordingError>> for Put<'_> {
     }
 }
 
-/// What there is to say.
+/// Pending message.
 fn report(process: Process, cause: &Cause, seen: &str, left: &Left, now: u64) -> String {
     let mut text = String::new();
     let ms = |ns: u64| now.saturating_sub(ns) as f64 * 1e-6;
@@ -147,7 +147,7 @@ fn stack(frames: &[i64]) -> String {
     text
 }
 
-/// What /proc says of a process that hangs: state, and where in the kernel it waits.
+/// State of a hung process from /proc, and where in the kernel it waits.
 pub(super) fn look(pid: u32) -> String {
     let read = |name: &str| std::fs::read_to_string(format!("/proc/{pid}/{name}")).unwrap_or_default();
     let status = read("status");

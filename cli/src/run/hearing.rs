@@ -1,4 +1,4 @@
-//! Who has written something lately: what [`super::pulse`] is told.
+//! Processes that have written lately, for [`super::pulse`].
 
 use std::error::Error;
 
@@ -6,7 +6,7 @@ use ipc::{Mode, Reader, Space};
 use messages::topics::{CONTROLLER_STATE, LOG_TICK, PLANNER_TICK, POWER, SIM_STATE, WATCHDOG_RESET};
 use messages::{ControllerState, Event, Power, Process, SimState, WatchdogReset};
 
-/// Who wrote something since the last look.
+/// Processes that wrote since the last check.
 pub(super) struct Hearing {
     power: Reader<Power>,
     reset: Reader<WatchdogReset>,

@@ -1,5 +1,5 @@
-//! What a service manager hears of a run that it started, after `sd_notify(3)`: ready, alive, stopping. Without one nobody
-//! hears it.
+//! Notifications to the service manager that started a run, after `sd_notify(3)`: ready, alive, stopping. Does nothing
+//! without one.
 
 use realtime::clock::SECOND;
 use sd_notify::NotifyState;

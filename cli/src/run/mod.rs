@@ -21,8 +21,8 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
 
-use config::{BusAddress, Setup};
 use config::tolerance::Method;
+use config::{BusAddress, Setup};
 
 use ipc::{Mode, Run, Space};
 use messages::topics::{CONTROLLER_STATE, SIM_STATE};
@@ -38,7 +38,7 @@ pub use crash::TEXT as CRASH_TEXT;
 /// Open files that the supervisor needs, with room for topics to come; 1147 at the last count.
 const OPEN_FILES: u64 = 2048;
 
-/// What to run and how.
+/// Options of a run.
 #[derive(Clone, Debug)]
 pub struct Order {
     /// Lockstep or real time.
@@ -47,7 +47,7 @@ pub struct Order {
     pub paced: bool,
     /// Name of the scene, or path of its file.
     pub scene: String,
-    /// How it is simulated, if it leaves that open: [`crate::choose`].
+    /// Method of simulation, if the scene leaves it open: [`crate::choose`].
     pub method: Option<Method>,
     /// The configuration directory.
     pub config: PathBuf,
@@ -57,13 +57,13 @@ pub struct Order {
     pub robot: bool,
     /// The run directory.
     pub dir: PathBuf,
-    /// Where the log goes; none: no log.
+    /// Path of the log; none: no log.
     pub log: Option<PathBuf>,
     /// In real time, a process without the scheduling that it asks for is not armed.
     pub rt_required: bool,
 }
 
-/// What ended a process before its time.
+/// Cause of a process's early end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Cause {
     /// It ended.
@@ -90,7 +90,7 @@ impl std::fmt::Display for Cause {
     }
 }
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Debug, Default)]
 pub struct Outcome {
     /// Processes that died or hung before their time, also those that were started again.
@@ -99,7 +99,7 @@ pub struct Outcome {
     pub interrupted: bool,
     /// Longest delay of the joint loop \[ms\], if the supply was cut or the robot was stopped because this machine was late.
     pub late_ms: Option<f64>,
-    /// How the walk ended.
+    /// Ending of the walk.
     pub ending: Ending,
     /// Records missing from the log.
     pub missing: u64,

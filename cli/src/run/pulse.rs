@@ -1,4 +1,4 @@
-//! Who hangs: lives, and writes nothing any more. Pure: time is an argument.
+//! Detection of hung processes: alive, but no longer writing. Pure: time is an argument.
 //!
 //! In real time every process writes something in every cycle. Who does not for [`HANG`] hangs; if several do, the first one
 //! in the order in which they drive each other is named: who is driven has nothing to write about.
@@ -11,7 +11,7 @@ pub(super) const HANG: u64 = 2 * SECOND;
 /// A look later than this after the last one: the supervisor itself was stopped, and its own time says nothing of others.
 const OWN_STALL: u64 = SECOND / 5;
 
-/// Who is watched, in the order of blame. The joint loop drives all behind it; watchdog and broker stand alone.
+/// Watched processes, in the order of blame. The joint loop drives all behind it; watchdog and broker stand alone.
 const ORDER: [Process; 7] = [
     Process::Broker,
     Process::Watchdog,
@@ -23,7 +23,7 @@ const ORDER: [Process; 7] = [
 ];
 const ALONE: usize = 2;
 
-/// When each process was last heard.
+/// Time of each process's last record.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pulse {
     heard: [Option<u64>; ORDER.len()],

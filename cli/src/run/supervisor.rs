@@ -29,11 +29,11 @@ const LOOK: Duration = Duration::from_millis(10);
 const START_PATIENCE: u64 = 20 * clock::SECOND;
 /// A process that was asked to end gets this long.
 const END_PATIENCE: u64 = 5 * clock::SECOND;
-/// How often the ports of dead observers are cleared away.
+/// Period at which ports of dead observers are removed.
 const CLEAR_EVERY: u64 = 2 * clock::SECOND;
 /// A process that hangs gets this long to say where.
 const FAREWELL: u64 = clock::SECOND / 10;
-/// What a process said before it died is on its way through its pipe.
+/// Delay for the last words of a dead process to pass its pipe.
 const LAST_WORDS: Duration = Duration::from_millis(50);
 
 /// Runs the processes of `run` to their end.
@@ -88,13 +88,13 @@ struct Supervisor {
     restarts: [(Process, Backoff); 2],
     pulse: Pulse,
     crashes: Crashes,
-    /// Where the processes keep their last seconds.
+    /// Black boxes of the processes.
     memories: Vec<(Process, File)>,
     manager: Manager,
     course: Course,
     outcome: Outcome,
     console: Console,
-    /// How long processes wait for each other in lockstep \[ns\].
+    /// Timeout between processes in lockstep \[ns\].
     patience: u64,
     rt_required: bool,
     run: Run,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use messages::Process;
 
-/// How often each kind of event came. Kinds differ in more than their digits.
+/// Number of events of each kind. Kinds differ in more than their digits.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally(BTreeMap<(&'static str, String), u64>);
 
@@ -22,7 +22,7 @@ impl Tally {
         }
     }
 
-    /// What came more than once, and how often.
+    /// Repeated events, with their counts.
     pub(super) fn summary(&self) -> impl Iterator<Item = String> {
         let often = self.0.iter().filter(|(_, count)| **count > 1);
         // What to do was told with the first of them.

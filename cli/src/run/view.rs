@@ -1,4 +1,4 @@
-//! What the operator sees: where the robot is, what it does, and everything that is no routine.
+//! Operator's console: position, activity, and everything out of the ordinary.
 
 use std::error::Error;
 
@@ -15,7 +15,7 @@ use super::tally::Tally;
 use crate::ending::Ending;
 use crate::sim::AFTER_FALL;
 
-/// What the operator sees.
+/// Operator's console.
 pub(super) struct View {
     state: Reader<ControllerState>,
     sim: Reader<SimState>,
@@ -35,7 +35,7 @@ pub(super) struct View {
     taken: Vec<Reader<CommandTaken>>,
     /// \[s\] Bus cycle.
     cycle: f64,
-    /// How the walk ends.
+    /// Ending of the walk.
     pub(super) ending: Ending,
 }
 
@@ -119,7 +119,7 @@ impl View {
         self.sim.latest().is_some_and(|sim| fell.is_some_and(|fell| sim.time > fell + AFTER_FALL))
     }
 
-    /// Where the start-up is, and what the operator does next.
+    /// State of the start-up, and the operator's next action.
     fn tell_start_up(&mut self) {
         let Some(sensors) = self.sensors.latest() else { return };
         let (now, tick) = (StartUp::from_number(sensors.start_up), sensors.header.tick);
@@ -162,7 +162,7 @@ impl View {
         self.ends = true;
     }
 
-    /// What was told once and came more often.
+    /// Repeated events, reported once.
     pub(super) fn sum_up(&mut self) {
         self.tally.summary().for_each(|line| self.console.say(line));
     }

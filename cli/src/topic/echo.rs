@@ -15,7 +15,7 @@ use crate::fields::{Number, numbers};
 /// Between two looks.
 const LOOK: Duration = Duration::from_millis(1);
 
-/// What is printed of a topic.
+/// Printed part of a topic.
 #[derive(Clone, Debug, Default)]
 pub struct Echo {
     /// Only these fields, or those inside of them; none: all.
@@ -166,7 +166,7 @@ impl<'a> Table<'a> {
         Ok(Self { how, columns: None })
     }
 
-    /// What is wanted of a record, in the order of the record.
+    /// Selected numbers of a record, in its order.
     fn wanted<'n>(&self, all: &'n [Number]) -> Vec<&'n Number> {
         let fields = &self.how.fields;
         let wanted = |n: &&Number| fields.is_empty() || fields.iter().any(|field| is_in(&n.name, field));

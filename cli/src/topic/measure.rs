@@ -14,7 +14,7 @@ use super::{Robot, find};
 /// Between two looks: what an age is measured to.
 const LOOK: Duration = Duration::from_micros(100);
 
-/// What is measured.
+/// Measured quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// Records per second, and the periods between their stamps.

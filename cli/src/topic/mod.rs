@@ -21,16 +21,16 @@ pub use echo::{Echo, echo};
 pub(crate) use echo::{Table, words};
 pub use measure::{Measure, measure};
 
-/// What `topic echo` calls the events of all processes together.
+/// Name of all events together in `topic echo`.
 const EVENTS: &str = "events";
 
 /// A robot that runs, as an observer sees it.
 pub struct Robot {
     /// Its shared memory.
     pub space: Space,
-    /// How it is run.
+    /// Mode.
     pub mode: Mode,
-    /// What it is, and what it walks.
+    /// Robot and scene.
     pub setup: Setup,
 }
 

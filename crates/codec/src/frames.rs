@@ -1,9 +1,9 @@
 //! Records to frames and back, by the layout of a robot: [`Layout`].
 
-use messages::{BusFrames, ERROR_FLAG, Frame, JointMode, JointTargets, MAX_JOINTS, Sensors};
 use crate::layout::{Carries, Layout, MAX_NODES, Message};
+use messages::{BusFrames, ERROR_FLAG, Frame, JointMode, JointTargets, MAX_JOINTS, Sensors};
 
-/// What the drives are told in one cycle.
+/// Command to the drives in one cycle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DriveCommand {
     /// Angles and speeds.
@@ -12,7 +12,7 @@ pub struct DriveCommand {
     pub control: [u32; MAX_JOINTS],
 }
 
-/// What became of the frames of one cycle.
+/// Outcome of the frames of one cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Received {
     /// \[1\] Messages of the layout that did not come, by node.
@@ -123,7 +123,7 @@ pub fn decode_sensors(layout: &Layout, frames: &BusFrames, sensors: &mut Sensors
     })
 }
 
-/// What became of the frames of their header's cycle, without reading any number.
+/// Outcome of the frames of their header's cycle, without reading any number.
 pub fn look(layout: &Layout, to_drives: bool, frames: &BusFrames) -> Received {
     decode(layout, to_drives, frames, |_, _| {})
 }

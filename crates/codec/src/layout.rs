@@ -1,4 +1,4 @@
-//! Where in the frames of the bus each number is.
+//! Position of each number in the frames of the bus.
 //!
 //! A layout is data: `config` makes it from a robot's DBC file. Numbers are scaled integers of up to 32 bits, little endian
 //! (Intel), value = raw × scale + offset; bit 0 is the lowest of byte 0.
@@ -12,7 +12,7 @@ const IDS: usize = 0x800;
 /// In the index: no message has this identifier.
 const NOBODY: u16 = u16::MAX;
 
-/// What a number is. Joints, feet (right, left) and axes by index.
+/// Meaning of a number. Joints, feet (right, left) and axes by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carries {
     /// \[1\] Low bits of the tick: tells a repeated or late frame from a new one.
@@ -70,7 +70,7 @@ pub struct Signal {
     pub scale: f64,
     /// Value of raw 0.
     pub offset: f64,
-    /// What it is.
+    /// Kind.
     pub carries: Carries,
 }
 

@@ -28,7 +28,7 @@ pub struct Path<const D: usize, const N: usize> {
     pub pieces: u64,
     /// Start of the first piece \[s\].
     pub start: f64,
-    /// Where the path rests before its first piece.
+    /// Point at which the path rests before its first piece.
     pub origin: [f64; D],
     /// End of each piece \[s\], ascending.
     pub ends: [f64; N],

@@ -1,4 +1,4 @@
-//! What a cycle began with, on its way into the log: one record at the end of each cycle, one for each command. The same,
+//! Inputs of a cycle, on their way into the log: one record at the end of each cycle, one for each command. The same,
 //! with the records that were read and written, stays in the process's black box for as long as it has room.
 
 use ipc::{Space, Writer};

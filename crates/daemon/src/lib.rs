@@ -1,4 +1,4 @@
-//! What every cyclic process does around its step.
+//! Frame around the step of every cyclic process.
 //!
 //! Load the configuration, prepare the thread, enter shared memory, build everything: the last allocation. Then wait,
 //! read the newest inputs, step, write; count; report what happened. [`Daemon`] is that frame; the process adds its
@@ -18,7 +18,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
-/// Where live commands come from, and where their answers go. Those of the scene come by tick.
+/// Source of live commands and destination of their answers. Those of the scene come by tick.
 pub type Commands = Box<dyn CommandSource>;
 
 /// Opens the source of live commands in a space.
@@ -49,7 +49,7 @@ pub struct Daemon {
     pub space: Space,
     /// The request to end.
     pub stop: Stop,
-    /// What each cycle began with.
+    /// Inputs of each cycle.
     pub log: CycleLog,
     meter: CycleMeter,
     stats: Writer<CycleStats>,
@@ -64,7 +64,7 @@ impl Daemon {
     /// Everything up to the ports of the process.
     ///
     /// # Errors
-    /// What is missing or wrong, and what to do.
+    /// Problem, and what to do.
     pub fn new(process: Process, dir: &Path) -> Result<Self, Box<dyn Error>> {
         let stop = Stop::on_signals()?;
         let run = Run::load(dir)?;
@@ -109,7 +109,7 @@ impl Daemon {
         (self.setup.scene.cycle * 1e9).round() as u64
     }
 
-    /// How long a missing peer is waited for.
+    /// Timeout for a missing peer.
     pub fn patience(&self) -> Duration {
         Duration::from_secs_f64(self.setup.system.peer_timeout)
     }
@@ -120,7 +120,7 @@ impl Daemon {
         Ok(self.bells.len() - 1)
     }
 
-    /// What went wrong on the field bus so far, for the statistics.
+    /// Errors of the field bus so far, for the statistics.
     pub fn count_bus(&mut self, counters: BusCounters) {
         self.meter.count_bus(counters);
     }

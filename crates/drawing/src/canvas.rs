@@ -10,7 +10,7 @@ use tiny_skia::{
 /// A point on the canvas, in pixels.
 pub(crate) type Pixel = [f32; 2];
 
-/// Where text stands relative to its point.
+/// Alignment of text relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     /// Begins there.
@@ -21,7 +21,7 @@ pub(crate) enum Anchor {
     Right,
 }
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Clone, Copy, Debug)]
 pub struct Pen {
     /// Colour.

@@ -170,7 +170,7 @@ impl Chart {
         }
     }
 
-    /// Where a point is along the axes: itself, or the powers of ten; NaN where there is none.
+    /// Position of a point along the axes: itself, or the powers of ten; NaN where there is none.
     fn scaled(&self, p: Point) -> Point {
         let power = |x: f64| if x > 0.0 { x.log10() } else { f64::NAN };
         if self.logarithmic { p.map(power) } else { p }

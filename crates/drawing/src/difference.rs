@@ -1,4 +1,4 @@
-//! How much two pictures differ.
+//! Difference between two pictures.
 
 use std::path::Path;
 use tiny_skia::Pixmap;

@@ -1,4 +1,4 @@
-//! Where the marks of an axis are and how they are written.
+//! Ticks of an axis and their labels.
 
 /// Round numbers 1, 2, 5 x 10^k inside of the range, about `wanted` of them, each with its text.
 pub(crate) fn ticks(lo: f64, hi: f64, wanted: usize) -> Vec<(f64, String)> {

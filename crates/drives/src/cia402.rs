@@ -107,7 +107,7 @@ impl Fault {
         match self {
             Self::OverCurrent => "over-current",
             Self::OverTemperature => "winding too hot",
-            Self::Heartbeat => "heard nothing on the bus",
+            Self::Heartbeat => "no frames on the bus",
             Self::FollowingError => "following error",
         }
     }

@@ -34,7 +34,7 @@ pub fn parse(from: impl BufRead) -> io::Result<(Capture, BrokenLines)> {
     text_log::parse(from, Asc { base: 16, relative: false, now_ns: 0 })
 }
 
-/// What the header said, and where the time is.
+/// Content of the header, and the column of the time.
 struct Asc {
     /// Of identifiers and data: 10 or 16.
     base: u32,

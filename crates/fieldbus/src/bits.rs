@@ -1,4 +1,4 @@
-//! How long a frame occupies its line: its bits, stuff bits counted one by one.
+//! Length of a frame on its line: its bits, stuff bits counted one by one.
 //!
 //! ISO 11898-1. After five equal bits the sender inserts the opposite one, from the start of the frame to the end of
 //! its checksum (classic) or of its data (CAN FD, whose checksum has stuff bits at fixed places instead). Behind that

@@ -22,7 +22,7 @@ type Parsed<T> = Result<T, String>;
 /// A line's frame and the name of its interface.
 ///
 /// # Errors
-/// What is wrong with the line.
+/// Problem of the line.
 pub fn parse(text: &str) -> Parsed<(&str, Captured)> {
     let mut words = text.split_ascii_whitespace();
     let time_ns = words.next().map_or_else(|| Err("the line is empty".into()), time)?;

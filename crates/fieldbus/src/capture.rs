@@ -21,7 +21,7 @@ pub const CLASSIC_BYTES: usize = 8;
 /// Lengths that a CAN FD frame can have \[B\].
 pub const FD_LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
 
-/// How a frame was sent.
+/// Form of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// CAN 2.0: up to 8 bytes. `code`: the length code on the wire if it was above 8 (9 to 15), else 0.
@@ -99,7 +99,7 @@ pub struct Capture {
     pub lines: Vec<String>,
     /// In the order of time, but for [`Capture::steps`].
     pub frames: Vec<Captured>,
-    /// Where the clock was put back meanwhile.
+    /// Places at which the clock was put back.
     pub steps: Vec<ClockStep>,
 }
 

@@ -8,7 +8,7 @@
 pub struct ClockStep {
     /// Index of the first frame behind it, in [`crate::Capture::frames`].
     pub at: usize,
-    /// \[ns\] How much earlier this frame is than the newest one before it.
+    /// \[ns\] Time by which this frame is earlier than the newest one before it.
     pub back_ns: u64,
 }
 

@@ -9,7 +9,7 @@ use codec::layout::{Layout, Message};
 use messages::{BusFrames, Header};
 use std::collections::BTreeMap;
 
-/// What one node heard and said in one cycle: indices in [`Capture::frames`].
+/// Frames of one node in one cycle: indices in [`Capture::frames`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Exchange {
     /// To the drives, SYNC last.
@@ -86,7 +86,7 @@ impl Cycles {
         self.nodes.iter().filter_map(|ticks| ticks.keys().next()).min().copied().unwrap_or(0)
     }
 
-    /// What a node heard and said in a cycle.
+    /// Frames of a node in a cycle.
     pub fn exchange(&self, node: usize, tick: u64) -> Option<&Exchange> {
         self.nodes.get(node)?.get(&tick)
     }

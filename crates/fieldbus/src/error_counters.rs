@@ -1,4 +1,4 @@
-//! How a bus controller counts errors, and when it leaves the bus (ISO 11898-1, fault confinement).
+//! Error counters of a bus controller, up to bus-off (ISO 11898-1, fault confinement).
 //!
 //! | event | sending | receiving |
 //! |---|---|---|
@@ -38,7 +38,7 @@ impl ErrorCounters {
         self.values().map(|n| n.min(255) as u8)
     }
 
-    /// What the counters make of the controller.
+    /// State of the controller by its counters.
     pub fn state(&self) -> ErrorState {
         match self.sending.max(self.receiving) {
             _ if self.sending >= OFF => ErrorState::Off,

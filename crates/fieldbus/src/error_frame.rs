@@ -38,7 +38,7 @@ pub enum ErrorState {
     Off,
 }
 
-/// What an error frame says.
+/// Content of an error frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ErrorFrame {
     /// The controller's state, if it is told.
@@ -54,7 +54,7 @@ pub struct ErrorFrame {
 }
 
 impl ErrorFrame {
-    /// What a frame says; none if it is no error frame.
+    /// Content of an error frame; none for any other frame.
     pub fn read(frame: &Frame) -> Option<Self> {
         let is = |class: u32| frame.id & class != 0;
         if !is(ERROR_FLAG) {

@@ -12,9 +12,9 @@
 //!   of all heavily disturbed frames that CAN's checksum of 15 bits promises.
 //! - On other buses than CAN there are no such controllers; the faults of frames are the same.
 
+use codec::layout::Layout;
 use config::bus_fault::{BusFault, FaultKind, MOST_LATE, Way};
 use messages::bus::MAX_FRAMES;
-use codec::layout::Layout;
 use messages::{BusFrames, ERROR_FLAG, Frame};
 
 use crate::error_counters::{ErrorCounters, RECOVERY_BITS};
@@ -25,7 +25,7 @@ const BIT_RATE: f64 = 1e6;
 /// Attempts to send until a controller is off the bus.
 const ATTEMPTS: u32 = 32;
 
-/// What was done to frames, since the start.
+/// Faults injected into frames since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Injected {
     /// Lost, for whatever reason.
@@ -55,7 +55,7 @@ struct Active {
 struct Line {
     near: ErrorCounters,
     far: ErrorCounters,
-    /// What lowlevel was told last.
+    /// Last message to lowlevel.
     told: ErrorState,
     /// Error in this cycle; nobody acknowledged.
     erred: [bool; 2],
@@ -111,7 +111,7 @@ impl Injector {
         }))
     }
 
-    /// What was done so far.
+    /// Progress so far.
     pub fn injected(&self) -> Injected {
         self.injected
     }
@@ -129,7 +129,7 @@ impl Injector {
         }
     }
 
-    /// What comes out at the other end of what was sent in the cycle of the frames' header.
+    /// Output at the other end for the frames sent in their header's cycle.
     pub fn pass(&mut self, way: Way, frames: &BusFrames) -> &BusFrames {
         let (tick, w) = (frames.header.tick, way as usize);
         let mut out = std::mem::take(&mut self.out[w]);
@@ -151,7 +151,7 @@ impl Injector {
         &self.out[w]
     }
 
-    /// What holds for a whole line in this cycle.
+    /// State of a whole line in this cycle.
     fn begin(&mut self, tick: u64) {
         for i in 0..self.lines.len() {
             let shorted = self.any(FaultKind::Shorted, None, i as u32, tick).is_some();
@@ -308,7 +308,7 @@ impl Injector {
         }
     }
 
-    /// What lowlevel's controllers have to say after this cycle.
+    /// Frames of lowlevel's controllers after this cycle.
     fn tell_errors(&mut self, out: &mut BusFrames) {
         for (i, line) in self.lines.iter_mut().enumerate() {
             let state = line.near.state();

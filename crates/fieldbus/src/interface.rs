@@ -20,7 +20,7 @@ const ENETDOWN: i32 = 100;
 /// The interface's queue is full: wait and send again.
 pub(crate) const ENOBUFS: i32 = 105;
 
-/// What is wrong with an interface, and what to do.
+/// Problem of an interface, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InterfaceError {
     /// Its name.
@@ -34,7 +34,7 @@ impl InterfaceError {
         Self { interface: interface.into(), why: why.into() }
     }
 
-    /// What an error of the operating system means for `interface`.
+    /// Meaning of an error of the operating system for `interface`.
     pub fn of(interface: &str, error: &io::Error) -> Self {
         let why = match error.raw_os_error() {
             Some(EAFNOSUPPORT) => {

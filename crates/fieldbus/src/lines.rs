@@ -31,7 +31,7 @@ pub enum End {
     Far,
 }
 
-/// What did not work since the last look.
+/// Failures since the last check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Trouble {
     /// \[1\] Frames that could not be sent.
@@ -169,7 +169,7 @@ impl Lines {
         let _ = poll(&mut waiting[wanted], timeout.as_ref());
     }
 
-    /// What did not work since the last call.
+    /// Failures since the last call.
     pub fn take_trouble(&mut self) -> Trouble {
         std::mem::take(&mut self.trouble)
     }

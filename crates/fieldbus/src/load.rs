@@ -1,4 +1,4 @@
-//! How full a line is: bits of all frames of a cycle, in the worst case of stuffing.
+//! Load of a line: bits of all frames of a cycle, in the worst case of stuffing.
 //!
 //! Classic frames with identifiers of 11 bits: 44 + 8n bits, up to one stuff bit after each 4 of the first 34 + 8n, and 3 bits
 //! until the next frame. CAN FD (ISO 11898-1:2015): arbitration phase of 30 bits, stuffed the same way, at the nominal rate;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 /// \[ns\] Shortest piece.
 pub const PIECE: u64 = 10_000_000;
 
-/// How long each line was occupied in each piece of time.
+/// Load of each line over time.
 #[derive(Clone, Debug, Default)]
 pub struct LoadCourse {
     /// \[s\] By line and number of the piece; pieces without a frame are not kept.

@@ -1,4 +1,4 @@
-//! How often frames come, how regularly, how much of their line they take, and which are missing.
+//! Statistics of frames: rate, jitter, share of their line, and missing ones.
 
 use crate::bits;
 use crate::capture::Captured;
@@ -78,7 +78,7 @@ pub struct LineTotal {
     pub occupied: f64,
 }
 
-/// What was counted.
+/// Counts.
 #[derive(Clone, Debug)]
 pub struct Statistics {
     rates: BitRates,

@@ -15,7 +15,7 @@ const LONGEST_LINE: u64 = 4096;
 /// Broken lines that an error shows.
 const SHOWN: usize = 10;
 
-/// What is done with a file that has broken lines.
+/// Handling of a file with broken lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Strictness {
     /// It is refused.
@@ -31,7 +31,7 @@ pub struct BrokenLine {
     pub number: usize,
     /// Its beginning.
     pub text: String,
-    /// What is wrong with it.
+    /// Problem.
     pub why: String,
 }
 
@@ -42,7 +42,7 @@ pub struct BrokenLines {
     pub path: PathBuf,
     /// The first of them.
     pub first: Vec<BrokenLine>,
-    /// How many there are.
+    /// Count.
     pub count: usize,
     /// Lines of the file.
     pub of: usize,
@@ -71,7 +71,7 @@ impl fmt::Display for BrokenLines {
     }
 }
 
-/// Why a file was not read.
+/// Reason for not reading a file.
 #[derive(Debug)]
 pub enum TextLogError {
     /// It could not be opened or read.
@@ -146,7 +146,7 @@ pub(crate) trait Format {
     /// A frame with the name of its interface; none if the line says something else, such as a comment.
     ///
     /// # Errors
-    /// What is wrong with the line.
+    /// Problem of the line.
     fn line<'a>(&mut self, text: &'a str) -> Result<Option<(Cow<'a, str>, Captured)>, String>;
 }
 

@@ -1,8 +1,8 @@
 //! Faults between the two ends of the bus: each does what its name says, to the frames and lines it is for, and nothing else.
 
+use codec::layout::{Carries, Layout, Message, Signal};
 use config::bus_fault::{BusFault, FaultKind, Way};
 use fieldbus::{ErrorFrame, ErrorState, Injector};
-use codec::layout::{Carries, Layout, Message, Signal};
 use messages::{BusFrames, Frame};
 
 #[global_allocator]
@@ -37,7 +37,7 @@ fn layout() -> Layout {
     Layout::new((0..LINES).map(|n| format!("node{n}")).collect(), messages)
 }
 
-/// What an end sends in cycle `tick`; the payload is a hash of what it is.
+/// Frame that an end sends in cycle `tick`; its payload is a hash of its identity.
 fn sent(way: Way, tick: u64) -> BusFrames {
     let mut frames = BusFrames::default();
     frames.header.tick = tick;

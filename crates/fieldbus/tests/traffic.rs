@@ -1,10 +1,10 @@
 //! Recorded traffic by node, cycle and identifier.
 
+use codec::layout::{Carries, Layout, Message, Signal};
 use fieldbus::cycles::{Cycles, Unwrapped};
 use fieldbus::owners::Owners;
 use fieldbus::statistics::{BitRates, Statistics};
 use fieldbus::{Capture, candump};
-use codec::layout::{Carries, Layout, Message, Signal};
 
 const COUNTER: u32 = 8;
 

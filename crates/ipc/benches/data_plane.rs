@@ -1,4 +1,4 @@
-//! What the data plane costs: `cargo bench -p ipc`.
+//! Cost of the data plane: `cargo bench -p ipc`.
 //!
 //! Times are percentiles over single operations, clock reading (about 30 ns) included. On a virtual machine the maxima
 //! are the host's.

@@ -16,7 +16,7 @@ const MAX_NOTIFIERS: usize = 128;
 const MAX_LISTENERS: usize = 16;
 const MAX_NODES: usize = 64;
 
-/// How often a long wait looks whether it shall end.
+/// Period at which a long wait checks whether to end.
 const LOOK: Duration = Duration::from_millis(20);
 
 pub(crate) type RealTime = ipc::Service;
@@ -140,7 +140,7 @@ impl Bell {
     }
 }
 
-/// How a wait for something ended.
+/// Outcome of a wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Woken {
     /// What was waited for is there.
@@ -151,7 +151,7 @@ pub enum Woken {
     Silent,
 }
 
-/// Where one process sleeps.
+/// Wait of one process.
 #[derive(Debug)]
 pub struct Waiter {
     bell: Listening<RealTime>,

@@ -1,6 +1,6 @@
-//! What can go wrong while ports are made; nothing goes wrong afterwards.
+//! Errors of making ports; nothing fails afterwards.
 
-/// Why a space, a port or a queue could not be made.
+/// Error of making a space, a port or a queue.
 #[derive(Debug)]
 pub enum IpcError {
     /// Somebody else holds this place.
@@ -14,9 +14,9 @@ pub enum IpcError {
     },
     /// Shared memory would not hold everything.
     NoRoom {
-        /// \[B\] What the topics need.
+        /// \[B\] Space that the topics need.
         needed: u64,
-        /// \[B\] What is free.
+        /// \[B\] Free space.
         free: u64,
     },
     /// Two programs do not agree on the layout of a record.
@@ -30,7 +30,7 @@ pub enum IpcError {
     SlotsUsedUp {
         /// The topic.
         topic: String,
-        /// How many slots there are.
+        /// Number of slots.
         slots: usize,
     },
     /// Anything else, in words.

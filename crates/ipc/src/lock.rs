@@ -8,7 +8,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::time::Duration;
 
-/// How often, and how long after one another, a lock is tried before it counts as somebody else's.
+/// Number and interval of attempts before a lock counts as somebody else's.
 const TRIES: u32 = 20;
 const PAUSE: Duration = Duration::from_millis(5);
 

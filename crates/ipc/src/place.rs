@@ -1,4 +1,4 @@
-//! Where a space lives: run directory, prefix in /dev/shm, and the iceoryx2 configuration made from them.
+//! Place of a space: run directory, prefix in /dev/shm, and the iceoryx2 configuration made from them.
 
 use crate::error::{IpcError, because};
 use iceoryx2::prelude::*;

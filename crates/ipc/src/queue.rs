@@ -186,7 +186,7 @@ impl QueueWaiter {
         rustix::io::read(&self.door.0, &mut [0; 8]).is_ok() || rang
     }
 
-    /// What wakes this waiter from another thread of the same process.
+    /// Wake-up of this waiter from another thread of the same process.
     pub fn doorbell(&self) -> Doorbell {
         self.door.clone()
     }

@@ -142,7 +142,7 @@ impl<T: Record> Reader<T> {
         self.lost
     }
 
-    /// How many records the present writer has written, if that is news. A slot that stands still is left for the
+    /// Number of records of the present writer, if it changed. A slot that stands still is left for the
     /// one of a newer writer, if there is one.
     fn count_of_newest(&mut self) -> Option<u64> {
         let count = self.slots[self.slot].head.get().count;

@@ -1,4 +1,4 @@
-//! What a process needs to know when it is started with `gangwerk PROCESS --run DIR`.
+//! Parameters of a process started with `gangwerk PROCESS --run DIR`.
 //!
 //! The supervisor writes `DIR/run` before it starts anybody: one `key = value` per line.
 //!
@@ -43,7 +43,7 @@ pub struct Run {
     pub paced: bool,
     /// Name of the scene.
     pub scene: String,
-    /// How the scene is simulated, if it leaves that open (`depth = "auto"`).
+    /// Method of simulation, if the scene leaves it open (`depth = "auto"`).
     pub method: Option<String>,
     /// The configuration directory: `system.toml`, `robots/`, `scenes/`, `gaits/`.
     pub config: PathBuf,
@@ -51,7 +51,7 @@ pub struct Run {
     pub bus: String,
     /// Whether a simulated robot is at the far end of the bus.
     pub robot: bool,
-    /// Where the log goes; none: nowhere.
+    /// Path of the log; none: no log.
     pub log: Option<PathBuf>,
     /// Git commit of the software; empty: unknown.
     pub commit: String,
@@ -167,7 +167,7 @@ impl Run {
         })
     }
 
-    /// Where a process keeps its last seconds: [`Space::box_of`], before it enters the space.
+    /// Black box of a process: [`Space::box_of`], before it enters the space.
     ///
     /// # Errors
     /// The run directory is gone.

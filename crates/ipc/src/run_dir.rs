@@ -23,7 +23,7 @@ pub(crate) struct RunDir {
     fd: OwnedFd,
 }
 
-/// Where the processes of this user's robot meet, unless said otherwise: `$XDG_RUNTIME_DIR/gangwerk` if that is this user's
+/// Default run directory: `$XDG_RUNTIME_DIR/gangwerk` if that is this user's
 /// own, else `/dev/shm/gangwerk-UID`.
 pub fn default_dir() -> PathBuf {
     let uid = rustix::process::geteuid().as_raw();
@@ -36,7 +36,7 @@ pub fn default_dir() -> PathBuf {
     session.map_or_else(|| format!("/dev/shm/gangwerk-{uid}").into(), |dir| dir.join("gangwerk"))
 }
 
-/// What is wrong with a run directory; none if it is one, or is not there.
+/// Problem of a run directory; none if it is one, or is not there.
 pub fn wrong_dir(path: &Path) -> Option<IpcError> {
     let there = std::fs::symlink_metadata(path);
     let missing = there.is_err_and(|e| e.kind() == std::io::ErrorKind::NotFound);

@@ -1,4 +1,4 @@
-//! How one topic lies in shared memory.
+//! Layout of a topic in shared memory.
 //!
 //! A topic has [`SLOTS`] slots; each is one blackboard with the entries
 //!
@@ -45,7 +45,7 @@ pub(crate) struct Numbered<T> {
 // of numbers. They hold no pointer, reference or handle, so their bytes mean the same in every process.
 unsafe impl<T: Record> ZeroCopySend for Numbered<T> {}
 
-/// How far a slot has come.
+/// Progress of a slot.
 #[derive(Clone, Copy, Debug, ZeroCopySend)]
 #[repr(C)]
 pub(crate) struct Head {
@@ -67,7 +67,7 @@ fn schema<T: Record>(topic: &Topic) -> String {
     format!("{} {:016x} depth {}", T::NAME, schema_hash::<T>(), topic.depth)
 }
 
-/// What all slots of a topic take in shared memory \[B\], a little more than needed.
+/// Size of all slots of a topic in shared memory \[B\], rounded up.
 pub(crate) fn bytes<T: Record>(topic: &Topic) -> u64 {
     (SLOTS * (topic.depth * (2 * size_of::<Numbered<T>>() + 256) + 16384)) as u64
 }

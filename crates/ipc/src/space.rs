@@ -20,7 +20,7 @@ use std::time::Duration;
 const SUPERVISOR: &str = "supervisor";
 /// Room kept free in shared memory for queues, bells, rings of other programs \[B\].
 const SPARE: u64 = 16 << 20;
-/// How long clearing up after dead processes may wait for somebody else who does it.
+/// Timeout for somebody else who clears up after dead processes.
 const CLEAR_PATIENCE: Duration = Duration::from_millis(200);
 
 /// One running robot's shared memory. Ports are made from it before a process arms; afterwards it only has to live.
@@ -35,7 +35,7 @@ pub struct Space {
     _hold: Hold,
 }
 
-/// What keeps others out of a place.
+/// Lock of a place.
 struct Hold {
     place: Place,
     process: Option<Process>,
@@ -129,7 +129,7 @@ impl Space {
         &self.place.dir
     }
 
-    /// Where a process keeps its last seconds. In shared memory, and gone with it.
+    /// Black box of a process, with its last seconds. In shared memory, and gone with it.
     pub fn box_of(&self, process: Process) -> PathBuf {
         self.place.box_of(process)
     }
@@ -213,7 +213,7 @@ fn right_type<T: Record>(topic: &Topic) -> Result<(), IpcError> {
     Err(IpcError::Other(format!("topic {} holds {}, not {}", topic.name, topic.type_name, T::NAME)))
 }
 
-/// What a space with these topics needs in shared memory \[B\].
+/// Shared memory that a space with these topics needs \[B\].
 fn needed(topics: &[Topic]) -> u64 {
     topics.iter().filter_map(|t| with_type(t.name, Bytes)).sum::<u64>() + SPARE
 }

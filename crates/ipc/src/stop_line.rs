@@ -17,7 +17,7 @@ use std::os::unix::net::{SocketAddr, UnixDatagram};
 use std::path::Path;
 use std::time::Duration;
 
-/// What every name begins with.
+/// Prefix of every name.
 const PREFIX: &str = "gangwerk/estop/";
 /// Longest name of an abstract socket \[B\].
 const LONGEST: usize = 107;
@@ -73,7 +73,7 @@ impl StopName {
         SocketAddr::from_abstract_name(&self.text)
     }
 
-    /// Who holds this name, in words: those that may be looked at.
+    /// Holders of this name, in words: those that may be looked at.
     fn holder(&self) -> String {
         let table = std::fs::read_to_string("/proc/net/unix").unwrap_or_default();
         let line = table.lines().find(|line| line.ends_with(&format!(" @{}", self.text)));
@@ -98,7 +98,7 @@ impl StopName {
     }
 }
 
-/// Who sent a datagram, as the kernel saw it; zeros if it cannot be told (another namespace).
+/// Sender of a datagram, as the kernel saw it; zeros if unknown (another namespace).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Asker {
     /// Process id.
@@ -107,14 +107,14 @@ pub struct Asker {
     pub uid: u32,
 }
 
-/// What the watchdog answers.
+/// Answer of the watchdog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StopAnswer {
     /// The motor supply is off, since this tick.
     Off {
         /// \[1\] Tick of the first power record that said so.
         tick: u64,
-        /// \[ns\] When that was written, on the monotonic clock of this machine.
+        /// \[ns\] Time of writing, on the monotonic clock of this machine.
         stamp_ns: u64,
     },
     /// Taken and latched; no cycle of the watchdog has acted on it yet.
@@ -148,9 +148,9 @@ impl StopAnswer {
 /// A datagram: who sent it, and where an answer goes; none: the sender has no name.
 #[derive(Clone, Debug)]
 pub struct Datagram {
-    /// Who sent it.
+    /// Sender.
     pub from: Asker,
-    /// Where an answer goes.
+    /// Destination of an answer.
     pub answer_to: Option<SocketAddr>,
 }
 

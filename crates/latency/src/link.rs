@@ -8,7 +8,7 @@ use realtime::clock;
 
 /// Bytes of one message.
 pub const SIZE: usize = size_of::<BusFrames>();
-/// How long the other end may take.
+/// Timeout for the other end.
 pub const LIMIT: Duration = Duration::from_secs(2);
 
 /// Which of the two processes.

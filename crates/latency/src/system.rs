@@ -1,4 +1,4 @@
-//! What the operating system has.
+//! Ways of the operating system.
 
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};

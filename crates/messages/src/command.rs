@@ -1,4 +1,4 @@
-//! What an operator may ask for: messages of the command plane (design: thesis 7.4).
+//! Commands of an operator: messages of the command plane (design: thesis 7.4).
 //!
 //! A message is (domain, id, priority, payload). The broker forwards whole domains to the processes that
 //! subscribed to them. [`COMMANDS`](crate::command_text::COMMANDS) lists all
@@ -64,7 +64,7 @@ impl TryFrom<u16> for Domain {
     }
 }
 
-/// How urgent a message is: higher ones pass lower ones.
+/// Priority of a message: higher ones pass lower ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum Priority {
@@ -170,7 +170,7 @@ pub struct VelocityCommand {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DistanceCommand {
-    /// \[m\] How far; backwards if negative.
+    /// \[m\] Distance; backwards if negative.
     pub distance: f64,
     /// \[m/s\] Largest speed.
     pub speed: f64,
@@ -182,9 +182,9 @@ pub struct DistanceCommand {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlatformCommand {
-    /// \[m\] How far its edge lies ahead of the middle of the sole frames.
+    /// \[m\] Distance of its edge ahead of the middle of the sole frames.
     pub distance: f64,
-    /// \[m\] How much higher the ground is behind the edge; lower if negative.
+    /// \[m\] Height of the ground behind the edge; lower if negative.
     pub height: f64,
 }
 
@@ -263,7 +263,7 @@ impl Command {
         }
     }
 
-    /// How urgent the command is.
+    /// Priority of the command.
     pub const fn priority(&self) -> Priority {
         match self {
             Self::EmergencyStop => Priority::High,

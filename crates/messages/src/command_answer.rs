@@ -5,10 +5,10 @@
 
 use crate::{Command, EventCode, Live};
 
-/// What became of a command.
+/// Outcome of a command.
 pub type Verdict = Result<(), Reason>;
 
-/// Why a process does not do what it is told. Reasons of the broker itself are its own.
+/// Reason of a process for refusing a command. Reasons of the broker itself are its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reason {
     /// It was given too long ago.
@@ -50,7 +50,7 @@ pub enum Reason {
         /// \[N\] the most it may be.
         most: f64,
     },
-    /// What an event tells more about.
+    /// Subject of an event's detail.
     Event {
         /// Its code.
         code: EventCode,
@@ -101,7 +101,7 @@ impl Reason {
     }
 }
 
-/// What has to come before the command.
+/// Precondition of the command.
 const fn not_now(command: &Command) -> &'static str {
     match command {
         Command::Reset => {
@@ -149,7 +149,7 @@ fn event(code: EventCode, detail: u64) -> String {
     }
 }
 
-/// Where a process gets live commands from, in its cycle: nothing here waits, locks or allocates.
+/// Source of live commands in a cycle: nothing here waits, locks or allocates.
 pub trait CommandSource {
     /// The next command that may take effect now. What is too old or has lost its lease is answered and left out.
     fn next(&mut self) -> Option<Live>;

@@ -14,7 +14,7 @@ const MAX_LEAD: u64 = 1_000_000;
 /// Lifetime of a command lease without a sign of life of its holder \[ns\].
 pub const LEASE: u64 = 500_000_000;
 
-/// Who sent a command, and when.
+/// Sender and time of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Stamp {
     /// Number of the sender's connection; 0: the scene's own timeline.
@@ -62,9 +62,9 @@ impl Lease {
 /// A command and its stamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Live {
-    /// What is to be done.
+    /// Actions to take.
     pub command: Command,
-    /// Who wants it.
+    /// Requester.
     pub stamp: Stamp,
 }
 

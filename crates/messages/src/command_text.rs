@@ -21,7 +21,7 @@ pub struct FieldInfo {
     pub range: [f64; 2],
     /// Value when it is left out; none: it must be given.
     pub default: Option<f64>,
-    /// What it means.
+    /// Meaning.
     pub about: &'static str,
 }
 
@@ -30,7 +30,7 @@ pub struct FieldInfo {
 pub struct CommandInfo {
     /// Name of the topic.
     pub name: &'static str,
-    /// What it does.
+    /// Task.
     pub about: &'static str,
     /// Its numbers.
     pub fields: &'static [FieldInfo],

@@ -18,7 +18,7 @@ record! {
 }
 
 record! {
-    /// What one cycle of a process began with, besides its configuration. Written by every cyclic process at the end of
+    /// Inputs of one cycle of a process, besides its configuration. Written by every cyclic process at the end of
     /// each cycle.
     record CycleInputs {
         /// Tick and stamp that the process knew in this cycle.

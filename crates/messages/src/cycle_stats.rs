@@ -3,7 +3,7 @@
 use crate::{Header, record};
 
 record! {
-    /// What went wrong on the field bus since start, frame by frame.
+    /// Frame errors of the field bus since start.
     part BusCounters {
         /// \[1\] Frames that did not come in their cycle.
         lost: u64,
@@ -15,7 +15,7 @@ record! {
         refused: u64,
         /// \[1\] Error frames.
         error_frames: u64,
-        /// \[1\] How often a line was lost because its controller left the bus.
+        /// \[1\] Number of times a line was lost because its controller left the bus.
         bus_off: u64,
     }
 }
@@ -43,7 +43,7 @@ record! {
         config_hash: u64,
         /// \[1\] 1 if real-time scheduling was asked for and not granted.
         degraded: u64,
-        /// What the field bus did; of lowlevel only.
+        /// Counters of the field bus; of lowlevel only.
         bus: BusCounters,
     }
 }

@@ -4,7 +4,7 @@ use crate::{Header, record};
 
 macro_rules! events {
     ($($(#[$doc:meta])* $name:ident = $number:literal, $what:literal, $detail:literal, $advice:literal;)*) => {
-        /// What happened. Numbers are part of the log format: append only.
+        /// Kind of event. Numbers are part of the log format: append only.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(u64)]
         pub enum EventCode { $($(#[$doc])* $name = $number,)* }
@@ -203,12 +203,12 @@ events! {
     /// The supply was measured off while it was to be on: its relay fell, or a fuse or a switch is open.
     SupplyLost = 64, "the supply is off while it was to be on", "",
         "look for an open relay, fuse or switch; then system/reset, system/enable";
-    /// Who commanded the walk lost the command lease, by death, silence or a closed link: the robot stops. Detail: the
+    /// The walk's operator lost the command lease, by death, silence or a closed link: the robot stops. Detail: the
     /// number of the grant.
     LeaseLost = 65, "who commanded the walk is gone; the robot stops", "grant {n}", "";
 }
 
-/// Why a frame or a reading was refused, in the detail of [`EventCode::FrameRefused`].
+/// Reason for refusing a frame or a reading, in the detail of [`EventCode::FrameRefused`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refused {
     /// Of an earlier cycle.

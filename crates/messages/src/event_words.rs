@@ -38,7 +38,7 @@ impl Words {
         text
     }
 
-    /// What the detail of an event says, by the words in braces.
+    /// Meaning of an event's detail, by the words in braces.
     fn detail(&self, says: &str, n: u64) -> String {
         let named = |names: &[String], kind: &str, i: u64| {
             names.get(i as usize).cloned().unwrap_or_else(|| format!("{kind} {i}"))

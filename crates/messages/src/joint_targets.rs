@@ -2,7 +2,7 @@
 
 use crate::{Header, Joints, record};
 
-/// What the joint loop does with its targets.
+/// Mode of the joint loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum JointMode {

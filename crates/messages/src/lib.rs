@@ -1,4 +1,4 @@
-//! What the processes say to each other.
+//! Messages between the processes.
 //!
 //! - [`topics`]: the table of topics: name, type, writer, readers, rate, stale-after, logged.
 //! - One file per record: fixed-size, `#[repr(C)]`, one writer each; they travel through shared memory.

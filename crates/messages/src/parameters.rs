@@ -10,7 +10,7 @@ record! {
     record Parameters {
         /// The cycle from which they hold.
         header: Header,
-        /// \[1\] How many there are.
+        /// \[1\] Count.
         count: u64,
         /// Each in its own unit.
         values: [f64; MAX_PARAMETERS],

@@ -6,7 +6,7 @@
 use crate::{Header, record};
 use curves::{Path, Polyline};
 
-/// Where in a walk the robot is (the outer states of thesis figure 4.5).
+/// State of the walk (the outer states of thesis figure 4.5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum GaitState {
@@ -47,7 +47,7 @@ impl From<u64> for GaitState {
     }
 }
 
-/// Where in its gait cycle a foot is (the inner states, thesis figure 4.4): five phases of stance, three of swing.
+/// Gait phase of a foot (the inner states, thesis figure 4.4): five phases of stance, three of swing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Phase {
@@ -142,7 +142,7 @@ record! {
 }
 
 impl Plan {
-    /// Where in its gait cycle `foot` is at plan time `t` \[s\], by the clock.
+    /// Gait phase of `foot` at plan time `t` \[s\], by the clock.
     pub fn phase(&self, foot: usize, t: f64) -> Phase {
         let steps = &self.steps[..(self.step_count as usize).min(self.steps.len())];
         let Some(s) = steps.iter().find(|s| t < s.end) else { return Phase::Standing };

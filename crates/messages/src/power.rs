@@ -16,7 +16,7 @@ record! {
         on: u64,
         /// \[1\] Counts the pairs of a reset edge and an enable edge, of this writer.
         arming: u64,
-        /// \[1\] Why it went off: an [`EventCode`](crate::EventCode), 0 while on.
+        /// \[1\] Cause of its being off: an [`EventCode`](crate::EventCode), 0 while on.
         reason: u64,
         /// \[1\] Watchdog cycles since the last reset was seen.
         missed: u64,

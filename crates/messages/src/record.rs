@@ -176,7 +176,7 @@ impl<T: Zero, const N: usize> Zero for [T; N] {
 }
 
 record! {
-    /// When and by whom a record was written. The first field of every record.
+    /// Time and writer of a record. The first field of every record.
     part Header {
         /// \[1\] Number of the bus cycle the record belongs to; lowlevel counts it.
         tick: u64,

@@ -40,7 +40,7 @@ impl StartUp {
         Self::ALL.get(n as usize).copied().unwrap_or(Self::Off)
     }
 
-    /// What it is, and what the operator does next.
+    /// State, and the operator's next action.
     pub const fn advice(self) -> &'static str {
         match self {
             Self::Off => "motor supply off: gangwerk topic pub system/reset, then system/enable",

@@ -119,7 +119,7 @@ topics! {
     /// Targets of the joints.
     JOINT_TARGETS: JointTargets = "joint_targets", Controller -> [Lowlevel], wakes [Lowlevel],
         1000 Hz, stale 5, depth 256, logged true;
-    /// What the stabilizer sees and does.
+    /// State and internal variables of the stabilizer.
     CONTROLLER_STATE: ControllerState = "controller_state", Controller -> [Planner], wakes [],
         1000 Hz, stale 100, depth 256, logged true;
     /// Parameters of the planner.
@@ -143,7 +143,7 @@ topics! {
     /// Truth about the simulated robot.
     SIM_STATE: SimState = "sim_state", SimBackend -> [], wakes [],
         1000 Hz, stale 0, depth 256, logged true;
-    /// How far the log has come; in lockstep the joint loop does not run ahead of it.
+    /// Progress of the log; in lockstep the joint loop does not run ahead of it.
     LOG_TICK: Event = "log_tick", Logger -> [Lowlevel], wakes [Lowlevel],
         0 Hz, stale 0, depth 4, logged false;
     /// Frames that the joint loop received, in the cycles in which there were any.
@@ -152,19 +152,19 @@ topics! {
     /// Frames that it sent.
     FRAMES_OUT: BusFrames = "frames_out", Lowlevel -> [], wakes [],
         1000 Hz, stale 0, depth 64, logged true;
-    /// What each cycle of the watchdog began with.
+    /// Inputs of each cycle of the watchdog.
     INPUTS_WATCHDOG: CycleInputs = "cycle_inputs/watchdog", Watchdog -> [], wakes [],
         1000 Hz, stale 0, depth 256, logged true;
-    /// What each cycle of the simulated robot began with.
+    /// Inputs of each cycle of the simulated robot.
     INPUTS_SIM_BACKEND: CycleInputs = "cycle_inputs/sim-backend", SimBackend -> [], wakes [],
         1000 Hz, stale 0, depth 256, logged true;
-    /// What each cycle of the joint loop began with.
+    /// Inputs of each cycle of the joint loop.
     INPUTS_LOWLEVEL: CycleInputs = "cycle_inputs/lowlevel", Lowlevel -> [], wakes [],
         1000 Hz, stale 0, depth 256, logged true;
-    /// What each cycle of the planner began with.
+    /// Inputs of each cycle of the planner.
     INPUTS_PLANNER: CycleInputs = "cycle_inputs/planner", Planner -> [], wakes [],
         1000 Hz, stale 0, depth 256, logged true;
-    /// What each cycle of the stabilizer began with.
+    /// Inputs of each cycle of the stabilizer.
     INPUTS_CONTROLLER: CycleInputs = "cycle_inputs/controller", Controller -> [], wakes [],
         1000 Hz, stale 0, depth 256, logged true;
     /// Commands that the broker refused.
@@ -200,19 +200,19 @@ topics! {
     /// Cycle statistics of the stabilizer.
     STATS_CONTROLLER: CycleStats = "cycle_stats/controller", Controller -> [], wakes [],
         10 Hz, stale 0, depth 16, logged true;
-    /// What the broker saw.
+    /// Events of the broker.
     EVENTS_BROKER: Event = "events/broker", Broker -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
-    /// What the watchdog saw.
+    /// Events of the watchdog.
     EVENTS_WATCHDOG: Event = "events/watchdog", Watchdog -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
-    /// What happened to the simulated robot.
+    /// Events of the simulated robot.
     EVENTS_SIM_BACKEND: Event = "events/sim-backend", SimBackend -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
-    /// What the joint loop saw.
+    /// Events of the joint loop.
     EVENTS_LOWLEVEL: Event = "events/lowlevel", Lowlevel -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
-    /// What the planner saw.
+    /// Events of the planner.
     EVENTS_PLANNER: Event = "events/planner", Planner -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
-    /// What the stabilizer saw.
+    /// Events of the stabilizer.
     EVENTS_CONTROLLER: Event = "events/controller", Controller -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
-    /// What the logger saw, such as losses.
+    /// Events of the logger, such as losses.
     EVENTS_LOGGER: Event = "events/logger", Logger -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
 }
 

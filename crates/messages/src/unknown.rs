@@ -1,4 +1,4 @@
-//! What an unknown name is answered with: the names that were probably meant.
+//! Answer to an unknown name: the names that were probably meant.
 
 use strsim::damerau_levenshtein as edits;
 

@@ -1,4 +1,4 @@
-//! How commands become bytes: bincode 2, legacy configuration (fixed width, little endian), with a size limit.
+//! Encoding of commands: bincode 2, legacy configuration (fixed width, little endian), with a size limit.
 //!
 //! The bytes equal those of bincode 1 and of wincode; `tests/wire.rs` holds golden vectors against both.
 
@@ -17,7 +17,7 @@ fn config() -> Config {
     bincode::config::legacy().with_limit::<MAX_BYTES>()
 }
 
-/// Why bytes are not a command.
+/// Error of decoding a command.
 #[derive(Debug)]
 pub struct WireError(String);
 

@@ -16,7 +16,7 @@ const COLUMNS: [Process; 6] = [
     Process::Logger,
 ];
 const WIDTH: usize = 13;
-/// Where the first column's line stands.
+/// Position of the first column's line.
 const FIRST: usize = 22;
 
 /// Topics between processes of the chain as arrows between their lines.

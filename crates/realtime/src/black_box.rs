@@ -24,7 +24,7 @@ const FRONT: usize = 4096;
 /// An entry begins with its length and kind (4 bytes each) and its tick (8 bytes).
 const HEAD: usize = 16;
 
-/// What stands before the ring.
+/// Header before the ring.
 #[repr(C)]
 struct Front {
     magic: u64,
@@ -53,7 +53,7 @@ pub struct BlackBox {
 /// One entry of a box that was left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// What it is, as the writer said.
+    /// Kind, as the writer said.
     pub kind: u32,
     /// \[1\] Tick of the cycle.
     pub tick: u64,
@@ -61,7 +61,7 @@ pub struct Entry {
     pub bytes: Vec<u8>,
 }
 
-/// What a box says of its process.
+/// Content of a black box.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Left {
     /// The ring, oldest first.
@@ -76,7 +76,7 @@ pub struct Left {
     pub signal: u64,
     /// Address that was touched in vain.
     pub address: u64,
-    /// What a panic said.
+    /// Message of a panic.
     pub message: String,
     /// Return addresses, innermost first, as offsets from [`crate::last_words::anchor`] of the same program.
     pub frames: Vec<i64>,
@@ -136,7 +136,7 @@ impl BlackBox {
         Ok(Self { map, size, head: 0, tail: 0 })
     }
 
-    /// Where a dying process leaves its last words: of a box that is leaked, and lives as long as the process.
+    /// Memory for the last words of a dying process: of a box that is leaked, and lives as long as the process.
     pub fn last_words(self: &&'static mut Self) -> &'static LastWords {
         // SAFETY: as in `front`; the box is leaked, so its mapping stays.
         unsafe { &(*self.map.at.cast::<Front>()).words }

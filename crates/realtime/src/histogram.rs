@@ -37,7 +37,7 @@ impl Histogram {
         self.max = self.max.max(ns);
     }
 
-    /// How many were recorded.
+    /// Number of records.
     pub fn len(&self) -> u64 {
         self.total
     }

@@ -1,4 +1,4 @@
-//! What a dying process says: signal, address, message of a panic, return addresses.
+//! Last words of a dying process: signal, address, message of a panic, return addresses.
 //!
 //! The handler stores into memory that outlives the process, and calls nothing else but the unwinder (`backtrace` of the C
 //! library, called once before so that it has loaded what it needs). It does not take the signal away: the process dies of
@@ -12,7 +12,7 @@ const FRAMES: usize = 64;
 const MESSAGE: usize = 512;
 /// Stack of the handler \[B\]: the process's own may be what ran out.
 const STACK: usize = 64 << 10;
-/// What is handled: what a program dies of by its own fault, and what the supervisor sends to one that hangs.
+/// Signals handled: those a program dies of by its own fault, and the one the supervisor sends to a hung process.
 const SIGNALS: [i32; 5] = [libc::SIGSEGV, libc::SIGBUS, libc::SIGILL, libc::SIGFPE, libc::SIGABRT];
 
 /// Last words, in memory that outlives the process.
@@ -61,7 +61,7 @@ impl LastWords {
         self.length.store(bytes.len() as u64, Release);
     }
 
-    /// Where the calling thread is, unless somebody has said so.
+    /// Stack of the calling thread, unless it is recorded already.
     fn trace(&self) {
         if self.count.load(Relaxed) > 0 {
             return;

@@ -1,4 +1,4 @@
-//! How well a process keeps its cycle: fills the record `cycle_stats`.
+//! Cycle statistics of a process: fills the record `cycle_stats`.
 
 use crate::{Histogram, allocations, sanitizer};
 use messages::{BusCounters, CycleStats};
@@ -67,7 +67,7 @@ impl CycleMeter {
         self.stats.overruns += u64::from(late || skipped > 0);
     }
 
-    /// What went wrong on the field bus since start.
+    /// Errors of the field bus since start.
     pub fn count_bus(&mut self, counters: BusCounters) {
         self.stats.bus = counters;
     }

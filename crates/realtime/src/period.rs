@@ -4,7 +4,7 @@
 //! of catch-up cycles follows; they are counted, and fill a bucket that every punctual cycle empties by one. A full
 //! bucket is the end of patience: the process asks for a controlled stop. No clock in here: time is an argument.
 
-/// What a finished cycle means.
+/// Result of a finished cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Finished before the next wake-up.

@@ -1,4 +1,4 @@
-//! What this machine gives to real time: what `gangwerk doctor` prints.
+//! Check of a machine's real-time setup: the output of `gangwerk doctor`.
 
 use crate::thread::{CAP_IPC_LOCK, CAP_SYS_NICE, has_capability};
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
@@ -14,7 +14,7 @@ pub fn open_files(wanted: u64) -> u64 {
     getrlimit(Resource::Nofile).current.unwrap_or(u64::MAX)
 }
 
-/// How good a finding is.
+/// Rating of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grade {
     /// As it should be.
@@ -28,13 +28,13 @@ pub enum Grade {
 /// One finding.
 #[derive(Clone, Debug)]
 pub struct Check {
-    /// What was looked at.
+    /// Subject of the check.
     pub what: &'static str,
-    /// What was found.
+    /// Finding.
     pub found: String,
-    /// What that means.
+    /// Meaning.
     pub grade: Grade,
-    /// What to do about it; empty if it is good.
+    /// Advice; empty if it is good.
     pub advice: &'static str,
 }
 

@@ -14,7 +14,7 @@ const SIDE_STACK: usize = 64 << 10;
 /// Memory that must be lockable before anything is locked: later mappings fail if the limit is met \[B\].
 const LOCKABLE: u64 = 1 << 30;
 
-/// What a thread asks for.
+/// Scheduling that a thread asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Schedule {
     /// SCHED_FIFO priority 1..98; 0: the ordinary scheduler, and nothing is locked or touched.
@@ -24,11 +24,11 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// What lockstep asks for: nothing.
+    /// Scheduling for lockstep: none.
     pub const ORDINARY: Self = Self { priority: 0, core: None };
 }
 
-/// What it got.
+/// Grant.
 #[derive(Debug, Default)]
 pub struct Granted {
     /// All memory, present and future, stays in RAM.
@@ -39,7 +39,7 @@ pub struct Granted {
     pub core: Option<usize>,
     /// The processor does not go to sleep states while this lives.
     pub awake: bool,
-    /// What was asked for and not granted, with the reason and what to do.
+    /// Requests that were not granted, with the reason and what to do.
     pub missing: Vec<String>,
     _awake: Option<File>,
 }

@@ -1,9 +1,9 @@
-//! Why a log could not be written or read.
+//! Errors of writing and reading a log.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// What went wrong, and what to do next.
+/// Error, and what to do next.
 #[derive(Debug)]
 pub enum RecordingError {
     /// The file could not be made.

@@ -1,4 +1,4 @@
-//! Where every link of the robot is: asked from whoever knows the kinematics, written as the tree `/tf`.
+//! Poses of the robot's links, written as the tree `/tf`; the kinematics are the caller's.
 
 use messages::{Joints, Sensors};
 

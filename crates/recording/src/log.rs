@@ -45,7 +45,7 @@ pub struct Message<'a> {
     pub payload: &'a [u8],
 }
 
-/// How the log ends.
+/// Ending of the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// With its index, as it should.
@@ -210,7 +210,7 @@ fn read_transforms(payload: &[u8]) -> Vec<Transform> {
     transforms
 }
 
-/// What stands in a file.
+/// Content of a file.
 pub(crate) enum Seen<'a> {
     Metadata(&'a str, &'a std::collections::BTreeMap<String, String>),
     Attachment(&'a str, &'a [u8]),

@@ -1,4 +1,4 @@
-//! Where the robot believes to be: poses that go into `/tf` and `/markers`, from sensors, stabilizer and plans.
+//! Believed poses for `/tf` and `/markers`, from sensors, stabilizer and plans.
 //!
 //! The frame is `odom`, I_0 of the plans: where the planning frame was at first. What the stabilizer says is in the planning
 //! frame of the plan that it follows.
@@ -15,7 +15,7 @@ const PLANS: usize = 16;
 /// Cycles in which sensors or stabilizer were heard, and the other one not yet.
 const WAITING: usize = 32;
 
-/// What of a plan is drawn.
+/// Drawn part of a plan.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Planned {
     /// \[m\] Height of its frame.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::robot::WallClock;
 
-/// \[ns\] How far topics may be behind each other.
+/// \[ns\] Tolerated lag of topics behind each other.
 const HORIZON: u64 = 100_000_000;
 
 /// One message.
@@ -19,7 +19,7 @@ pub(crate) struct Message {
     pub(crate) payload: Vec<u8>,
 }
 
-/// What waits, and the time of the log.
+/// Waiting messages, and the time of the log.
 #[derive(Debug, Default)]
 pub(crate) struct Queue {
     clock: Option<WallClock>,

@@ -38,7 +38,7 @@ const STANDARD_PERIOD_NS: u64 = 1_000_000_000 / STANDARD_RATE;
 /// \[B\] Chunks are closed at this size: about 0.1 s of a walk.
 const CHUNK_SIZE: u64 = 512 * 1024;
 
-/// Where a log can be written to.
+/// Destination of a log.
 pub trait Sink: Write + Seek + Send {}
 impl<W: Write + Seek + Send> Sink for W {}
 
@@ -328,7 +328,7 @@ impl Recorder {
     }
 }
 
-/// How every log is written.
+/// Options of every log.
 pub(crate) fn options() -> mcap::WriteOptions {
     mcap::WriteOptions::new()
         .profile("ros2")

@@ -9,12 +9,12 @@ use std::io::{BufWriter, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// What became of a log that was repaired.
+/// Outcome of repairing a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Repaired {
     /// Messages that are in it now.
     pub messages: u64,
-    /// Why it was not complete; none: it was, and nothing was done.
+    /// Reason for its being incomplete; none: it was complete, and nothing was done.
     pub found: Option<String>,
 }
 

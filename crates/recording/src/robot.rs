@@ -1,4 +1,4 @@
-//! What a log says about itself: which robot, which scene, which configuration, which software.
+//! Metadata of a log: robot, scene, configuration, software.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub struct RobotInfo {
     pub imu: [f64; 3],
     /// Right and left foot.
     pub feet: [FootInfo; 2],
-    /// \[m, m, rad\] Where the frame `odom` is in the simulated world; zeros of a real robot.
+    /// \[m, m, rad\] Pose of the frame `odom` in the simulated world; zeros of a real robot.
     pub odom: [f64; 3],
 }
 
@@ -55,7 +55,7 @@ pub struct RunInfo {
     pub clock: Option<WallClock>,
 }
 
-/// Where and when a run in real time began.
+/// Host and start time of a run in real time.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WallClock {
     /// \[ns\] Since 1970, at its start.

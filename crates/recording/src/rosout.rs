@@ -27,7 +27,7 @@ pub(crate) fn log(e: &mut Encoder, stamp_ns: u64, process: &str, event: &Event, 
     e.u32(0);
 }
 
-/// How much it matters.
+/// Severity.
 fn level(code: EventCode) -> Level {
     use EventCode::{
         BusActive, Ended, GazeResumed, Homed, NodeBack, None, ObjectResumed, ParameterSet, PlanActive,

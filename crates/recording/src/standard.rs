@@ -7,7 +7,7 @@ use messages::{Joints, MAX_JOINTS, Sensors};
 
 /// Root of the tree of frames: the simulated world, or where a real robot was first.
 pub(crate) const WORLD: &str = "world";
-/// Where the robot believes that it was first.
+/// Believed pose at the start.
 pub(crate) const ODOM: &str = "odom";
 /// In front of the names of the simulated robot's true frames and markers.
 pub(crate) const TRUTH: &str = "truth/";

@@ -94,7 +94,7 @@ pub(crate) const TRUTH_TF: Standard =
 pub(crate) const TF_STATIC: Standard =
     Standard { topic: "/tf_static", interface: "tf2_msgs/msg/TFMessage", body: TF_BODY, parts: TF_PARTS };
 
-/// What happened, in words.
+/// Event in words.
 pub(crate) const ROSOUT: Standard = Standard {
     topic: "/rosout",
     interface: "rcl_interfaces/msg/Log",

@@ -1,6 +1,6 @@
 //! Control and status words: of a device, and of a connection.
 
-/// How a slave passes telegrams on.
+/// Forwarding of telegrams by a slave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Topology {
     /// Both channels go through.
@@ -21,7 +21,7 @@ impl Topology {
     }
 }
 
-/// What the port that a loop leaves idle sees.
+/// Traffic at the port that a loop leaves idle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Idle {
     /// Nobody is plugged in.

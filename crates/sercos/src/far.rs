@@ -99,7 +99,7 @@ impl Far {
     }
 }
 
-/// What the kernel does not take is lost, as on a pulled cable: the master counts it.
+/// Frames that the kernel does not take are lost, as on a pulled cable: the master counts them.
 fn send(ends: &[Option<Socket>; 2], side: Side, frame: &[u8]) {
     if let Some(socket) = &ends[side as usize] {
         socket.send(frame);

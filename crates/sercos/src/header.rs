@@ -40,7 +40,7 @@ pub enum Channel {
     S,
 }
 
-/// Who writes the data.
+/// Writer of the data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Master data telegram.
@@ -52,7 +52,7 @@ pub enum Kind {
 /// Communication phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Phase {
-    /// Who is there, in what order.
+    /// Stations in their order.
     Cp0,
     /// Service channels and device control for everybody.
     Cp1,
@@ -93,7 +93,7 @@ pub struct Header {
     pub cycle: Option<u8>,
 }
 
-/// Why a frame is no telegram.
+/// Reason why a frame is no telegram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Malformed {
     /// Another EtherType: not ours, and no error of the bus.

@@ -35,19 +35,19 @@ pub const CHECK_CP4: Idn = Idn::standard(128, 0, 0);
 pub const CYCLE_TIME: Idn = Idn::standard(1002, 0, 0);
 /// Beats in a row that a slave may miss in CP3 and CP4 \[1\].
 pub const BEAT_LOSSES: Idn = Idn::standard(1003, 0, 0);
-/// When in the cycle AT0 is sent, t1 \[ns\].
+/// Time of AT0 in the cycle, t1 \[ns\].
 pub const AT_TIME: Idn = Idn::standard(1006, 0, 0);
-/// Where C-DEV is.
+/// Place of C-DEV.
 pub const CONTROL_OFFSET: Idn = Idn::standard(1009, 0, 0);
 /// Lengths of the MDTs \[B\].
 pub const MDT_LENGTHS: Idn = Idn::standard(1010, 0, 0);
-/// Where S-DEV is.
+/// Place of S-DEV.
 pub const STATUS_OFFSET: Idn = Idn::standard(1011, 0, 0);
 /// Lengths of the ATs \[B\].
 pub const AT_LENGTHS: Idn = Idn::standard(1012, 0, 0);
-/// Where the service channel is in the MDT.
+/// Offset of the service channel in the MDT.
 pub const MDT_SERVICE_OFFSET: Idn = Idn::standard(1013, 0, 0);
-/// Where the service channel is in the AT.
+/// Offset of the service channel in the AT.
 pub const AT_SERVICE_OFFSET: Idn = Idn::standard(1014, 0, 0);
 /// Sercos address \[1\].
 pub const ADDRESS: Idn = Idn::standard(1040, 0, 0);
@@ -87,7 +87,7 @@ pub enum Element {
     Close,
     /// The identification number; read: state of a procedure command.
     Idn,
-    /// How it is stored.
+    /// Storage.
     Attribute,
     /// The value.
     Data,

@@ -1,4 +1,4 @@
-//! Where everything is in the telegrams of CP3 and CP4: counted once by the master, told to the slaves in CP2.
+//! Layout of the telegrams of CP3 and CP4: computed once by the master, sent to the slaves in CP2.
 //!
 //! MDT0 and AT0 begin with the hot-plug field. Then follow, each in the order of the stations, and in the next telegram
 //! when one is full: all service channels, all device controls or states, all connections.
@@ -78,7 +78,7 @@ pub struct Layout {
     pub at: [usize; TELEGRAMS],
 }
 
-/// Why stations cannot be served.
+/// Reason why stations cannot be served.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LayoutError {
     /// So many stations.

@@ -35,13 +35,13 @@ pub const GIVE_UP: u32 = 1000;
 pub const ANNOUNCED: u32 = 3;
 /// Pause before a phase \[ns\]; a fast switch takes 20 ms at most.
 const PAUSE: u32 = 10_000_000;
-/// How long a slave may take for a step in the service channel \[ns\].
+/// Timeout of a slave for a step in the service channel \[ns\].
 const SERVICE_TIME: u32 = 1_000_000_000;
 /// Cycles in CP1 in a row in which everybody must be valid.
 const VALID: u32 = 10;
 const EVENTS: usize = 32;
 
-/// What a master needs to know.
+/// Parameters of a master.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// Cycle time \[ns\].
@@ -56,7 +56,7 @@ pub struct Setup {
     pub ports: [Option<Mac>; 2],
 }
 
-/// What the master is at.
+/// Stage of the master.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// CP0 to CP3.
@@ -67,7 +67,7 @@ pub enum Stage {
     Failed(Trouble),
 }
 
-/// What the master counted.
+/// Counters of the master.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Cycles begun.
@@ -136,7 +136,7 @@ pub struct Master {
     cycle: u8,
     sent: Box<[[Telegram; 2 * TELEGRAMS]; 2]>,
     in_use: usize,
-    /// How many of them are ATs.
+    /// Number of ATs among them.
     ats: usize,
     received: Box<[[Telegram; TELEGRAMS]; 2]>,
     got: [[bool; TELEGRAMS]; 2],
@@ -213,7 +213,7 @@ impl Master {
         })
     }
 
-    /// What it is at.
+    /// Progress.
     pub fn stage(&self) -> Stage {
         match self.state {
             State::Failed(trouble) => Stage::Failed(trouble),
@@ -222,7 +222,7 @@ impl Master {
         }
     }
 
-    /// What it counted.
+    /// Counts.
     pub fn counts(&self) -> Counts {
         self.counts
     }

@@ -19,12 +19,12 @@ pub struct Near {
     refused: u64,
 }
 
-/// Why there is no master.
+/// Error of making a master.
 #[derive(Debug)]
 pub enum OpenError {
     /// An interface.
     Socket(SocketError),
-    /// What shall be sent.
+    /// Data to send.
     Setup(Trouble),
 }
 

@@ -41,7 +41,7 @@ impl Value {
         Self { bytes, len: VALUE }
     }
 
-    /// What was received; none if longer than any value.
+    /// Data received; none if longer than any value.
     pub fn received(bytes: &[u8]) -> Option<Self> {
         let mut value = Self { bytes: [0; VALUE], len: bytes.len() };
         value.bytes.get_mut(..bytes.len())?.copy_from_slice(bytes);

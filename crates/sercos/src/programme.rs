@@ -1,4 +1,4 @@
-//! What the master asks of a station before operation: parameters in CP2, checks before CP3 and CP4.
+//! Requests of the master to a station before operation: parameters in CP2, checks before CP3 and CP4.
 
 use crate::header::{Kind, Phase};
 use crate::idn::{self, COMMAND, FEEDBACK, connection};
@@ -6,7 +6,7 @@ use crate::layout::{CONNECTION, Layout, Station};
 use crate::parameters::Value;
 use crate::service::Request;
 
-/// What all stations are told.
+/// Data for all stations.
 #[derive(Clone, Copy, Debug)]
 pub struct Timing {
     /// Cycle time \[ns\].

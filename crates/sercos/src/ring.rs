@@ -1,4 +1,4 @@
-//! What the ring looks like from the master: closed, broken, a line; and how it is closed again.
+//! Topology seen from the master: closed ring, broken ring, line; and how a ring is closed again.
 //!
 //! | port 1 gets | port 2 gets | |
 //! |---|---|---|
@@ -70,7 +70,7 @@ enum State {
 /// Closes a ring again.
 pub struct Repair {
     state: State,
-    /// What the stations were before the command, to go back to.
+    /// States of the stations before the command, to go back to.
     before: Vec<Topology>,
 }
 

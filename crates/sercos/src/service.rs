@@ -50,7 +50,7 @@ impl Server {
         }
     }
 
-    /// What the slave sends: status and four bytes.
+    /// Data of the slave: status and four bytes.
     pub fn give(&self) -> (u16, u32) {
         let bits = if self.error { ERROR } else { 0 };
         (u16::from(self.ahs) | bits | VALID, self.info)
@@ -113,7 +113,7 @@ impl Server {
     }
 }
 
-/// What the master wants of a slave.
+/// Request of the master to a slave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
     /// The parameter has this value, or the slave is another one.
@@ -133,7 +133,7 @@ impl Request {
     }
 }
 
-/// How a request failed.
+/// Failure of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// The slave answered with this code.
@@ -148,7 +148,7 @@ pub enum Refusal {
     Timeout,
 }
 
-/// How far a request is.
+/// Progress of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
     /// Nothing is asked for.
@@ -208,7 +208,7 @@ impl Client {
         self.send(Element::Idn, true, true, request.idn().0);
     }
 
-    /// What the master sends: control and four bytes.
+    /// Data of the master: control and four bytes.
     pub fn give(&self) -> (u16, u32) {
         (self.control, self.info)
     }

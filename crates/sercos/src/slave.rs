@@ -37,7 +37,7 @@ impl Side {
     }
 }
 
-/// Where a telegram leaves a slave.
+/// Port at which a telegram leaves a slave.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Exits {
     /// On the left.
@@ -49,7 +49,7 @@ pub struct Exits {
 /// Cycles without a beat that an announced phase may take to come.
 const SWITCH: u32 = 1000;
 
-/// What a slave counted.
+/// Counters of a slave.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Beats seen, each once.
@@ -137,7 +137,7 @@ impl Slave {
         self.phase
     }
 
-    /// What it counted.
+    /// Counts.
     pub fn counts(&self) -> Counts {
         self.counts
     }
@@ -173,7 +173,7 @@ impl Slave {
         }
     }
 
-    /// How it passes telegrams on.
+    /// Forwarding of telegrams.
     pub fn topology(&self) -> Topology {
         match self.idle {
             None => Topology::Through,

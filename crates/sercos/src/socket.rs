@@ -19,7 +19,7 @@ pub struct Socket {
     mac: Mac,
 }
 
-/// Why a socket could not be opened.
+/// Error of opening a socket.
 #[derive(Debug)]
 pub enum SocketError {
     /// The name is empty or too long.
@@ -184,7 +184,7 @@ impl Socket {
         Ok(std::array::from_fn(|i| address.sa_data[i] as u8))
     }
 
-    /// What we send is not received by ourselves.
+    /// Own frames are not received.
     fn ignore_own(&self) -> Result<(), SocketError> {
         let on: c_int = 1;
         // SAFETY: pointer and length are those of an integer that outlives the call.

@@ -36,12 +36,12 @@ impl Telegram {
         &mut self.bytes[..self.len]
     }
 
-    /// What is behind the headers.
+    /// Payload behind the headers.
     pub fn data(&self) -> &[u8] {
         &self.bytes[HEADER.min(self.len)..self.len]
     }
 
-    /// What is behind the headers.
+    /// Payload behind the headers.
     pub fn data_mut(&mut self) -> &mut [u8] {
         let len = self.len;
         &mut self.bytes[HEADER.min(len)..len]

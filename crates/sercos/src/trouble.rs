@@ -1,4 +1,4 @@
-//! What the master tells: events of the ring, and why a start failed.
+//! Events of the master: changes of the ring, and why a start failed.
 
 use crate::header::Phase;
 use crate::idn::Idn;
@@ -25,7 +25,7 @@ pub enum Event {
     Back(u16),
 }
 
-/// Why a start failed.
+/// Cause of a failed start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trouble {
     /// A cycle time that Sercos III does not know \[ns\].

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use veth::{ADDRESSES, CYCLE, DATA, FAR, LOSSES, NEAR, Veth, setup};
 
-/// How long a telegram may be under way \[ns\]: the host sometimes stops everybody.
+/// Timeout of a telegram \[ns\]: the host sometimes stops everybody.
 const PATIENCE: u64 = 100_000_000;
 
 /// Namespaces, unless this machine has none.

@@ -205,7 +205,7 @@ fn slaves_without_a_master_end_in_nrt() {
     assert!(wire.events.contains(&Event::Lost(3)) && wire.events.contains(&Event::Lost(7)));
 }
 
-/// What is waited for: all acknowledge telegrams, at both ports of a ring, however many data telegrams there are.
+/// Awaited telegrams: all acknowledge telegrams, at both ports of a ring, however many data telegrams there are.
 #[test]
 fn a_cycle_is_complete_when_everything_is_back() {
     let mut wire = Wire::new(&[3, 7], true);

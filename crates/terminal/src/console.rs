@@ -16,7 +16,7 @@ const LOOK: Duration = Duration::from_millis(100);
 enum Item {
     /// A line for the operator.
     Line(String),
-    /// How far the run is \[1/10 s\], and a word on it.
+    /// Progress of the run \[1/10 s\], and a word on it.
     Progress(u64, String),
     /// The result of the run, for standard output, and where to say that it is written.
     Result(String, SyncSender<bool>),
@@ -78,7 +78,7 @@ impl Console {
     }
 }
 
-/// What the thread owns.
+/// State of the thread.
 struct Owner {
     fold: Fold,
     bar: ProgressBar,
@@ -119,7 +119,7 @@ impl Owner {
         }
     }
 
-    /// What was folded, and what was dropped because the terminal did not keep up.
+    /// Lines folded, and lines dropped because the terminal did not keep up.
     fn tell_hidden(&mut self, last: bool) {
         for line in self.fold.summary((self.now)(), last) {
             self.show(&line);

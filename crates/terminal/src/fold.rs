@@ -14,7 +14,7 @@ const KINDS: usize = 64;
 /// Length of the window \[ns\].
 const WINDOW: u64 = 1_000_000_000;
 
-/// What was seen of one kind in this window.
+/// Events of one kind in this window.
 #[derive(Clone, Debug)]
 struct Kind {
     example: String,

@@ -32,7 +32,7 @@ pub fn result(text: Arguments) {
     }
 }
 
-/// Where remarks go instead of standard error.
+/// Destination of remarks instead of standard error.
 static CONSOLE: OnceLock<Console> = OnceLock::new();
 
 /// From now on the remarks of this process go through a console, which does not wait for the terminal.

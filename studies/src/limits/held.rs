@@ -1,9 +1,9 @@
 //! The simulated robot with its supply on and all joints told to stay where they are.
 
-use config::scene::Scene;
-use drives::cia402::{ENABLE_OPERATION, SHUTDOWN};
 use codec::frames::{DriveCommand, encode_targets};
 use codec::layout::Layout;
+use config::scene::Scene;
+use drives::cia402::{ENABLE_OPERATION, SHUTDOWN};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, SimState};
 use sim_backend::SimBackend;
 

@@ -19,7 +19,7 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream};
 
 use crate::{byte, chunk, own_directory};
 
-/// What stays from one script to the next.
+/// State from one script to the next.
 struct Broker {
     gate: Gate,
     exchange: RefCell<Exchange<'static>>,

@@ -1,4 +1,4 @@
-//! What tests of the executable `gangwerk` stand on: a place of its own for each, and processes that end with the test.
+//! Test harness for the executable `gangwerk`: a directory of its own for each test, and processes that end with it.
 
 mod place;
 mod running;

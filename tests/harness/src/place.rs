@@ -60,7 +60,7 @@ impl Site {
         self.dir.join(name)
     }
 
-    /// Where the processes meet.
+    /// Run directory.
     pub fn run_dir(&self) -> PathBuf {
         self.path("run")
     }

@@ -19,7 +19,7 @@ pub fn doze(seconds: f64) {
     clock::sleep_until(clock::now() + (seconds * 1e9) as u64);
 }
 
-/// How a command ended.
+/// Exit of a command.
 #[derive(Clone, Debug)]
 pub struct Said {
     /// Exit code; none: ended by a signal.

@@ -1,4 +1,4 @@
-//! What the master does at the end of a cycle, phase by phase: looks at what came in, and says what comes next.
+//! End of the master's cycle, phase by phase: evaluates what came in and decides what comes next.
 
 use super::{ANNOUNCED, GIVE_UP, Master, Node, State, VALID};
 use crate::device::{Connection, Status, Topology};
@@ -39,7 +39,7 @@ impl Master {
         };
     }
 
-    /// What is wrong with the ring in this cycle of CP0.
+    /// Problem of the ring in this cycle of CP0.
     fn check_ring(&self, port: usize) -> Option<Trouble> {
         match self.shape() {
             Shape::Nothing => return Some(Trouble::NoTelegrams),
