@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use crate::ending::{End, Ending};
+use chain::ending::{End, Ending};
 
 /// What the command line says of them.
 pub const HELP: &str = "\

@@ -12,8 +12,8 @@ use messages::{
 use terminal::Console;
 
 use super::tally::Tally;
-use crate::ending::Ending;
 use crate::sim::AFTER_FALL;
+use chain::ending::Ending;
 
 /// What the operator sees.
 pub(super) struct View {
