@@ -239,7 +239,7 @@ fn walk_turn() {
     assert!(number(&f, "distance_m") < 0.2, "{f:#}");
 }
 
-/// Over a bar of 10 cm that the simulation has as well. `studies/tests/steps_over.rs` sees that it is not touched.
+/// Over a bar of 10 cm that the simulation has as well. `chain/tests/steps_over.rs` sees that it is not touched.
 #[test]
 fn obstacle() {
     let f = figures("obstacle", 20.0);
@@ -321,7 +321,7 @@ fn push() {
     assert!(f["inclination_error_max_rad"][1].as_f64().unwrap() > 0.012, "{f:#}");
 }
 
-/// From the crane to a walk; what is told and refused on the way: `studies/tests/start_up.rs`.
+/// From the crane to a walk; what is told and refused on the way: `chain/tests/start_up.rs`.
 #[test]
 fn startup() {
     walks(&figures("startup", 30.0), 1.0);
@@ -334,7 +334,7 @@ fn demo() {
     assert!(number(&f, "steps") > 20.0 && heading > 1.0, "walks and turns: {f:#}");
 }
 
-/// Where she looks meanwhile: `studies/tests/gaze.rs`.
+/// Where she looks meanwhile: `chain/tests/gaze.rs`.
 #[test]
 fn gaze() {
     walks(&figures("gaze", 20.0), 2.0);

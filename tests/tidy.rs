@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 
 /// Layers from the bottom to the top. A crate depends only on crates of layers below its own, or of its own layer if
 /// that is not the processes'.
-const LAYERS: [&[&str]; 6] = [
+const LAYERS: [&[&str]; 7] = [
     &["contact", "curves", "drawing", "drives", "environment", "multibody", "terminal"],
     &["messages", "codec"],
     &["ipc", "realtime", "config", "recording", "daemon", "fieldbus", "sercos", "latency"],
     &["planner", "controller", "lowlevel", "sim-backend", "broker", "watchdog", "logger"],
+    &["chain"],
     &["studies", "harness", "fuzzing"],
     &["cli"],
 ];
@@ -267,7 +268,7 @@ fn quoted(document: &str) -> Vec<String> {
 
 /// Whether a quotation claims that a file or folder of the tree exists.
 fn is_path(word: &str) -> bool {
-    const FOLDERS: [&str; 16] = [
+    const FOLDERS: [&str; 17] = [
         "planner",
         "controller",
         "lowlevel",
@@ -278,6 +279,7 @@ fn is_path(word: &str) -> bool {
         "cli",
         "config",
         "crates",
+        "chain",
         "studies",
         "tests",
         "docs",
@@ -289,7 +291,7 @@ fn is_path(word: &str) -> bool {
     let ending = [".rs", ".toml", ".md", ".urdf", ".sh", ".py"].iter().any(|e| word.ends_with(e));
     let pattern = word.split(['/', '.']).any(|part| part == "NAME" || part == "PROCESS" || part == "SCENE");
     let first = word.split('/').next().unwrap_or("");
-    let in_folder = FOLDERS[..13].contains(&first) && word.contains('/');
+    let in_folder = FOLDERS[..14].contains(&first) && word.contains('/');
     plain && !pattern && (in_folder || ending && word.contains('/'))
 }
 

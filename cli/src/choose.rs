@@ -4,9 +4,9 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
+use chain::depth::{self, Choice};
 use config::Setup;
 use indicatif::ProgressBar;
-use studies::depth::{self, Choice};
 
 /// Loads a scene with all it names; a scene with `depth = "auto"` comes back with a method, and why it is that one. If
 /// `show`, the terminal sees what is being tried and one line of result.

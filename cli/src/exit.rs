@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use crate::ending::{End, Ending};
+use chain::ending::{End, Ending};
 
 /// Command-line options of the faults.
 pub const HELP: &str = "\

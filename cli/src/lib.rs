@@ -22,7 +22,5 @@ pub mod scorecard;
 pub mod sim;
 pub mod topic;
 
-pub use studies::{chain, ending, figures};
-
 /// Git commit that this program was built from, `-dirty` with changes; empty: unknown.
 pub const COMMIT: &str = env!("GANGWERK_COMMIT");

@@ -23,10 +23,9 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 use cli::run::Order;
 use config::BusAddress;
-use daemon::Commands;
-use ipc::{Mode, Space};
+use daemon::Connect;
+use ipc::Mode;
 use messages::Process;
-use messages::command::Domain;
 use realtime::{CountingAllocator, Grade, Stop};
 use run_command::Results;
 
@@ -356,7 +355,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         Task::Study { what, json } => study::run(&config()?, what, json),
         Task::Scorecard { only, quick, seed, json, out } => {
             let config = config()?;
-            let order = studies::scorecard::Order { config: &config, only: only.as_deref(), quick, seed };
+            let order = cli::scorecard::Order { config: &config, only: only.as_deref(), quick, seed };
             cli::scorecard::main(&order, json, out.as_deref())?;
             Ok(ExitCode::SUCCESS)
         }
@@ -385,30 +384,15 @@ fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
             last_words(&p.run, Process::Broker)?;
             broker::daemon::main(&p.run)?;
         }
-        Task::Watchdog(p) => {
-            watchdog::daemon::main(&p.run, Box::new(|s: &Space| commands("watchdog", &[Domain::System], s)))?;
-        }
-        Task::SimBackend(p) => {
-            sim_backend::daemon::main(
-                &p.run,
-                Box::new(|s: &Space| commands("sim-backend", &[Domain::Sim], s)),
-            )?;
-        }
+        Task::Watchdog(p) => watchdog::daemon::main(&p.run, commands(Process::Watchdog))?,
+        Task::SimBackend(p) => sim_backend::daemon::main(&p.run, commands(Process::SimBackend))?,
         Task::Logger(p) => {
             last_words(&p.run, Process::Logger)?;
             logger::daemon::run(&ipc::Run::load(&p.run)?, &Stop::on_signals()?)?;
         }
-        Task::Planner(p) => {
-            planner::daemon::main(&p.run, Box::new(|s: &Space| commands("planner", &[Domain::Walk], s)))?;
-        }
-        Task::Controller(p) => {
-            let connect = |s: &Space| commands("controller", &[Domain::Stabilize, Domain::Head], s);
-            controller::daemon::main(&p.run, Box::new(connect))?;
-        }
-        Task::Lowlevel(p) => {
-            let connect = |s: &Space| commands("lowlevel", &[Domain::System, Domain::Joint], s);
-            lowlevel::daemon::main(&p.run, Box::new(connect))?;
-        }
+        Task::Planner(p) => planner::daemon::main(&p.run, commands(Process::Planner))?,
+        Task::Controller(p) => controller::daemon::main(&p.run, commands(Process::Controller))?,
+        Task::Lowlevel(p) => lowlevel::daemon::main(&p.run, commands(Process::Lowlevel))?,
         _ => {}
     }
     Ok(ExitCode::SUCCESS)
@@ -420,9 +404,12 @@ fn last_words(dir: &std::path::Path, process: Process) -> Result<(), Box<dyn Err
     Ok(realtime::black_box::say_last_words(&path).map_err(|e| format!("{}: {e}", path.display()))?)
 }
 
-/// Live commands of these domains, through the broker.
-fn commands(name: &str, domains: &[Domain], space: &Space) -> Result<Commands, String> {
-    Ok(Box::new(broker::Client::start(name, domains, space)?))
+/// Live commands of a process's domains, through the broker.
+fn commands(process: Process) -> Connect<'static> {
+    Box::new(move |space| {
+        let client = broker::Client::start(process.name(), process.command_domains(), space)?;
+        Ok(Box::new(client))
+    })
 }
 
 fn draw(log: &std::path::Path, out: &std::path::Path) -> Result<(), Box<dyn Error>> {

@@ -133,7 +133,7 @@ fn results(
     if wanted == Results::Json {
         return Ok(serde_json::to_string(&figures)?);
     }
-    let mut text = cli::figures::table(&figures);
+    let mut text = chain::figures::table(&figures);
     if outcome.missing > 0 || outcome.log_broken {
         text += "\nINCOMPLETE: records are missing from the log, and these figures are of the others";
     }

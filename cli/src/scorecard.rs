@@ -4,7 +4,8 @@ use std::error::Error;
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use studies::scorecard::{Order, Report, pictured, run, table};
+pub use studies::scorecard::Order;
+use studies::scorecard::{Report, pictured, run, table};
 
 /// Walks what is ordered and prints the table, or one JSON object; with `out` both go there as files as well, and logs and
 /// pictures of the walks of which the thesis has pictures.

@@ -14,10 +14,10 @@ use messages::{Event, EventCode, GaitState, Header, Process, Record, Topic};
 use recording::Recorder;
 
 use crate::can::record::Traffic;
-use crate::chain::{Chain, Cycle};
-use crate::ending::Ending;
 use crate::exit::Exit;
-use crate::figures::{Figures, Gatherer};
+use chain::ending::Ending;
+use chain::figures::{Figures, Gatherer};
+use chain::{Chain, Cycle};
 
 /// \[s\] For so long a run of a simulated robot goes on after it fell: it then lies still.
 pub const AFTER_FALL: f64 = 2.0;

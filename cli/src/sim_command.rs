@@ -26,7 +26,7 @@ pub(crate) fn run(
     if json {
         println!("{}", serde_json::to_string(&figures)?);
     } else {
-        println!("{}", cli::figures::table(&figures));
+        println!("{}", chain::figures::table(&figures));
     }
     Ok(exit.into())
 }

@@ -300,7 +300,7 @@ fn realtime_study(
     let row = setup.system.process(messages::Process::Lowlevel);
     let (core, priority) = row.map_or((0, 0), |row| (row.core.unwrap_or(0), row.priority));
     let cyclictest = || {
-        let found = (seconds > 0).then(|| studies::cycles::cyclictest(Some(core), priority, seconds))?;
+        let found = (seconds > 0).then(|| realtime::cyclictest(Some(core), priority, seconds))?;
         found.inspect_err(|error| tracing::warn!("{error}")).ok()
     };
     std::fs::create_dir_all(out)

@@ -1,7 +1,7 @@
 //! The commands of a scene by bus cycle: so that every process, and every repetition, sees them at the same tick.
 
-use messages::Command;
 use messages::command::Domain;
+use messages::{Command, Process};
 
 use crate::Scene;
 
@@ -11,15 +11,16 @@ pub struct Timeline {
     /// (first tick at or after the command's time, command), ascending.
     entries: Vec<(u64, Command)>,
     next: usize,
-    domains: Vec<Domain>,
+    domains: &'static [Domain],
 }
 
 /// Time of reset and enable in a scene that gives none \[s\].
 const ARMING: [(f64, Command); 2] = [(0.02, Command::Reset), (0.04, Command::Enable)];
 
 impl Timeline {
-    /// The scene's commands of these domains. A scene that never enables the motors is armed at its beginning.
-    pub fn new(scene: &Scene, domains: &[Domain]) -> Self {
+    /// The scene's commands that `process` takes. A scene that never enables the motors is armed at its beginning.
+    pub fn new(scene: &Scene, process: Process) -> Self {
+        let domains = process.command_domains();
         // A time that is a whole number of cycles but for rounding belongs to that cycle.
         let tick = |time: f64| (time / scene.cycle - 1e-6).ceil().max(0.0) as u64;
         let armed = scene.commands.iter().any(|(_, command)| *command == Command::Enable);
@@ -27,7 +28,7 @@ impl Timeline {
         let own = arming.chain(&scene.commands).filter(|(_, command)| domains.contains(&command.address().0));
         let mut entries: Vec<_> = own.map(|(time, command)| (tick(*time), *command)).collect();
         entries.sort_by_key(|(tick, _)| *tick);
-        Self { entries, next: 0, domains: domains.to_vec() }
+        Self { entries, next: 0, domains }
     }
 
     /// For a process that was started again: what lies before `tick` has been done, or shall not be done late.
@@ -35,7 +36,7 @@ impl Timeline {
         self.next = self.entries.partition_point(|(t, _)| *t < tick);
     }
 
-    /// A live command comes in between, if it is of these domains: due at once.
+    /// A live command comes in between, if the process takes it: due at once.
     pub fn insert(&mut self, command: &Command) {
         if self.domains.contains(&command.address().0) {
             self.entries.insert(self.next, (0, *command));

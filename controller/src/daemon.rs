@@ -4,7 +4,6 @@ use crate::{Controller, verdict};
 use config::Timeline;
 use daemon::{Connect, Daemon};
 use ipc::Mode;
-use messages::command::Domain;
 use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, PARAMETERS_CONTROLLER, PLAN, PLANNER_TICK, SENSORS};
 use messages::{
     Command, ControllerState, Event, EventCode, Header, JointTargets, Live, Parameters, Plan, Process,
@@ -29,7 +28,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut controller = Controller::new(&d.setup.robot, &d.setup.gait, d.setup.scene.cycle)?;
     let mut silence = PlannerSilence::default();
     let mut commands = connect(&d.space)?;
-    let mut timeline = Timeline::new(&d.setup.scene, &[Domain::Head]);
+    let mut timeline = Timeline::new(&d.setup.scene, Process::Controller);
     if state.epoch() > 1 {
         timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
     }

@@ -5,7 +5,6 @@ use crate::{Fieldbus, JointLoop, fieldbus};
 use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Waiter, Writer};
-use messages::command::Domain;
 use messages::cycle_inputs::Used;
 use messages::topics::{
     BUS_TX, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, LOG_TICK, POWER, SENSORS, WATCHDOG_RESET,
@@ -41,7 +40,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         bell_bus: d.bell(&BUS_TX)?,
         bell_reset: d.bell(&WATCHDOG_RESET)?,
         waiter: d.space.waiter(Process::Lowlevel)?,
-        timeline: Timeline::new(&d.setup.scene, &[Domain::System, Domain::Joint]),
+        timeline: Timeline::new(&d.setup.scene, Process::Lowlevel),
         commands: connect(&d.space)?,
     };
     if ports.sensors.epoch() > 1 {

@@ -6,7 +6,6 @@ use crate::{Planner, vision};
 use config::Timeline;
 use daemon::{Connect, Daemon};
 use ipc::Mode;
-use messages::command::Domain;
 use messages::topics::{CONTROLLER_STATE, PARAMETERS_PLANNER, PLAN, PLANNER_TICK, SENSORS};
 use messages::{
     Command, ControllerState, Event, EventCode, Header, Live, Parameters, Plan, Process, Sensors,
@@ -62,7 +61,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let waiter = d.space.waiter(Process::Planner)?;
     let mut commands = connect(&d.space)?;
     let mut lease = WalkLease::default();
-    let mut timeline = Timeline::new(&d.setup.scene, &[Domain::Walk]);
+    let mut timeline = Timeline::new(&d.setup.scene, Process::Planner);
     let mut planner = Planner::of(&d.setup.gait, &d.setup.robot);
     planner.see(vision::known(&d.setup)?);
     let mut made = Box::new(Plan::default());

@@ -8,7 +8,6 @@ use crate::{SimBackend, far_end};
 use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Writer};
-use messages::command::Domain;
 use messages::topics::{POWER, SIM_STATE};
 use messages::{Command, EventCode, Header, Live, Power, Process, Reason, SimState};
 use realtime::clock;
@@ -30,7 +29,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         power: d.space.reader(&POWER)?,
         state: d.space.writer(&SIM_STATE)?,
         commands: connect(&d.space)?,
-        timeline: Timeline::new(&d.setup.scene, &[Domain::Sim]),
+        timeline: Timeline::new(&d.setup.scene, Process::SimBackend),
     };
     if ports.state.epoch() > 1 {
         ports.timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late

@@ -11,7 +11,7 @@ use drawing::{Chart, Figure};
 use messages::{Command, GaitState, SimState};
 use serde::Serialize;
 
-use crate::chain::Chain;
+use chain::Chain;
 
 /// Scenes that are walked, and their speeds for people \[km/h\].
 const SCENES: [(&str, f64); 2] = [("walk_2kmh", 2.0), ("walk_3kmh", 3.0)];

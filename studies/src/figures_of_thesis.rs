@@ -19,7 +19,7 @@ use messages::Command;
 use multibody::{Data, Model};
 use serde::Serialize;
 
-use crate::chain::Chain;
+use chain::Chain;
 
 /// \[s\] The gait is periodic by then ...
 const SETTLED: f64 = 10.0;

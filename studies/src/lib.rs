@@ -3,7 +3,6 @@
 //! | study | question |
 //! |---|---|
 //! | [`accuracy`] | which method is cheapest for a given accuracy? |
-//! | [`depth`] | which is cheapest for what this scene asks? |
 //! | [`push`] | which impulse does the walking robot survive? |
 //! | [`stability`] | how near to falling is a walk, how fast does it forget, what does it survive? |
 //! | [`limits`] | where do methods fail, and is it told? |
@@ -18,21 +17,16 @@
 //! | [`bus_faults`] | what does a walking robot do when the bus fails? |
 //! | [`cycles`] | how well did the processes of a run keep real time? |
 //!
-//! They work on [`chain`], all steps in one process, and judge by [`figures`] and [`ending`]; [`second`] replays a part of it.
+//! They work on [`chain`], a whole robot in one process; [`second`] replays a part of it.
 
 pub mod accuracy;
 pub mod arm_swing;
 pub mod bus;
 pub mod bus_faults;
-pub mod chain;
 pub mod cycles;
-pub mod depth;
-pub mod ending;
-pub mod figures;
 pub mod figures_of_thesis;
 pub mod limits;
 pub mod lines;
-mod parallel;
 pub mod push;
 pub mod scorecard;
 pub mod second;

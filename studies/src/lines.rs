@@ -16,7 +16,7 @@ use messages::{BusFrames, Frame, MAX_FRAMES, Sensors};
 use realtime::{Histogram, Period, Schedule, allocations, clock, prepare_thread};
 use serde::Serialize;
 
-use crate::cycles::cyclictest;
+use realtime::cyclictest;
 
 /// SCHED_FIFO priorities of near end and `cyclictest`, and of the far end.
 const PRIORITY: [u8; 2] = [80, 79];

@@ -10,8 +10,8 @@ use messages::command::PushCommand;
 use messages::{EventCode, GaitState, LEFT, RIGHT};
 use serde::Serialize;
 
-use crate::chain::{Chain, Cycle};
-use crate::parallel;
+use chain::parallel;
+use chain::{Chain, Cycle};
 
 /// \[s\] Length of a push.
 const DURATION: f64 = 0.1;

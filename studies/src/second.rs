@@ -9,7 +9,7 @@ use sim_backend::drive::{Drive, Motion};
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Outside, Plant};
 
-use crate::chain::Chain;
+use chain::Chain;
 
 /// What the drives are supplied with while a second is replayed: motors on, nobody pushes.
 pub const POWERED: Outside =

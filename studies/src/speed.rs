@@ -10,14 +10,13 @@ use std::path::Path;
 
 use config::{Gait, Setup, Timeline};
 use controller::Controller;
-use messages::command::Domain;
-use messages::{Command, ControllerState, GaitState, JointTargets, Plan, Sensors};
+use messages::{Command, ControllerState, GaitState, JointTargets, Plan, Process, Sensors};
 use planner::Planner;
 use realtime::clock::processor_time;
 use serde::Serialize;
 
-use crate::chain::Chain;
 use crate::simulation_speed::{self, Simulation};
+use chain::Chain;
 
 /// Runs of which the fastest counts, where the work is the same each time.
 const REPEATS: usize = 5;
@@ -146,7 +145,7 @@ impl Recording {
         mut seen: impl FnMut(usize, &mut dyn FnMut(&mut Plan) -> bool),
     ) {
         let mut planner = Planner::of(gait, &setup.robot);
-        let mut timeline = Timeline::new(&setup.scene, &[Domain::Walk]);
+        let mut timeline = Timeline::new(&setup.scene, Process::Planner);
         let mut due: Vec<Command> = Vec::with_capacity(16);
         for i in 0..self.sensors.len() {
             let tick = self.sensors[i].header.tick;
@@ -166,7 +165,7 @@ fn cycle_times(setup: &Setup, recording: &Recording) -> Result<Cycle, Box<dyn Er
     let mut plan = Box::new(Plan::default());
     let (mut planning, mut stabilizing, mut both) = (Vec::new(), Vec::new(), Vec::new());
     let mut same_targets = true;
-    let mut head = Timeline::new(&setup.scene, &[Domain::Head]);
+    let mut head = Timeline::new(&setup.scene, Process::Controller);
     recording.replay(setup, &setup.gait, |i, planner| {
         while let Some(command) = head.due(recording.sensors[i].header.tick) {
             controller.command(&command);

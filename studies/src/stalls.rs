@@ -10,8 +10,8 @@ use config::Setup;
 use messages::{EventCode, Process, SimState};
 use serde::Serialize;
 
-use crate::chain::Chain;
-use crate::parallel;
+use chain::Chain;
+use chain::parallel;
 
 /// Processes whose stop the chain can feel.
 pub const PROCESSES: [Process; 5] =

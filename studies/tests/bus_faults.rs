@@ -1,10 +1,10 @@
 //! Whatever happens to the bus while Lola walks: it is noticed and named in time, and the robot walks on or comes to rest.
 
+use chain::Chain;
 use config::Setup;
 use config::bus_fault::{BusFault, FaultKind};
 use messages::{Command, EventCode};
 use studies::bus_faults::{self, End};
-use studies::chain::Chain;
 
 /// Two instants of a stride: the page is made with more, `gangwerk study bus-faults`.
 const INSTANTS: usize = 2;

@@ -1,8 +1,8 @@
 //! Processes of a walking robot are stopped and go on: nothing comes back by itself, nothing jumps, nobody is blamed wrongly.
 
+use chain::Chain;
 use config::{Setup, root};
 use messages::{Command, EventCode, GaitState, Process};
-use studies::chain::Chain;
 use studies::stalls::{self, Trial};
 
 /// Random instants for each process and duration; `gangwerk study stalls` takes more.

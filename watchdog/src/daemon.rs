@@ -9,7 +9,6 @@ use crate::{Inputs, Supply, Watchdog, supply_event, verdict};
 use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, StopLine, Writer};
-use messages::command::Domain;
 use messages::topics::{POWER, WATCHDOG_RESET};
 use messages::{Command, EventCode, Header, Live, Power, Process, WatchdogReset};
 use realtime::{Period, Schedule, clock};
@@ -34,7 +33,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         reset: d.space.reader(&WATCHDOG_RESET)?,
         power: d.space.writer(&POWER)?,
         bell: d.bell(&POWER)?,
-        timeline: Timeline::new(&d.setup.scene, &[Domain::System]),
+        timeline: Timeline::new(&d.setup.scene, Process::Watchdog),
         commands: connect(&d.space)?,
         watchdog: Watchdog::new(d.setup.system.watchdog_missed, d.setup.system.toggle_missed),
     };

@@ -238,11 +238,11 @@ impl<'a, S: FnMut(&Captured) -> Result<(), InterfaceError>> Answering<'a, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chain::Chain;
     use config::Setup;
     use fieldbus::Form;
     use lowlevel::JointLoop;
     use messages::{BusFrames, Sensors};
-    use studies::chain::Chain;
 
     /// A walk's traffic on nine lines, what lowlevel made of it, and the targets it was given.
     fn recorded(setup: &Setup, ticks: u64) -> (Capture, Vec<Sensors>, Vec<messages::JointTargets>) {

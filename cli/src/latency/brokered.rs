@@ -7,8 +7,8 @@ use broker::Client;
 use broker::daemon::{Tcp, serve};
 use ipc::{Run, Space};
 use latency::{End, Link, Opened, spin};
-use messages::command::{Domain, PushCommand};
-use messages::{Command, CommandSource};
+use messages::command::PushCommand;
+use messages::{Command, CommandSource, Process};
 use realtime::Stop;
 
 use super::Helper;
@@ -33,12 +33,12 @@ pub(super) fn commands(dir: &Path, end: End, start: impl Fn(&str) -> Result<Chil
         Run::bare(dir).save().map_err(text)?;
         made = Some((Helper(start("broker")?), space));
     }
-    let (process, name, domains): (_, _, &[Domain]) = match end {
-        End::Near => (messages::Process::Observer, "operator", &[]),
-        End::Far => (messages::Process::SimBackend, "sim-backend", &[Domain::Sim]),
+    let (process, name) = match end {
+        End::Near => (Process::Observer, "operator"),
+        End::Far => (Process::SimBackend, Process::SimBackend.name()),
     };
     let space = Space::open(dir, process).map_err(text)?;
-    let client = Client::start(name, domains, &space)?;
+    let client = Client::start(name, process.command_domains(), &space)?;
     spin(|| client.statistics().connected.then_some(()))?;
     Ok(Box::new(Commands { client, end, stamp: 0, _space: space, _made: made }))
 }

@@ -14,8 +14,8 @@ use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::Duration;
 
 use latency::{End, Link, Opened, raw, system, topics};
+use realtime::cyclictest;
 use realtime::{Schedule, clock, prepare_thread};
-use studies::cycles::cyclictest;
 
 pub use report::{Report, Row};
 

@@ -30,8 +30,8 @@ use messages::{ControllerState, Process, SimState};
 use realtime::{Stop, clock};
 use terminal::Console;
 
-use crate::ending::Ending;
-use crate::figures::{Figures, Gatherer};
+use chain::ending::Ending;
+use chain::figures::{Figures, Gatherer};
 
 pub use crash::TEXT as CRASH_TEXT;
 

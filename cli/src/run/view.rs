@@ -12,8 +12,8 @@ use messages::{
 use terminal::Console;
 
 use super::tally::Tally;
-use crate::ending::Ending;
 use crate::sim::AFTER_FALL;
+use chain::ending::Ending;
 
 /// Operator's console.
 pub(super) struct View {

@@ -1,5 +1,6 @@
 //! The table of topics: the whole data plane on one page.
 
+use crate::command::Domain;
 use crate::record::Record;
 use crate::{
     BusFrames, CommandTaken, ControllerState, CycleInputs, CycleStats, Event, JointTargets, Parameters, Plan,
@@ -50,6 +51,18 @@ impl Process {
             Self::Controller => "controller",
             Self::Logger => "logger",
             Self::Observer => "observer",
+        }
+    }
+
+    /// Domains of the commands that the process takes: what the broker forwards to it, and what it takes of a scene.
+    pub const fn command_domains(self) -> &'static [Domain] {
+        match self {
+            Self::Watchdog => &[Domain::System],
+            Self::SimBackend => &[Domain::Sim],
+            Self::Lowlevel => &[Domain::System, Domain::Joint],
+            Self::Planner => &[Domain::Walk],
+            Self::Controller => &[Domain::Stabilize, Domain::Head],
+            Self::Broker | Self::Logger | Self::Observer => &[],
         }
     }
 }

@@ -6,11 +6,12 @@
 //! - [`CountingAllocator`]: counts what the cycle's thread allocates after arming.
 //! - [`black_box`], [`last_words`]: what a process leaves when it dies.
 //! - [`Stop`]: the request to end, by signal.
-//! - [`preflight`]: what this machine gives to real time.
+//! - [`preflight`]: what this machine gives to real time; [`cyclictest()`]: the same, measured.
 
 pub mod allocations;
 pub mod black_box;
 pub mod clock;
+mod cyclictest;
 mod histogram;
 pub mod last_words;
 mod meter;
@@ -21,6 +22,7 @@ mod stop;
 mod thread;
 
 pub use allocations::CountingAllocator;
+pub use cyclictest::cyclictest;
 pub use histogram::Histogram;
 pub use meter::CycleMeter;
 pub use period::{Period, Verdict};

@@ -22,7 +22,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use realtime::clock::processor_time;
 
 use super::{Chart, Given, Point};
-use crate::chain::Chain;
+use chain::Chain;
 
 /// Differences below this, in any unit, are rounding of what the bus carries.
 const LEAST: f64 = 1e-6;

@@ -20,8 +20,9 @@ use config::Setup;
 use messages::EventCode;
 use serde::Serialize;
 
-use crate::{parallel, push};
+use crate::push;
 use cases::Case;
+use chain::parallel;
 pub use text::table;
 use trial::Trial;
 

@@ -4,7 +4,7 @@ use config::bus_fault::BusFault;
 use messages::{EventCode, Process, SimState};
 
 use super::{End, is_reaction};
-use crate::chain::{Chain, Cycle};
+use chain::{Chain, Cycle};
 
 /// \[s\] How long the robot is watched.
 const WATCHED: f64 = 5.0;

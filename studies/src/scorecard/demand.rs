@@ -1,7 +1,7 @@
 //! What can be demanded of a walk, and what the figures say to it.
 
 use super::Goal;
-use crate::figures::Figures;
+use chain::figures::Figures;
 
 /// Which figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -179,7 +179,7 @@ fn perform(tasks: &[Task<'_>], progress: Progress<'_>) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// As [`crate::figures::Figures`] says it.
+/// As [`chain::figures::Figures`] says it.
 fn depth_of(scene: &config::Scene) -> String {
     format!("type {}, {:?} x {}", scene.depth, scene.integrator, scene.substeps)
 }

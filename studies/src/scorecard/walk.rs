@@ -8,8 +8,8 @@ use realtime::clock::thread_time;
 
 use super::entries::Entry;
 use super::{Order, Result, Row};
-use crate::chain::Chain;
-use crate::figures::{Figures, Gatherer};
+use chain::Chain;
+use chain::figures::{Figures, Gatherer};
 
 /// \[s\] Integration step of type 1, and of the types with motors, of which a shorter one changes no figure by more than
 /// a few percent.

@@ -24,8 +24,8 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::Serialize;
 
 use super::poincare::{self, Multipliers};
-use crate::chain::Chain;
 use crate::push::stride;
+use chain::Chain;
 
 /// Scenes shown unless another one is asked for.
 const SCENES: [&str; 2] = ["walk_1kmh", "walk_2kmh"];

@@ -12,7 +12,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use crate::parallel;
+use chain::parallel;
 
 /// Forward and backward differences, or two steps, may differ by this share for a map to count as smooth.
 const SMOOTH: f64 = 0.1;

@@ -19,9 +19,9 @@ use config::terrain::{Shape, TerrainObject, TerrainPose};
 use serde::Serialize;
 
 use super::picture;
-use crate::chain::Chain;
-use crate::parallel;
 use crate::push;
+use chain::Chain;
+use chain::parallel;
 
 /// Scene unless another one is asked for.
 const SCENE: &str = "walk_1kmh";

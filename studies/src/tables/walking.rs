@@ -7,8 +7,8 @@ use config::Setup;
 use drives::Resolution;
 use serde::Serialize;
 
-use crate::chain::Chain;
-use crate::figures::Gatherer;
+use chain::Chain;
+use chain::figures::Gatherer;
 
 /// \[s\] As long as it takes to walk at full speed for some strides.
 const DURATION: f64 = 12.0;

@@ -9,7 +9,6 @@ use std::error::Error;
 use config::{Setup, Timeline};
 use controller::Controller;
 use lowlevel::JointLoop;
-use messages::command::Domain;
 use messages::{
     BusFrames, Command, ControllerState, EventCode, JointTargets, Parameters, Plan, Power, Process, Sensors,
     SimState, WatchdogReset,
@@ -85,11 +84,11 @@ impl Chain {
         let answer = *sim.step(None, None).0;
         Ok(Self {
             dt: scene.cycle,
-            walk: Timeline::new(scene, &[Domain::Walk]),
-            system: Timeline::new(scene, &[Domain::System]),
-            head: Timeline::new(scene, &[Domain::Head]),
-            joint: Timeline::new(scene, &[Domain::System, Domain::Joint]),
-            simulated: Timeline::new(scene, &[Domain::Sim]),
+            walk: Timeline::new(scene, Process::Planner),
+            system: Timeline::new(scene, Process::Watchdog),
+            head: Timeline::new(scene, Process::Controller),
+            joint: Timeline::new(scene, Process::Lowlevel),
+            simulated: Timeline::new(scene, Process::SimBackend),
             due: Vec::with_capacity(64),
             planner,
             controller: Controller::new(robot, gait, scene.cycle)?,

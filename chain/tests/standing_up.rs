@@ -4,11 +4,11 @@
 //! Regression: from a crouch the arms returned to their comfortable angles within one cycle. Both feet together pressed with
 //! 7 weights, then the robot was in the air for 37 ms; on types 2 and 3 the joint loop cut the power, and it fell.
 
+use chain::Chain;
+use chain::figures::Gatherer;
 use config::scene::Integrator;
 use config::{Setup, root};
 use messages::{Command, EventCode, GaitState, MAX_JOINTS, Process};
-use studies::chain::Chain;
-use studies::figures::Gatherer;
 
 /// \[1\] What both feet carry together in the first second, in weights.
 const LOAD: [f64; 2] = [0.7, 1.3];

@@ -1,10 +1,10 @@
 //! Scene `gaze`: where the cameras of the simulated robot really look while it walks.
 
+use chain::Chain;
 use config::{Setup, root};
 use messages::{Command, EventCode, JointTargets, Process, SimState};
 use multibody::{Data, Frame, Model};
 use nalgebra::{Rotation3, Vector3};
-use studies::chain::Chain;
 
 /// \[rad\] Largest error of pursuit, on soles that slip.
 const PURSUIT: f64 = 0.008;

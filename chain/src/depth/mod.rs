@@ -16,7 +16,7 @@
 //! difference to the next type alone is no bound, since pads change the feet of a type 1 model more than motors do. Their
 //! sum is one (all outputs are norms of differences), up to the steps of the deepest type. A leg is not simulated once the
 //! ones before it are too long, so that a strict scene costs no trials of deep types for shallow ones.
-//! `studies/tests/depth.rs` holds estimates against that truth.
+//! `chain/tests/depth.rs` holds estimates against that truth.
 //!
 //! A scene is tried from its begin until [`WALKING`] seconds after its first walking command or push, but never beyond its
 //! end; `tolerance.trial` says otherwise. What happens later in the scene is not seen. The order of methods is a table, and

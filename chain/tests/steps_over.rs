@@ -1,7 +1,7 @@
 //! Feet on their way touch nothing: neither the bar that is stepped over nor the edge of the platform.
 
+use chain::Chain;
 use config::{Setup, root};
-use studies::chain::Chain;
 
 /// Largest force \[N\] on a foot that is moved forward in the air; each of them was lifted over `high` \[m\] at some time.
 fn force_on_the_way(scene: &str, high: f64) -> f64 {

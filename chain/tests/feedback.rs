@@ -1,8 +1,8 @@
 //! Figure 5.8: both feedback paths walk, on the model with motors and elastic gears.
 
+use chain::Chain;
 use config::Setup;
 use config::gait::Control;
-use studies::chain::Chain;
 
 /// Root mean square of the inclination errors \[rad\] over a walk of some steps, `None` if the robot falls.
 fn walk(scene: &str, set: impl Fn(&mut Control)) -> Option<f64> {

@@ -1,10 +1,10 @@
 //! `depth = "auto"`: what is chosen, what is said, and whether the estimate of the error holds.
 
+use chain::depth::{Choice, choose, judge, trial::Trial};
 use config::scene::Integrator::{Euler, SemiImplicit};
 use config::tolerance::{Method, Output, Tolerance};
 use config::{Setup, root};
 use messages::command::PushCommand;
-use studies::depth::{Choice, choose, judge, trial::Trial};
 
 /// Lola stands up; [`Tolerance::trial`] \[s\] of it.
 fn standing(trial: f64, outputs: &[(Output, f64)]) -> Setup {

@@ -8,7 +8,7 @@ use messages::{EventCode, SimState};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use realtime::clock::processor_time;
 
-use crate::chain::Chain;
+use crate::Chain;
 
 /// What a scene did with one method: the outputs of every cycle.
 pub struct Trial {

@@ -1,9 +1,9 @@
 //! From a robot on a crane without power to one that walks: the scene `startup`, and what is refused on the way.
 
+use chain::{Chain, Cycle};
 use config::{Setup, root};
 use messages::command::LowerCommand;
 use messages::{Command, EventCode, GaitState, Process, StartUp};
-use studies::chain::{Chain, Cycle};
 
 /// A scene as it is shipped, with the commands that `keep` keeps.
 fn scene(keep: impl Fn(f64, &Command) -> bool) -> Setup {

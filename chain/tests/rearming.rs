@@ -2,10 +2,10 @@
 //!
 //! Regression: the plan went on while the power was off, and the joints chased it with 11.5 rad/s when it came back.
 
+use chain::Chain;
 use config::scene::Integrator;
 use config::{Setup, root};
 use messages::Command;
-use studies::chain::Chain;
 
 /// Instants of the five scenes together.
 const INSTANTS: usize = 100;
