@@ -7,7 +7,7 @@ use config::Robot;
 use messages::{ControllerState, Sensors};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector2, Vector3};
 
-use crate::following::Desired;
+use crate::plan_follower::Desired;
 use crate::task_space::TaskSpace;
 use crate::torso::{self, TorsoAngles};
 

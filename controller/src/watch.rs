@@ -4,7 +4,7 @@
 use messages::{EventCode, Sensors};
 
 use crate::estimate::{Estimate, LOADED};
-use crate::following::Desired;
+use crate::plan_follower::Desired;
 
 /// \[N\] Normal force from which a foot counts as being in contact, above what a swinging foot's inertia reads; contact
 /// ends below [`LOADED`].
@@ -55,7 +55,7 @@ impl Watch {
     }
 
     /// Begins anew, as with a supply that was switched on.
-    pub(crate) fn restart(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.why = None;
         self.unloaded = 0;
     }
