@@ -7,10 +7,11 @@ mod robot;
 
 use messages::{Command, command::VelocityCommand};
 use planner::analytic::Analytic;
-use planner::collocation::{Collocation, Ends, State};
+use planner::boundary::{Ends, PlanarState};
+use planner::collocation::Collocation;
 use planner::pose::Pose;
 use planner::sole::Sole;
-use planner::zmp::Chain;
+use planner::zmp::ZmpProblem;
 use realtime::clock;
 use robot::{Robot, checks};
 use std::hint::black_box;
@@ -84,9 +85,9 @@ fn timed<T>(mut call: impl FnMut() -> T) -> [f64; 2] {
 }
 
 /// Steps straight on: two phases each.
-fn chain(steps: usize) -> Chain {
+fn chain(steps: usize) -> ZmpProblem {
     let sole = Sole { center: [0.0; 2], half: [0.1, 0.03] };
-    let mut chain = Chain::new();
+    let mut chain = ZmpProblem::new();
     let foot = |k: usize| Pose::new(0.4 * k as f64, if k.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0);
     chain.fix(0.0, [0.0, -0.1]);
     for k in 1..=steps {
@@ -101,7 +102,7 @@ fn chain(steps: usize) -> Chain {
     chain
 }
 
-const BEGIN: State = State { r: [0.01, -0.05], v: [0.2, 0.15] };
+const BEGIN: PlanarState = PlanarState { r: [0.01, -0.05], v: [0.2, 0.15] };
 
 fn closed_form(steps: usize) -> [f64; 2] {
     let mut reference = chain(steps);
@@ -123,16 +124,17 @@ fn collocation(steps: usize, per_step: usize) -> [f64; 2] {
         [-om2 * p[0], -om2 * p[1], -om2 * trapezoid(t, 0.0), -om2 * trapezoid(t, end - 0.8)]
     };
     let mut c = Box::new(Collocation::new());
-    c.n = steps * per_step;
-    let spacing = end / (c.n - 1) as f64;
-    for i in 0..c.n {
+    c.problem.n = steps * per_step;
+    let spacing = end / (c.problem.n - 1) as f64;
+    for i in 0..c.problem.n {
         let t = spacing * i as f64;
-        (c.t[i], c.om2[i], c.f[i], c.half[i]) = (t, om2, forces(t), forces(t + 0.5 * spacing));
+        (c.problem.t[i], c.problem.om2[i], c.problem.f[i], c.problem.half[i]) =
+            (t, om2, forces(t), forces(t + 0.5 * spacing));
     }
-    let target = State { r: [0.4 * steps as f64, -0.02], v: [0.2, 0.1] };
+    let target = PlanarState { r: [0.4 * steps as f64, -0.02], v: [0.2, 0.1] };
     timed(|| {
         c.solve();
-        let ends = Ends { begin: BEGIN.r, end: target.r, gamma: c.amplitudes(&BEGIN, &target) };
-        (0..c.n).map(|i| c.motion(i, &ends)[0][0]).sum::<f64>()
+        let ends = Ends { begin: BEGIN.r, end: target.r, gamma: c.ends().amplitudes(&BEGIN, &target) };
+        (0..c.problem.n).map(|i| c.motion(i, &ends)[0][0]).sum::<f64>()
     })
 }

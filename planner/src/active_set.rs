@@ -12,14 +12,14 @@
 //! | A_k, b_k | the point as seen from the next one: p_k = A_k p_{k+1} + b_k | 1, m |
 //! | M | what is left of the diagonal block after elimination | 1/s |
 
-use crate::zmp::{Chain, Hold, MAX_NODES};
+use crate::zmp::{Hold, MAX_NODES, ZmpProblem};
 
 /// Most rounds.
 const ROUNDS: usize = 24;
 /// \[m\] A point this far outside lies on the edge.
 const TOUCH: f64 = 1e-12;
 
-/// Which edge holds a point along each axis of its rectangle: -1, 1, or 0 for none.
+/// Edge that holds a point along each axis of its rectangle: -1, 1, or 0 for none.
 type Edges = [i8; 2];
 type Matrix = [[f64; 2]; 2];
 
@@ -31,7 +31,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-impl Chain {
+impl ZmpProblem {
     /// Solves (4.42) between given ends; `false` if the choice of edges does not settle.
     pub fn solve_directly(&mut self) -> bool {
         let n = self.nodes().len();
@@ -48,7 +48,7 @@ impl Chain {
         false
     }
 
-    /// Chooses the edges that hold each point, as its neighbours pull it; whether the choice has changed.
+    /// Chooses the edges that hold each point, as its neighbours pull it; `true` if the choice has changed.
     fn choose(&self, edges: &mut [Edges; MAX_NODES]) -> bool {
         let nodes = self.nodes();
         let mut changed = false;
@@ -73,6 +73,7 @@ impl Chain {
     fn place(&mut self, edges: &[Edges]) {
         let nodes = self.nodes_mut();
         let last = nodes.len() - 1;
+        // p_k = A_k p_{k+1} + b_k, from the first point, which is given, on.
         let mut seen = [([[0.0; 2]; 2], [0.0; 2]); MAX_NODES];
         seen[0].1 = nodes[0].p;
         for k in 1..last {
@@ -105,6 +106,7 @@ fn eliminate(
     r: [f64; 2],
     c: f64,
 ) -> (Matrix, [f64; 2]) {
+    // A point on an edge has one unknown, its way along it; in a corner it has none.
     let on_edge = |axis: [f64; 2]| {
         let origin = hold.point(held);
         let by = 1.0 / dot(axis, times(m, axis));

@@ -11,9 +11,9 @@
 //! | p_i, s_i | zero-moment point T/(m g) at control point i and its rate after it | m, m/s |
 //! | a_i, b_i | `y = a e^{-w (h - tau)} + b e^{-w tau} + p_i + s_i tau` (4.44), scaled, signs of the errata | m |
 
-use crate::collocation::State;
+use crate::boundary::PlanarState;
 use crate::verdict::Verdict;
-use crate::zmp::{Chain, MAX_NODES};
+use crate::zmp::{MAX_NODES, ZmpProblem};
 use curves::Sample;
 
 /// Most control points.
@@ -64,7 +64,7 @@ impl Analytic {
     }
 
     /// Takes a reference and lets it move in the middle of its first phase, a double support.
-    pub fn follow(&mut self, reference: &Chain) -> Verdict {
+    pub fn follow(&mut self, reference: &ZmpProblem) -> Verdict {
         let nodes = reference.nodes();
         let (Some(first), Some(second)) = (nodes.first(), nodes.get(1)) else { return Verdict::Degenerate };
         let middle = 0.5 * (first.time + second.time);
@@ -74,7 +74,7 @@ impl Analytic {
     }
 
     /// Moves the free control point so that the centre of gravity begins with `begin` and ends at `end`.
-    pub fn solve(&mut self, begin: &State, end: [f64; 2]) -> Verdict {
+    pub fn solve(&mut self, begin: &PlanarState, end: [f64; 2]) -> Verdict {
         let (n, w) = (self.n, self.w);
         if n < 3 || self.free == 0 {
             return Verdict::Degenerate;

@@ -16,10 +16,11 @@
 //! | z_l, y_l | leg mass point: `leg_height` above the sole frame's origin | m |
 //! | gamma | amplitude of a modification of the zero-moment point (4.49) | m |
 
-use crate::collocation::{Collocation, Ends, F, MAX_KNOTS};
+use crate::boundary::{EndSlopes, Ends, F, MAX_KNOTS, PlanarState};
+use crate::collocation::Collocation;
 use crate::feet::{FOOT_PIECES, FootPath};
 use crate::verdict::Verdict;
-use crate::zmp::{Chain, Shape};
+use crate::zmp::{Trapezoid, ZmpProblem};
 use config::gait;
 use curves::{Cursor, Path, Polyline, Sample};
 
@@ -36,7 +37,7 @@ pub type GroundPath = Polyline<1, 24>;
 
 /// Everything that drives the centre of gravity.
 #[derive(Clone, Copy)]
-pub struct Drive<'a> {
+pub struct Forcing<'a> {
     /// Feet: right, left.
     pub feet: &'a [FootPath; 2],
     /// Height of the body mass point \[m\].
@@ -44,9 +45,9 @@ pub struct Drive<'a> {
     /// Height of the zero-moment point \[m\].
     pub ground: &'a GroundPath,
     /// Reference of the zero-moment point.
-    pub zmp: &'a Chain,
+    pub zmp: &'a ZmpProblem,
     /// Where the zero-moment point may be modified.
-    pub shapes: [Shape; 2],
+    pub shapes: [Trapezoid; 2],
 }
 
 /// Sums over both leg mass points.
@@ -57,7 +58,7 @@ struct Legs {
     acceleration: [f64; 3],
 }
 
-/// What the ground must do for a motion.
+/// Forces that a motion asks of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
     /// Least vertical force over the robot's weight.
@@ -80,13 +81,13 @@ impl Ground {
     }
 }
 
-/// Collocation of the three-mass model over one interval.
+/// Three-mass model of one robot over one interval of time.
 #[derive(Clone)]
-pub struct ComSolver {
+pub struct ThreeMassModel {
     leg: f64,
     body: f64,
     leg_height: f64,
-    problem: Box<Collocation>,
+    method: Box<Collocation>,
     legs: Box<[Legs; MAX_KNOTS]>,
     heights: Box<[Sample<1>; MAX_KNOTS]>,
 }
@@ -98,21 +99,21 @@ struct Reader<'a> {
     ground: &'a GroundPath,
     /// Height of the ground, if it is level.
     level: Option<f64>,
-    zmp: &'a Chain,
+    zmp: &'a ZmpProblem,
     node: usize,
-    shapes: [Shape; 2],
+    shapes: [Trapezoid; 2],
 }
 
 impl<'a> Reader<'a> {
-    fn new(drive: &Drive<'a>) -> Self {
+    fn new(forcing: &Forcing<'a>) -> Self {
         Self {
-            feet: [drive.feet[0].cursor(), drive.feet[1].cursor()],
-            height: drive.height.cursor(),
-            ground: drive.ground,
-            level: level(drive.ground),
-            zmp: drive.zmp,
+            feet: [forcing.feet[0].cursor(), forcing.feet[1].cursor()],
+            height: forcing.height.cursor(),
+            ground: forcing.ground,
+            level: level(forcing.ground),
+            zmp: forcing.zmp,
             node: 0,
-            shapes: drive.shapes,
+            shapes: forcing.shapes,
         }
     }
 }
@@ -124,14 +125,14 @@ fn level(ground: &GroundPath) -> Option<f64> {
     values.iter().all(|v| v[0] == first).then_some(first)
 }
 
-impl ComSolver {
-    /// A solver for the masses of `model`.
+impl ThreeMassModel {
+    /// For the masses of `model`.
     pub fn new(model: &gait::Model) -> Self {
         Self {
             leg: model.leg_mass,
             body: 1.0 - 2.0 * model.leg_mass,
             leg_height: model.leg_height,
-            problem: Box::new(Collocation::new()),
+            method: Box::new(Collocation::new()),
             legs: Box::new([Legs::default(); MAX_KNOTS]),
             heights: Box::new([Sample::rest([0.0]); MAX_KNOTS]),
         }
@@ -184,9 +185,9 @@ impl ComSolver {
     }
 
     /// Places knots on all `marks` \[s\], and between them no farther apart than `spacing`, and solves (4.50).
-    pub fn solve(&mut self, drive: &Drive, marks: &[f64], spacing: f64) -> Verdict {
+    pub fn solve(&mut self, forcing: &Forcing<'_>, marks: &[f64], spacing: f64) -> Verdict {
         let mut n = 0;
-        self.problem.t[0] = marks[0];
+        self.method.problem.t[0] = marks[0];
         for pair in marks.windows(2) {
             let pieces = pieces(pair[1] - pair[0], spacing);
             if n + pieces >= MAX_KNOTS {
@@ -194,30 +195,38 @@ impl ComSolver {
             }
             let step = (pair[1] - pair[0]) / pieces as f64;
             for k in 1..pieces {
-                self.problem.t[n + k] = pair[0] + k as f64 * step;
+                self.method.problem.t[n + k] = pair[0] + k as f64 * step;
             }
             n += pieces;
-            self.problem.t[n] = pair[1];
+            self.method.problem.t[n] = pair[1];
         }
-        self.problem.n = n + 1;
-        let mut reader = Reader::new(drive);
+        self.method.problem.n = n + 1;
+        // Coefficients at the knots and half-way between them, read in the order of time.
+        let mut reader = Reader::new(forcing);
         for i in 0..=n {
-            let t = self.problem.t[i];
+            let t = self.method.problem.t[i];
             let (om2, f, legs, height) = self.forces(&mut reader, t);
-            self.problem.om2[i] = om2;
-            self.problem.f[i] = f;
+            self.method.problem.om2[i] = om2;
+            self.method.problem.f[i] = f;
             self.legs[i] = legs;
             self.heights[i] = height;
             if i < n {
-                self.problem.half[i] = self.forces(&mut reader, 0.5 * (t + self.problem.t[i + 1])).1;
+                self.method.problem.half[i] =
+                    self.forces(&mut reader, 0.5 * (t + self.method.problem.t[i + 1])).1;
             }
         }
-        self.problem.solve()
+        self.method.solve()
     }
 
-    /// The problem that was solved last.
-    pub fn problem(&self) -> &Collocation {
-        &self.problem
+    /// Slopes at both ends of the problem that was solved last.
+    pub fn ends(&self) -> EndSlopes {
+        self.method.ends()
+    }
+
+    /// Position and velocity of the body mass point where the problem that was solved last ends.
+    pub fn end(&self, ends: &Ends) -> PlanarState {
+        let [r, v, _] = self.method.motion(self.method.problem.n - 1, ends);
+        PlanarState { r, v }
     }
 
     /// Appends the robot's centre of gravity to `com`: quintics through position, velocity and acceleration at knots.
@@ -225,10 +234,10 @@ impl ComSolver {
     pub fn write<const N: usize>(&self, ends: &Ends, com: &mut Path<3, N>) -> Ground {
         let mut last = self.com(0, ends);
         let mut ground = Ground::UNTOUCHED.with(last.acceleration);
-        for i in 1..self.problem.n {
+        for i in 1..self.method.problem.n {
             let next = self.com(i, ends);
-            com.push(&last, &next, self.problem.t[i]);
-            let by_h = 1.0 / (self.problem.t[i] - self.problem.t[i - 1]);
+            com.push(&last, &next, self.method.problem.t[i]);
+            let by_h = 1.0 / (self.method.problem.t[i] - self.method.problem.t[i - 1]);
             // Half-way through a quintic, by Simpson's rule, which is exact for its acceleration.
             let half = std::array::from_fn(|d| {
                 1.5 * by_h * (next.velocity[d] - last.velocity[d])
@@ -241,7 +250,7 @@ impl ComSolver {
     }
 
     fn com(&self, i: usize, ends: &Ends) -> Sample<3> {
-        let ([r, v, a], z, legs) = (self.problem.motion(i, ends), &self.heights[i], &self.legs[i]);
+        let ([r, v, a], z, legs) = (self.method.motion(i, ends), &self.heights[i], &self.legs[i]);
         let of = |b: [f64; 2], z: [f64; 1], l: &[f64; 3]| {
             let b = [b[0], b[1], z[0]];
             std::array::from_fn(|d| self.body * b[d] + self.leg * l[d])

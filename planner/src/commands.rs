@@ -7,9 +7,9 @@ use config::Gait;
 use messages::Reason;
 use messages::command::{StepCommand, VelocityCommand};
 
-/// What the operator wants.
+/// Intent of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wish {
+pub enum Intent {
     /// Stay as it is, or stop.
     Rest,
     /// Take the standing pose.
@@ -51,7 +51,7 @@ pub fn from_velocity(c: &VelocityCommand, gait: &Gait) -> Result<Option<Paramete
     }
     let l = &gait.limits;
     let steps = [l.length, l.side, l.turn];
-    // What a step allows, at the shortest duration: no component is ever faster.
+    // The limits of a step at the shortest duration: no component is ever faster.
     let mut fastest = steps.map(|limit| limit.map(|x| x / l.duration[0]));
     let table = &gait.step.by_speed;
     let most = table.last().map_or(0.0, |row| row[0]);

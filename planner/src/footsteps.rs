@@ -1,122 +1,235 @@
-//! Step sequence planning: which foot lands where and when (thesis 4.3).
+//! Step sequence planning: which foot lands where and when (thesis 4.3), over obstacles (4.3.3) and as a skill wants it
+//! (4.3.4).
 
+use crate::obstacles::Obstacles;
+use crate::origin::Origin;
 use crate::pose::Pose;
-use crate::reactive::Blocked;
+use crate::reactive::Reactive;
+use crate::skills::{Script, Skill};
 use crate::steps::{Heights, MAX_STEPS, Parameters, Stride, next_foothold, next_width, nu};
-use crate::walk::{Builder, Origin};
+use crate::verdict::Blocked;
+use crate::walking_model::WalkingModel;
+use config::Gait;
 use messages::GaitState;
 
-impl Builder {
+/// Demand on the steps of one plan.
+#[derive(Clone, Copy, Debug)]
+pub struct StepDemand<'a> {
+    /// Where they begin.
+    pub from: &'a Origin,
+    /// Starting, walking or stopping.
+    pub state: GaitState,
+    /// Parameters that the steps are to reach.
+    pub wish: Parameters,
+    /// \[1\] Share of the largest change from step to step that is used.
+    pub share: f64,
+    /// Active skill.
+    pub skill: Skill,
+    /// Steps that it prescribes.
+    pub script: Script,
+}
+
+/// Steps of one plan.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepSequence {
+    pub(crate) strides: [Stride; MAX_STEPS],
+    pub(crate) count: usize,
+    /// Why the way is not free, if it is not.
+    pub(crate) blocked: Option<Blocked>,
+}
+
+impl StepSequence {
+    pub(crate) fn steps(&self) -> &[Stride] {
+        &self.strides[..self.count]
+    }
+}
+
+/// Planner of the step sequence.
+#[derive(Clone)]
+pub(crate) struct Footsteps {
+    /// Obstacles, if the gait can step over them.
+    reactive: Option<Reactive>,
+}
+
+/// What the steps before leave to the next one.
+struct Foothold {
+    stance: usize,
+    /// Where the stance foot stands, and where the swing foot comes from.
+    at: Pose,
+    takeoff: Pose,
+    heights: Heights,
+    /// Parameters and width of the step before.
+    parameters: Parameters,
+    width: f64,
+    /// Its end in cycles from the start of the plan.
+    end_cycle: u64,
+}
+
+impl Footsteps {
+    /// For a gait; nothing is known of obstacles yet.
+    pub(crate) fn new(gait: &Gait) -> Self {
+        let longest = gait.limits.length[1];
+        let reactive = gait.obstacles.map(|rules| Reactive { known: Obstacles::default(), rules, longest });
+        Self { reactive }
+    }
+
+    /// Obstacles that are known from now on; a gait without steps over obstacles knows of none.
+    pub(crate) fn see(&mut self, known: Obstacles) {
+        if let Some(reactive) = &mut self.reactive {
+            reactive.known = known;
+        }
+    }
+
+    /// Steps from `demand.from`, with the heights of the skill, lifted over obstacles.
+    pub(crate) fn plan(&self, model: &WalkingModel, demand: &StepDemand<'_>) -> StepSequence {
+        let mut sequence = self.sequence(model, demand);
+        let strides = &mut sequence.strides[..sequence.count];
+        demand.skill.after(demand.from, strides);
+        let touched = self.reactive.as_ref().and_then(|r| r.lift_over(model, demand.from, strides));
+        sequence.blocked = touched.or(sequence.blocked);
+        sequence
+    }
+
     /// Footholds and times (thesis 4.3); what makes a step before the last ones shorter than it should be.
-    pub(crate) fn sequence(
-        &self,
-        from: &Origin,
-        state: GaitState,
-        wish: &Parameters,
-        share: f64,
-        strides: &mut [Stride; MAX_STEPS],
-    ) -> (usize, Option<Blocked>) {
-        let mut last = Stride::NONE;
-        let mut stance = from.stance;
-        let mut foothold = from.feet[stance];
-        let mut takeoff = from.feet[1 - stance];
-        let mut heights =
-            Heights { takeoff: from.heights[1 - stance], lift: self.step.swing_height, ..Heights::default() };
-        let mut parameters = from.previous;
-        let mut width = from.width;
-        let mut n = 0;
-        let mut blocked = None;
-        let most = self.step.first_length;
+    fn sequence(&self, model: &WalkingModel, demand: &StepDemand<'_>) -> StepSequence {
+        let (from, state, step) = (demand.from, demand.state, &model.step);
+        let mut sequence = StepSequence { strides: [Stride::NONE; MAX_STEPS], count: 0, blocked: None };
+        let mut last = Foothold::first(from, step.swing_height);
         loop {
-            let closing = if state == GaitState::Stopping { n > 0 } else { n > 2 };
-            let closing = match self.script.length(n) {
-                Some(_) => false,
-                None => self.script.closes(n) || (closing && parameters.length.abs() <= most),
-            };
-            let closing = closing || n + 1 == MAX_STEPS;
-            let ending = state == GaitState::Stopping || n >= 2;
-            let nu = nu(stance);
-            let landing = if closing {
-                parameters = Parameters::on_the_spot(parameters.duration);
-                width = self.step.width;
-                foothold.compose(&Pose::new(0.0, nu * width, 0.0))
+            let n = sequence.count;
+            let (stance, nu, sole) = (last.stance, nu(last.stance), &model.soles[last.stance]);
+            let closing = closes(demand, n, &last.parameters, step.first_length);
+            let (parameters, width, landing) = if closing {
+                // The swing foot is put beside the stance foot.
+                let parameters = Parameters::on_the_spot(last.parameters.duration);
+                (parameters, step.width, last.at.compose(&Pose::new(0.0, nu * step.width, 0.0)))
             } else {
-                let rest = Parameters::on_the_spot(parameters.duration);
-                parameters = if ending {
-                    parameters.towards(&rest, &self.step, 1.0)
-                } else {
-                    parameters.towards(wish, &self.step, share)
-                };
-                if n == 0 && state == GaitState::Starting {
-                    // Feet that stand side by side have no step before: a step that ends a walk may be as long.
-                    parameters.length = wish.length.clamp(-most * share, most * share);
-                }
-                let wish = if ending { &rest } else { wish };
-                let before = if n == 0 { from.previous.duration } else { last.parameters.duration };
-                parameters = match self.script.length(n) {
-                    Some(length) => Parameters { length, ..parameters },
-                    None => {
-                        let (free, why) = self.clear(from, &foothold, stance, before, &parameters, wish);
-                        blocked = blocked.or(why);
-                        free
-                    }
-                };
-                let w_n = next_width(&parameters, width, nu, &self.step, &self.soles[stance]);
-                let landing =
-                    foothold.compose(&next_foothold(&parameters, width, w_n, nu, &self.soles[stance]));
-                width = w_n;
-                landing
+                let (parameters, why) = self.parameters(model, demand, n, &last);
+                sequence.blocked = sequence.blocked.or(why);
+                let width = next_width(&parameters, last.width, nu, step, sole);
+                let next = next_foothold(&parameters, last.width, width, nu, sole);
+                (parameters, width, last.at.compose(&next))
             };
-            let begin = last.end_cycle as f64 * self.cycle_s;
-            let support = self.step.double_support * parameters.duration;
+
+            // Phases: the share of the double support, but for the first step out of standing. A foot that touched early
+            // stands in a longer one, in which the weight moves when it would have.
+            let begin = last.end_cycle as f64 * model.cycle_s;
+            let support = step.double_support * parameters.duration;
             let swing = parameters.duration - support;
-            let support = if n == 0 && state == GaitState::Starting { self.step.start_time } else { support };
+            let support = if n == 0 && state == GaitState::Starting { step.start_time } else { support };
             let support = if n == 0 { support + from.early.map_or(0.0, |e| e.0) } else { support };
-            let end_cycle = last.end_cycle + self.cycles(support + swing);
-            last = Stride {
+            let end_cycle = last.end_cycle + model.cycles(support + swing);
+            let stride = Stride {
                 parameters,
                 stance,
                 width,
                 begin,
                 lift: begin + support,
-                end: end_cycle as f64 * self.cycle_s,
+                end: end_cycle as f64 * model.cycle_s,
                 end_cycle,
-                foothold,
-                takeoff,
+                foothold: last.at,
+                takeoff: last.takeoff,
                 landing,
-                heights,
+                heights: last.heights,
             };
-            strides[n] = last;
-            n += 1;
+            sequence.strides[n] = stride;
+            sequence.count += 1;
             if closing {
-                return (n, blocked.filter(|_| state != GaitState::Stopping));
+                // A robot that stops anyway is not made to stop by an obstacle.
+                sequence.blocked = sequence.blocked.filter(|_| state != GaitState::Stopping);
+                return sequence;
             }
-            takeoff = foothold;
-            foothold = landing;
-            heights = Heights { foothold: heights.landing, takeoff: heights.foothold, ..heights };
-            stance = 1 - stance;
+            last = Foothold::after(&stride);
         }
     }
 
-    /// The step `p` from `foothold`, made so that it does not end on an obstacle or at the wall of a skill, and why if
-    /// it is shorter for that. `before` \[s\] is how long the step before took.
+    /// Parameters of step `n`, which does not close the feet, and why it is shorter than it should be, if it is.
+    fn parameters(
+        &self,
+        model: &WalkingModel,
+        demand: &StepDemand<'_>,
+        n: usize,
+        last: &Foothold,
+    ) -> (Parameters, Option<Blocked>) {
+        let step = &model.step;
+        // From the third step on, and when stopping, a plan comes to rest by itself.
+        let ending = demand.state == GaitState::Stopping || n >= 2;
+        let rest = Parameters::on_the_spot(last.parameters.duration);
+        let (wish, share) = if ending { (&rest, 1.0) } else { (&demand.wish, demand.share) };
+        let mut parameters = last.parameters.towards(wish, step, share);
+        if n == 0 && demand.state == GaitState::Starting {
+            // Feet that stand side by side have no step before: a step that ends a walk may be as long.
+            let most = step.first_length * demand.share;
+            parameters.length = demand.wish.length.clamp(-most, most);
+        }
+        match demand.script.length(n) {
+            Some(length) => (Parameters { length, ..parameters }, None),
+            None => self.clear(model, demand, last, &parameters, wish),
+        }
+    }
+
+    /// The step `p`, made so that it does not end on an obstacle or at the wall of a skill, and why if it is shorter for
+    /// that.
     fn clear(
         &self,
-        from: &Origin,
-        foothold: &Pose,
-        stance: usize,
-        before: f64,
+        model: &WalkingModel,
+        demand: &StepDemand<'_>,
+        last: &Foothold,
         p: &Parameters,
         wish: &Parameters,
     ) -> (Parameters, Option<Blocked>) {
-        let room = self.script.wall - foothold.x;
+        let from = demand.from;
+        let room = demand.script.wall - last.at.x;
         let mut free = Parameters { length: p.length.min(room.max(0.0)), ..*p };
-        let adapted = self.adapt(from.frame.compose(foothold), from.height, stance, &free, wish);
+        let Some(reactive) = &self.reactive else { return (free, None) };
+        let at = from.frame.compose(&last.at);
+        let adapted = reactive.adapt(model, at, from.height, last.stance, &free, wish);
         free.length = adapted.length;
-        if let (true, Some(r)) = (adapted.near, &self.reactive) {
-            let slower = r.rules.duration.min(before + self.step.change_duration);
+        if adapted.near {
+            let slower = reactive.rules.duration.min(last.parameters.duration + model.step.change_duration);
             free.duration = free.duration.max(slower);
         }
         (free, adapted.blocked)
+    }
+}
+
+/// Does step `n` close the feet? `previous` are the parameters of the step before, `first` \[m\] is the longest step into
+/// standing.
+fn closes(demand: &StepDemand<'_>, n: usize, previous: &Parameters, first: f64) -> bool {
+    let last_but_one = if demand.state == GaitState::Stopping { n > 0 } else { n > 2 };
+    let closing = match demand.script.length(n) {
+        Some(_) => false,
+        None => demand.script.closes(n) || (last_but_one && previous.length.abs() <= first),
+    };
+    closing || n + 1 == MAX_STEPS
+}
+
+impl Foothold {
+    /// Where a plan begins.
+    fn first(from: &Origin, swing_height: f64) -> Self {
+        let stance = from.stance;
+        Self {
+            stance,
+            at: from.feet[stance],
+            takeoff: from.feet[1 - stance],
+            heights: Heights { takeoff: from.heights[1 - stance], lift: swing_height, ..Heights::default() },
+            parameters: from.previous,
+            width: from.width,
+            end_cycle: 0,
+        }
+    }
+
+    /// The foot that has landed carries the next step.
+    fn after(s: &Stride) -> Self {
+        let heights = Heights { foothold: s.heights.landing, takeoff: s.heights.foothold, ..s.heights };
+        Self {
+            stance: 1 - s.stance,
+            at: s.landing,
+            takeoff: s.foothold,
+            heights,
+            parameters: s.parameters,
+            width: s.width,
+            end_cycle: s.end_cycle,
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Load factors: how much each foot carries (thesis 4.8, (4.62); gap 15).
+//! Load factors: share of each foot in the contact forces (thesis 4.8, (4.62); gap 15).
 //!
 //! Linear over a double support, with corners smoothed by quintics, and moved with the zero-moment point where that
 //! leaves its straight way. By (4.64) both feet share what is left of the moment about the weighted middle of their
@@ -8,8 +8,10 @@
 //! rectangles, and a plan whose zero-moment point leaves that is none.
 
 use crate::pose::Pose;
+use crate::segment::{Horizon, standing_shape};
 use crate::sole::Sole;
-use curves::{Path, Sample};
+use curves::{Path, Polyline, Sample};
+use messages::LEFT;
 
 /// Load factor rho of the left foot over time.
 pub type LoadPath = Path<1, 40>;
@@ -63,6 +65,7 @@ impl DoubleSupport<'_> {
                 - shares[0] * self.feet[0].array()[d]
                 - shares[1] * self.feet[1].array()[d]
         });
+        // The point e in each sole, as far as the sole reaches.
         let along = |[c, s]: [f64; 2], v: [f64; 2]| [c * v[0] + s * v[1], c * v[1] - s * v[0]];
         let mut shared = f64::INFINITY;
         let mut off = e; // from the middle of what both can carry
@@ -130,6 +133,45 @@ impl DoubleSupport<'_> {
             [least[0].min(m[0]), least[1].min(m[1])]
         })
     }
+}
+
+/// Writes the load factors over the steps of a plan, with its zero-moment point `zmp` (thesis 4.8). Returns the least distance
+/// \[m\] of the zero-moment point from the edge of what both soles can carry.
+pub(crate) fn lay<const N: usize>(
+    soles: &[Sole; 2],
+    horizon: &Horizon<'_>,
+    zmp: &Polyline<2, N>,
+    path: &mut LoadPath,
+) -> f64 {
+    let mut load = horizon.from.load_left;
+    path.restart(0.0, [load]);
+    let mut least = f64::INFINITY;
+    let mut lay = |begin: f64, end: f64, until: f64, feet: [Pose; 2], to: f64| {
+        // Kinks of a modification in the double support, left out where there is none.
+        let times = standing_shape(begin, end).corners();
+        let kinks = times.map(|t| (t, zmp.sample(t).0));
+        let straight = [kinks[0], kinks[3]];
+        let leaves = |k: usize| {
+            let s = (kinks[k].0 - begin) / (end - begin);
+            (0..2).any(|d| (kinks[k].1[d] - (1.0 - s) * kinks[0].1[d] - s * kinks[3].1[d]).abs() > 1e-9)
+        };
+        let kinks = if leaves(1) || leaves(2) { &kinks[..] } else { &straight[..] };
+        let support = DoubleSupport { kinks, feet, soles, ends: [load, to] };
+        least = least.min(support.lay(path));
+        hold(path, to, until);
+        load = to;
+    };
+    // Each step begins with a double support, and the last one is followed by that in which the robot comes to rest.
+    for s in horizon.strides {
+        let mut feet = [s.foothold; 2];
+        feet[1 - s.stance] = s.takeoff;
+        lay(s.begin, s.lift, s.end, feet, if s.stance == LEFT { 1.0 } else { 0.0 });
+    }
+    let last = horizon.last();
+    let mut feet = [last.foothold; 2];
+    feet[1 - last.stance] = last.landing;
+    lay(last.end, horizon.end, horizon.end, feet, 0.5);
+    least
 }
 
 /// Lines through the corners, each corner replaced by a quintic that takes `share` of the shorter piece beside it.

@@ -10,15 +10,16 @@
 //! | N | number of them | 1 |
 
 use crate::commands;
+use crate::origin::Origin;
 use crate::pose::Pose;
 use crate::sole::Sole;
 use crate::steps::{Parameters, Stride};
-use crate::walk::Origin;
+
 use config::Gait;
 use messages::EventCode;
 use messages::command::{DistanceCommand, PlatformCommand, VelocityCommand};
 
-/// \[m\] What is no way any more.
+/// \[m\] Remaining distance treated as zero.
 const NOTHING: f64 = 1e-6;
 /// Most steps that are prescribed: with them and the last one a plan has knots enough.
 const MOST: usize = 4;
@@ -63,12 +64,12 @@ impl Script {
     }
 }
 
-/// A way along the x axis of a place.
+/// Course of a skill: along the x axis of a pose, so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Way {
+pub struct Course {
     /// Between the feet where it begins, in I_0.
     begin: Pose,
-    /// \[m\] How far, forward or backward.
+    /// \[m\] Its length, negative backwards.
     length: f64,
     /// What a step does at most.
     cruise: Parameters,
@@ -76,28 +77,28 @@ pub struct Way {
     change: f64,
 }
 
-/// What is being done.
+/// Skill: a task that is being done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Skill {
     /// Normal walking: nothing is modified.
     Walk,
     /// Fixed distance, from standing to standing.
-    Distance(Way),
+    Distance(Course),
     /// Onto a platform or off it: the way to its edge, how far behind the last foothold before it the next one lies
     /// \[m\], height in I_0 of the ground before it and behind it \[m\], the edge itself on the way \[m\].
     Platform {
         /// To the last foothold before the edge.
-        way: Way,
+        way: Course,
         /// \[m\] Length of the step over the edge.
         over: f64,
-        /// \[m\] Where the edge is on the way.
+        /// \[m\] Position of the edge on the way.
         edge: f64,
         /// \[m\] Heights in I_0 of the ground before and behind it.
         ground: [f64; 2],
     },
 }
 
-/// What is to be done next, from standing.
+/// Task to begin with from standing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Task {
     /// See [`Skill::Distance`].
@@ -107,7 +108,7 @@ pub enum Task {
 }
 
 impl Task {
-    /// Why the robot cannot do it: code and detail of an event.
+    /// Checks that the robot can do it; otherwise code and detail of an event.
     ///
     /// # Errors
     /// Out of the limits of the gait; a platform too high, too far for one step or too near.
@@ -145,7 +146,7 @@ impl Task {
             Self::Distance(d) => {
                 let cruise = cruise(d, gait)?;
                 let change = gait.step.change[0].min(d.acceleration * cruise.duration * cruise.duration);
-                Some(Skill::Distance(Way { begin, length: d.distance, cruise, change }))
+                Some(Skill::Distance(Course { begin, length: d.distance, cruise, change }))
             }
             Self::Platform(p) => {
                 let rules = gait.obstacles.as_ref()?;
@@ -153,7 +154,7 @@ impl Task {
                 let cruise =
                     Parameters { length: gait.step.first_length, ..Parameters::on_the_spot(rules.duration) };
                 Some(Skill::Platform {
-                    way: Way { begin, length, cruise, change: gait.step.change[0] },
+                    way: Course { begin, length, cruise, change: gait.step.change[0] },
                     over: 2.0 * (sole.half[0] + rules.distance),
                     edge: p.distance,
                     ground: [from.height, from.height + p.height],
@@ -218,7 +219,7 @@ fn cruise(d: &DistanceCommand, gait: &Gait) -> Option<Parameters> {
     commands::from_velocity(&VelocityCommand { forward, left: 0.0, turn: 0.0 }, gait).ok().flatten()
 }
 
-impl Way {
+impl Course {
     /// \[m\] r
     fn left(&self, from: &Origin) -> f64 {
         self.length - self.begin.relative(&from.frame).x
@@ -271,7 +272,7 @@ impl Skill {
 /// The fewest steps from `previous` \[m\] to the end of a way of `r` \[m\], each at most as long as it may be: no longer
 /// than those of the cruise, no more than a change away from the one before, and the last one short enough to stop.
 /// Scaled to end exactly there. Without an end in sight, those of the cruise. At most `most_steps` are prescribed.
-fn lengths(r: f64, previous: f64, way: &Way, (first, most_steps): (f64, usize), script: &mut Script) {
+fn lengths(r: f64, previous: f64, way: &Course, (first, most_steps): (f64, usize), script: &mut Script) {
     let most = way.cruise.length.abs();
     let step = |i: usize, n: usize| {
         let up = previous + i as f64 * way.change;
@@ -292,9 +293,9 @@ fn lengths(r: f64, previous: f64, way: &Way, (first, most_steps): (f64, usize), 
 mod tests {
     use super::*;
 
-    fn way(length: f64, most: f64, change: f64) -> Way {
+    fn way(length: f64, most: f64, change: f64) -> Course {
         let cruise = Parameters { length: most, ..Parameters::on_the_spot(1.0) };
-        Way { begin: Pose::default(), length, cruise, change }
+        Course { begin: Pose::default(), length, cruise, change }
     }
 
     /// All the way, step by step, as the planner asks.

@@ -17,7 +17,10 @@ use config::gait;
 /// Most steps a plan can hold: the plan's load factors have room for seven.
 pub const MAX_STEPS: usize = 7;
 
-/// What can be asked of a step (table 4.1).
+/// \[m\] Rounding of footholds.
+pub(crate) const ROUNDING: f64 = 1e-6;
+
+/// Parameters of a step (table 4.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
     /// \[m\] L_x
@@ -103,6 +106,17 @@ impl Stride {
         landing: Pose::new(0.0, 0.0, 0.0),
         heights: Heights { foothold: 0.0, takeoff: 0.0, landing: 0.0, lift: 0.0 },
     };
+
+    /// A step down?
+    pub(crate) fn descends(&self) -> bool {
+        self.heights.landing < self.heights.foothold - ROUNDING
+    }
+
+    /// Is the swing foot lifted higher than in a step on level ground?
+    pub(crate) fn is_high(&self, step: &gait::Step) -> bool {
+        let h = &self.heights;
+        h.lift > step.swing_height + ROUNDING || (h.landing - h.takeoff).abs() > ROUNDING
+    }
 }
 
 /// nu of a stance foot: +1 right, -1 left.
@@ -114,7 +128,7 @@ fn sinc(x: f64) -> f64 {
     if x.abs() < 1e-8 { 1.0 } else { x.sin() / x }
 }
 
-/// Where the middle of the next foot stands, seen from the middle of the stance foot (4.1).
+/// \[m\] Middle of the next foothold, seen from the middle of the stance foot (4.1).
 pub fn displacement(p: &Parameters, w_c: f64, w_n: f64, nu: f64) -> [f64; 2] {
     let phi = p.turn;
     let b = p.side + nu * w_n / 2.0;

@@ -1,6 +1,11 @@
-//! What is wrong with a plan, if anything: every solver says it, the planner acts on it.
+//! Verdict on a plan: every solver gives it, the planner acts on it.
 
-/// The first thing that is wrong.
+use messages::EventCode;
+
+/// Obstacle in the way: code and detail of the event.
+pub(crate) type Blocked = (EventCode, u64);
+
+/// First fault of a plan, if any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Solved, and it can be walked.
@@ -21,7 +26,7 @@ pub enum Verdict {
     TooLong,
     /// Sweeps ran out before the optimum.
     Unsettled,
-    /// An input is not a number, or something overflowed.
+    /// An input is NaN or infinite, or something overflowed.
     NotFinite,
 }
 

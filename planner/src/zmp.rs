@@ -1,5 +1,5 @@
-//! ZMP reference: the slowest way of the zero-moment point through the support polygons (4.41)-(4.43), and the shapes
-//! by which it may be modified (4.49).
+//! Minimum-velocity reference of the zero-moment point through the support polygons (4.41)-(4.43), and the shapes by which
+//! it may be modified (4.49).
 //!
 //! ```text
 //! Variables    p_k   zero-moment point at the k-th phase boundary            [m]  I
@@ -8,19 +8,19 @@
 //! ```
 //! At a phase boundary the polygons of both phases hold; their intersection is the single-support one (errata 2.10).
 //! Solved directly (`active_set`). Projected Gauss-Seidel is what the thesis does, the reserve if the direct way should
-//! not settle, and solves the periodic chain: both components together, because the Hessian block is isotropic and the
+//! not settle, and solves the periodic problem: both components together, because the Hessian block is isotropic and the
 //! Euclidean projection finds the optimum.
 
 use crate::pose::Pose;
 use crate::sole::Sole;
 use crate::verdict::Verdict;
 
-/// Most phase boundaries of one chain.
+/// Most phase boundaries of one problem.
 pub const MAX_NODES: usize = 48;
 /// Most sweeps.
 pub const SWEEPS: usize = 2000;
 const TOLERANCE: f64 = 1e-9;
-/// Over-relaxation of chains of more than this many boundaries (errata 2.10).
+/// Over-relaxation of problems of more than this many boundaries (errata 2.10).
 const RELAXATION: (usize, f64) = (12, 1.6);
 
 /// A rectangle that holds a point: a shrunk sole on the ground.
@@ -79,25 +79,25 @@ pub struct Node {
     pub time: f64,
     /// \[m\]
     pub p: [f64; 2],
-    /// What holds the point; none: the point is given.
+    /// Rectangle that holds the point; none: the point is given.
     pub hold: Option<Hold>,
 }
 
 /// Phase boundaries in the order of time.
 #[derive(Clone, Copy, Debug)]
-pub struct Chain {
+pub struct ZmpProblem {
     len: usize,
     full: bool,
     nodes: [Node; MAX_NODES],
 }
 
-impl Default for Chain {
+impl Default for ZmpProblem {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Chain {
+impl ZmpProblem {
     /// No boundaries yet.
     pub const fn new() -> Self {
         Self { len: 0, full: false, nodes: [Node { time: 0.0, p: [0.0; 2], hold: None }; MAX_NODES] }
@@ -136,7 +136,7 @@ impl Chain {
         &mut self.nodes[..self.len]
     }
 
-    /// What is wrong with the problem before it is solved.
+    /// Verdict on the problem before it is solved.
     fn posed(&self) -> Verdict {
         let nodes = self.nodes();
         if self.full {
@@ -176,7 +176,7 @@ impl Chain {
         Verdict::Unsettled
     }
 
-    /// One sweep of [`Chain::relax`]; how far \[m\] a point moved at most.
+    /// One sweep of [`ZmpProblem::relax`]; how far \[m\] a point moved at most.
     pub fn sweep(&mut self, omega: f64) -> f64 {
         let mut change = 0.0f64;
         for k in 1..self.len.saturating_sub(1) {
@@ -186,7 +186,7 @@ impl Chain {
         change
     }
 
-    /// Solves (4.42) for a chain whose last point is the first one moved by the rigid motion that takes the pose
+    /// Solves (4.42) for a problem whose last point is the first one moved by the rigid motion that takes the pose
     /// `from` to `to` (gap 12).
     pub fn solve_periodic(&mut self, from: &Pose, to: &Pose) -> Verdict {
         let wrong = self.posed();
@@ -194,9 +194,10 @@ impl Chain {
         if wrong != Verdict::Sound || n < 3 {
             return wrong.and(Verdict::Degenerate);
         }
-        let (there, back) = (Motion::new(from, to), Motion::new(to, from));
+        let (there, back) = (RigidMotion::new(from, to), RigidMotion::new(to, from));
         let period = self.nodes[n - 1].time - self.nodes[0].time;
         for _ in 0..SWEEPS {
+            // The first point lies between the second one and the last but one, taken back by a period.
             let last = self.nodes[n - 2];
             let before = (last.time - period, back.of(last.p));
             let after = self.nodes[1];
@@ -248,12 +249,12 @@ impl Node {
 }
 
 /// The rigid motion that takes one pose to another.
-struct Motion {
+struct RigidMotion {
     turn: [f64; 2],
     shift: [f64; 2],
 }
 
-impl Motion {
+impl RigidMotion {
     fn new(from: &Pose, to: &Pose) -> Self {
         let (s, c) = (to.heading - from.heading).sin_cos();
         let still = Self { turn: [c, s], shift: [0.0; 2] };
@@ -269,14 +270,14 @@ impl Motion {
 
 /// A trapezoid of unit height (4.49): zero until `rise.0` and after `fall.1`.
 #[derive(Clone, Copy, Debug)]
-pub struct Shape {
+pub struct Trapezoid {
     /// \[s\] Begin and end of the rise.
     pub rise: (f64, f64),
     /// \[s\] Begin and end of the fall.
     pub fall: (f64, f64),
 }
 
-impl Shape {
+impl Trapezoid {
     /// Value at `t`.
     pub fn at(&self, t: f64) -> f64 {
         if t <= self.rise.0 || t >= self.fall.1 {

@@ -1,11 +1,12 @@
 //! Methods against one another, and where they fail: closed form and collocation, direct construction and sweeps.
 
 use planner::analytic::{Analytic, MAX_POINTS};
-use planner::collocation::{Collocation, Ends, MAX_KNOTS, State};
+use planner::boundary::{Ends, MAX_KNOTS, PlanarState};
+use planner::collocation::Collocation;
 use planner::pose::Pose;
 use planner::sole::{Hull, Sole};
 use planner::verdict::Verdict;
-use planner::zmp::{Chain, MAX_NODES};
+use planner::zmp::{MAX_NODES, ZmpProblem};
 
 const G: f64 = 9.81;
 const HEIGHT: f64 = 0.9;
@@ -23,9 +24,9 @@ fn dice(mut seed: u64) -> impl FnMut() -> f64 {
 }
 
 /// Steps straight on, `steps` of them, from one foot to the next: the zero-moment point's way.
-fn walk(steps: usize, step: f64) -> Chain {
+fn walk(steps: usize, step: f64) -> ZmpProblem {
     let sole = Sole { center: [0.0; 2], half: [0.1, 0.03] };
-    let mut chain = Chain::new();
+    let mut chain = ZmpProblem::new();
     let foot = |k: usize| Pose::new(step * k as f64, if k.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0);
     chain.fix(0.0, [0.0, -0.1]);
     for k in 1..=steps {
@@ -42,7 +43,7 @@ fn walk(steps: usize, step: f64) -> Chain {
 }
 
 /// A state from which the walk can begin.
-const BEGIN: State = State { r: [0.01, -0.05], v: [0.2, 0.15] };
+const BEGIN: PlanarState = PlanarState { r: [0.01, -0.05], v: [0.2, 0.15] };
 
 #[test]
 fn closed_form_of_errata_2_6() {
@@ -52,7 +53,7 @@ fn closed_form_of_errata_2_6() {
     // The second axis has the numbers of the errata, the first one their double.
     let points = times.into_iter().zip(y.map(|y| [2.0 * y, y]));
     assert_eq!(a.set(points, 1), Verdict::Sound);
-    let begin = State { r: [0.02, 0.01], v: [-0.04, -0.02] };
+    let begin = PlanarState { r: [0.02, 0.01], v: [-0.04, -0.02] };
     assert_eq!(a.solve(&begin, [0.0; 2]), Verdict::Sound);
     let free = a.points().nth(1).expect("six points").1;
     let s = a.sample(0.5);
@@ -122,11 +123,11 @@ fn distance(steps: usize, spacing: f64) -> f64 {
         let p = reference.at(t);
         [-om2 * p[0], -om2 * p[1], -om2 * hat(t), 0.0]
     };
-    c.n = knots.len();
+    c.problem.n = knots.len();
     for (i, &t) in knots.iter().enumerate() {
-        (c.t[i], c.om2[i], c.f[i]) = (t, om2, forces(t));
+        (c.problem.t[i], c.problem.om2[i], c.problem.f[i]) = (t, om2, forces(t));
         if let Some(next) = knots.get(i + 1) {
-            c.half[i] = forces(0.5 * (t + next));
+            c.problem.half[i] = forces(0.5 * (t + next));
         }
     }
     assert_eq!(c.solve(), Verdict::Sound);
@@ -185,13 +186,13 @@ fn closed_form_tells_what_is_wrong() {
     assert_eq!(a.set((0..=MAX_POINTS).map(|k| p(k as f64)), 1), Verdict::TooLong);
     assert_eq!(a.set([p(0.0), (0.1, [f64::NAN; 2]), p(0.2), p(0.4)], 1), Verdict::Sound);
     assert_eq!(a.solve(&BEGIN, [0.0; 2]), Verdict::NotFinite);
-    assert_eq!(a.follow(&Chain::new()), Verdict::Degenerate);
+    assert_eq!(a.follow(&ZmpProblem::new()), Verdict::Degenerate);
     assert_eq!(a.set([p(f64::NAN), p(0.1), p(0.2)], 1), Verdict::Degenerate);
 }
 
 /// Chains of turned rectangles of random size.
-fn random_chain(random: &mut impl FnMut() -> f64, feet: usize) -> Chain {
-    let mut chain = Chain::new();
+fn random_chain(random: &mut impl FnMut() -> f64, feet: usize) -> ZmpProblem {
+    let mut chain = ZmpProblem::new();
     let (mut t, mut x) = (0.0, 0.0);
     chain.fix(t, [random() * 0.1, random() * 0.1]);
     for _ in 0..feet {
@@ -230,7 +231,7 @@ fn direct_construction_and_sweeps_agree() {
 /// The triangle of errata 2.10 is no rectangle; its two boxes are: a taut string, by hand.
 #[test]
 fn direct_construction_is_a_taut_string() {
-    let mut c = Chain::new();
+    let mut c = ZmpProblem::new();
     let box_at = |x: f64, y: f64| (Sole { center: [0.0; 2], half: [0.1, 0.05] }, Pose::new(x, y, 0.0));
     c.fix(0.0, [0.0, 0.0]);
     let (sole, at) = box_at(0.1, 0.3); // y in [0.25, 0.35], x in [0, 0.2]
@@ -251,7 +252,7 @@ fn reference_tells_what_is_wrong() {
     let sole = Sole { center: [0.0; 2], half: [0.1, 0.03] };
     let here = Pose::default();
     let chain = |sole: &Sole, t: [f64; 3], p: f64| {
-        let mut c = Chain::new();
+        let mut c = ZmpProblem::new();
         c.fix(t[0], [p, 0.0]);
         c.hold(t[1], sole, &here);
         c.fix(t[2], [0.1, 0.0]);
@@ -263,8 +264,8 @@ fn reference_tells_what_is_wrong() {
     assert_eq!(chain(&sole, [0.0, 1.0, 1.0], 0.0).solve(), Verdict::Degenerate);
     assert_eq!(chain(&sole, [0.0, f64::NAN, 1.0], 0.0).solve(), Verdict::NotFinite);
     assert_eq!(chain(&sole, [0.0, 1.0, 2.0], f64::NAN).solve(), Verdict::NotFinite);
-    assert_eq!(Chain::new().solve(), Verdict::Degenerate);
-    let mut long = Chain::new();
+    assert_eq!(ZmpProblem::new().solve(), Verdict::Degenerate);
+    let mut long = ZmpProblem::new();
     for k in 0..=MAX_NODES {
         long.hold(k as f64, &sole, &here);
     }
@@ -278,12 +279,12 @@ fn reference_tells_what_is_wrong() {
 /// A problem with constant right-hand sides: `change` may spoil it.
 fn problem(change: impl Fn(&mut Collocation)) -> Verdict {
     let mut c = Box::new(Collocation::new());
-    c.n = 21;
+    c.problem.n = 21;
     for i in 0..21 {
-        c.t[i] = 0.08 * i as f64;
-        c.om2[i] = G / HEIGHT;
-        c.f[i] = [1.0; 4];
-        c.half[i] = [1.0; 4];
+        c.problem.t[i] = 0.08 * i as f64;
+        c.problem.om2[i] = G / HEIGHT;
+        c.problem.f[i] = [1.0; 4];
+        c.problem.half[i] = [1.0; 4];
     }
     change(&mut c);
     c.solve()
@@ -292,20 +293,20 @@ fn problem(change: impl Fn(&mut Collocation)) -> Verdict {
 #[test]
 fn collocation_tells_what_is_wrong() {
     assert_eq!(problem(|_| ()), Verdict::Sound);
-    assert_eq!(problem(|c| c.n = 2), Verdict::Degenerate);
-    assert_eq!(problem(|c| c.n = MAX_KNOTS + 1), Verdict::Degenerate);
-    assert_eq!(problem(|c| c.t[7] = c.t[6]), Verdict::Degenerate);
-    assert_eq!(problem(|c| c.t[7] = c.t[5]), Verdict::Degenerate);
+    assert_eq!(problem(|c| c.problem.n = 2), Verdict::Degenerate);
+    assert_eq!(problem(|c| c.problem.n = MAX_KNOTS + 1), Verdict::Degenerate);
+    assert_eq!(problem(|c| c.problem.t[7] = c.problem.t[6]), Verdict::Degenerate);
+    assert_eq!(problem(|c| c.problem.t[7] = c.problem.t[5]), Verdict::Degenerate);
     // The body falls freely, or faster: z.. + g <= 0.
-    assert_eq!(problem(|c| c.om2[9] = 0.0), Verdict::Falling);
-    assert_eq!(problem(|c| c.om2[0] = -0.1), Verdict::Falling);
-    assert_eq!(problem(|c| c.om2[20] = -0.1), Verdict::Falling);
+    assert_eq!(problem(|c| c.problem.om2[9] = 0.0), Verdict::Falling);
+    assert_eq!(problem(|c| c.problem.om2[0] = -0.1), Verdict::Falling);
+    assert_eq!(problem(|c| c.problem.om2[20] = -0.1), Verdict::Falling);
     for (i, k) in [(0, 0), (9, 1), (20, 3)] {
-        assert_eq!(problem(|c| c.f[i][k] = f64::NAN), Verdict::NotFinite);
-        assert_eq!(problem(|c| c.half[i.min(19)][k] = f64::INFINITY), Verdict::NotFinite);
+        assert_eq!(problem(|c| c.problem.f[i][k] = f64::NAN), Verdict::NotFinite);
+        assert_eq!(problem(|c| c.problem.half[i.min(19)][k] = f64::INFINITY), Verdict::NotFinite);
     }
-    assert_eq!(problem(|c| c.om2[9] = f64::NAN), Verdict::NotFinite);
-    assert_eq!(problem(|c| c.t[9] = f64::NAN), Verdict::NotFinite);
+    assert_eq!(problem(|c| c.problem.om2[9] = f64::NAN), Verdict::NotFinite);
+    assert_eq!(problem(|c| c.problem.t[9] = f64::NAN), Verdict::NotFinite);
 }
 
 /// Meeting the divergent component leaves the rest to die out: from the end on, along the same zero-moment point, the
@@ -316,18 +317,19 @@ fn divergent_component_is_met() {
     let w = om2.sqrt();
     let trapezoid = |t: f64, at: f64| ((t - at) / 0.16).min((at + 0.8 - t) / 0.16).clamp(0.0, 1.0);
     let mut c = Box::new(Collocation::new());
-    c.n = 81;
+    c.problem.n = 81;
     for i in 0..81 {
         let t = 0.02 * i as f64;
         let forces =
             |t: f64| [-om2 * 0.1 * t, -om2 * 0.05, -om2 * trapezoid(t, 0.0), -om2 * trapezoid(t, 0.8)];
-        (c.t[i], c.om2[i], c.f[i], c.half[i]) = (t, om2, forces(t), forces(t + 0.01));
+        (c.problem.t[i], c.problem.om2[i], c.problem.f[i], c.problem.half[i]) =
+            (t, om2, forces(t), forces(t + 0.01));
     }
     assert_eq!(c.solve(), Verdict::Sound);
-    let begin = State { r: [0.02, 0.03], v: [0.1, -0.1] };
-    let target = State { r: [0.2, 0.04], v: [0.15, 0.1] };
-    let full = Ends { begin: begin.r, end: target.r, gamma: c.amplitudes(&begin, &target) };
-    let loose = c.divergent_ends(&begin, &target);
+    let begin = PlanarState { r: [0.02, 0.03], v: [0.1, -0.1] };
+    let target = PlanarState { r: [0.2, 0.04], v: [0.15, 0.1] };
+    let full = Ends { begin: begin.r, end: target.r, gamma: c.ends().amplitudes(&begin, &target) };
+    let loose = c.ends().divergent_ends(&begin, &target);
     for d in 0..2 {
         for ends in [&full, &loose] {
             let [r, v, _] = c.motion(0, ends);
