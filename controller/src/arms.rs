@@ -25,7 +25,7 @@ use crate::task_space::TaskSpace;
 
 /// \[m/rad\] Damping of the division by l: an arm that is stretched out forward cannot move that way.
 const DAMPING: f64 = 0.02;
-/// How an arm returns that is not where it should be, as after standing up from a crouch.
+/// Return of an arm that is not where it should be, as after standing up from a crouch.
 const RETURN: Approach = Approach { rate: f64::INFINITY, speed: 0.5, acceleration: 5.0 };
 /// Share of its lever at rest that an arm has at least while it hangs.
 const HANGS: f64 = 0.3;
@@ -80,7 +80,7 @@ impl Arms {
         self.returning = [0.0; 2];
     }
 
-    /// Speeds of the shoulders, `desired` being the kinematics of the `angles` \[rad\] that the joints were told last; small
+    /// Speeds of the shoulders, `desired` being the kinematics of the `angles` \[rad\] commanded last; small
     /// errors vanish with `drift` \[1/s\], large ones within bounds of speed and acceleration, of which there is a `share`
     /// while the motion sets in.
     pub fn drive(

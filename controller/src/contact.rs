@@ -33,7 +33,7 @@ pub struct Signs {
 
 /// Contact of one foot.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Contact {
+pub struct FootContact {
     /// Its phase.
     pub phase: ContactPhase,
     /// \[1\] 0 without felt force, 1 from the upper force of `force_blend` on.
@@ -42,7 +42,7 @@ pub struct Contact {
     pub waits: bool,
 }
 
-impl Contact {
+impl FootContact {
     /// One cycle.
     pub fn update(&mut self, control: &Control, signs: &Signs) {
         let [low, high] = control.force_blend;
@@ -78,7 +78,7 @@ impl Contact {
 const HALF: f64 = 0.5;
 
 /// Load factors of the feet that are felt: the other foot carries for one that finds no ground.
-pub fn felt_load(planned: [f64; 2], contacts: &[Contact; 2]) -> [f64; 2] {
+pub fn felt_load(planned: [f64; 2], contacts: &[FootContact; 2]) -> [f64; 2] {
     let felt = [planned[0] * contacts[0].felt, planned[1] * contacts[1].felt];
     let sum = felt[0] + felt[1];
     if sum > 0.0 { felt.map(|f| f / sum) } else { planned }
@@ -88,14 +88,14 @@ pub fn felt_load(planned: [f64; 2], contacts: &[Contact; 2]) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    fn after(contact: &mut Contact, load: [f64; 2], rise: f64, force: f64) -> ContactPhase {
+    fn after(contact: &mut FootContact, load: [f64; 2], rise: f64, force: f64) -> ContactPhase {
         contact.update(&crate::test_gains(), &Signs { load, rise, force });
         contact.phase
     }
 
     #[test]
     fn a_step_as_planned() {
-        let mut c = Contact::default();
+        let mut c = FootContact::default();
         assert_eq!(after(&mut c, [1.0; 2], 0.0, 600.0), ContactPhase::Stance);
         assert_eq!(
             after(&mut c, [0.01, 0.005], 0.0, 3.0),
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn early_contact_lasts_until_the_foot_shall_carry() {
-        let mut c = Contact::default();
+        let mut c = FootContact::default();
         assert_eq!(after(&mut c, [0.0; 2], -0.1, 30.0), ContactPhase::Swing, "inertia or noise");
         assert_eq!(after(&mut c, [0.0; 2], -0.1, 60.0), ContactPhase::Early);
         assert_eq!(after(&mut c, [0.0; 2], -0.1, 0.0), ContactPhase::Early, "a bounce");
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_foot_that_came_waits_until_it_carries() {
-        let mut c = Contact::default();
+        let mut c = FootContact::default();
         let mut waits = |load, rise, force| {
             after(&mut c, load, rise, force);
             c.waits
@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn ground_is_searched_for_while_load_shall_come_or_is_there() {
-        let mut c = Contact::default();
+        let mut c = FootContact::default();
         assert_eq!(after(&mut c, [0.1, 0.2], 0.0, 0.0), ContactPhase::Late);
         assert_eq!(after(&mut c, [1.0; 2], 0.0, 0.0), ContactPhase::Late);
         assert_eq!(after(&mut c, [1.0; 2], 0.0, 100.0), ContactPhase::Stance);
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn who_finds_no_ground_is_carried_for() {
-        let felt = |felt| Contact { phase: ContactPhase::Stance, felt, ..Contact::default() };
+        let felt = |felt| FootContact { phase: ContactPhase::Stance, felt, ..FootContact::default() };
         assert_eq!(felt_load([0.4, 0.6], &[felt(1.0), felt(0.0)]), [1.0, 0.0]);
         assert_eq!(felt_load([0.4, 0.6], &[felt(1.0); 2]), [0.4, 0.6]);
         assert_eq!(felt_load([0.4, 0.6], &[felt(0.0); 2]), [0.4, 0.6], "in the air the plan is all there is");

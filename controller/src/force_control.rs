@@ -19,7 +19,7 @@
 use config::gait::Control;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-use crate::contact::{Contact, ContactPhase};
+use crate::contact::{ContactPhase, FootContact};
 
 /// Change of (F_z, T_x, T_y) about the sensor with (z, roll, pitch) of the sole frame (5.23).
 ///
@@ -129,7 +129,7 @@ pub struct ForceTargets {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FootReference {
     /// Contact of the foot.
-    pub contact: Contact,
+    pub contact: FootContact,
     /// \[m/s\] Planned vertical velocity of the sole.
     pub rise: f64,
     /// \[m, rad, rad\] Modification that a foot in the air returns to.
@@ -220,7 +220,7 @@ mod tests {
 
     fn foot(phase: ContactPhase, felt: f64) -> (Compliance, FootReference) {
         let reference = FootReference {
-            contact: Contact { phase, felt, ..Contact::default() },
+            contact: FootContact { phase, felt, ..FootContact::default() },
             rise: 0.0,
             target: Vector3::zeros(),
         };

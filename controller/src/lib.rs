@@ -4,7 +4,7 @@
 //!
 //! | stage | equations | where |
 //! |---|---|---|
-//! | which plan, and what it wants now | | [`following`] |
+//! | plan, and desired task space now | | [`plan_follower`] |
 //! | measured task space, inclination, zero-moment point | (4.11)-(4.17), (3.5) | [`estimate`], [`torso`] |
 //! | early and late contact | | [`contact`] |
 //! | contact force modification | (5.2)-(5.22) | [`contact_force`] |

@@ -23,14 +23,14 @@ use crate::estimate::Estimate;
 use crate::force_control::{Modification, modify};
 use crate::plan_follower::{Desired, PlanFollower};
 use crate::task_space::TaskSpace;
-use crate::watch::Watch;
+use crate::watch::SafetyWatch;
 use contacts::{FootContacts, measured_forces};
-use cycle::{Cycle, CycleClock, planned_torso};
+use cycle::{ControlCycle, CycleClock, planned_torso};
 use force_targets::force_targets;
 use joints::JointState;
 use speeds::{JointSpeeds, torso_motion};
 use task::task_velocity;
-use telemetry::{Limits, Outcome, Telemetry};
+use telemetry::{CycleOutcome, MetLimits, Telemetry};
 
 /// Feedback path 2.
 const MEASURED: u64 = 2;
@@ -42,7 +42,7 @@ pub struct Controller {
     control: Control,
     clock: CycleClock,
     plan: PlanFollower,
-    watch: Watch,
+    watch: SafetyWatch,
     /// Kinematics of the measured joints, and of those that figure 5.8 feeds back.
     measured: TaskSpace,
     desired: TaskSpace,
@@ -64,7 +64,7 @@ impl Controller {
             control: gait.control,
             clock: CycleClock::new(dt),
             plan: PlanFollower::new([0, 1].map(|i| [robot.feet[i].support[0], robot.feet[i].support[1]])),
-            watch: Watch::default(),
+            watch: SafetyWatch::default(),
             speeds: JointSpeeds::new(robot, &desired, gait.control.null_space_gain, gait.arm_swing)?,
             measured,
             desired,
@@ -139,7 +139,7 @@ impl Controller {
             wrenches = self.follow(sensors, &lag, past).2.or(wrenches);
         }
         let (now, estimate, new) = self.follow(sensors, &lag, tick);
-        let outcome = Outcome {
+        let outcome = CycleOutcome {
             plan: &self.plan,
             watch: &self.watch,
             joints: &self.joints,
@@ -170,6 +170,7 @@ impl Controller {
         let estimate = Estimate::new(&self.robot, sensors, &self.measured, &self.reference(&now));
         let powered = self.plan.id() > 0 && sensors.power == 1;
         if powered {
+            // A fall, or being lifted, ends the plan before anything is made of it.
             let why = self.watch.check(sensors, &now, &estimate);
             self.telemetry.note(why.map(|code| (code, 0)));
         }
@@ -214,12 +215,12 @@ impl Controller {
         now: &Desired,
         end: &Desired,
         estimate: &Estimate,
-    ) -> ([FootWrench; 2], Limits) {
+    ) -> ([FootWrench; 2], MetLimits) {
         // Direct kinematics of what is fed back, and the task of the feet there.
         let fed_back = self.control.feedback == MEASURED;
         self.desired.update(if fed_back { &sensors.joint_angle } else { &self.joints.angle });
         let task = self.speeds.linearise(&mut self.desired);
-        let cycle = Cycle {
+        let cycle = ControlCycle {
             robot: &self.robot,
             control: &self.control,
             dt: self.clock.dt,
@@ -231,17 +232,20 @@ impl Controller {
         };
         let onset = self.joints.onset(&self.control);
 
+        // Contacts, and the forces that the feet shall have.
         let footing = self.contacts.update_contacts(&cycle, measured_forces(&self.measured, sensors));
         let forces = force_targets(&cycle, &footing);
+        // Modification of the foot trajectories that brings the forces there.
         let motion = self.speeds.sole_motion(&cycle, &task);
         self.modification =
             modify(cycle.control, &motion, &footing.feet, &forces.targets, &self.modification, cycle.dt);
+        // Task, joint speeds, joint targets.
         let velocity = task_velocity(&cycle, &self.modification, &forces.deformation, onset.drift);
         let torso = torso_motion(&cycle, self.plan.plan(), sensors.imu.angular_velocity);
         let speeds = self.speeds.solve(&cycle, (&task, &velocity), &self.joints, onset, &torso, lag);
         let held = self.joints.integrate(&self.robot, &speeds, self.clock.dt);
 
-        let limits = Limits { damped: task.damped, modification: self.modification.limited, joints: held };
+        let limits = MetLimits { damped: task.damped, modification: self.modification.limited, joints: held };
         (forces.wrenches, limits)
     }
 }

@@ -1,4 +1,4 @@
-//! Which feet press on the ground, and what ends in a controlled stop: sensor data that are not finite, a fall, being
+//! Contact flags of the feet, and what ends in a controlled stop: sensor data that are not finite, a fall, being
 //! lifted.
 
 use messages::{EventCode, Sensors};
@@ -18,17 +18,17 @@ const BAD_CYCLES: u32 = 20;
 
 /// Admits sensor data and decides when to stop.
 #[derive(Clone, Default)]
-pub(crate) struct Watch {
+pub(crate) struct SafetyWatch {
     /// The last sensor data without a NaN, and how many with one came since.
     good: Sensors,
     bad: u32,
     unloaded: u32,
-    /// Why the joints shall come to rest, if they shall.
+    /// Reason for the joints to come to rest, if there is one.
     why: Option<EventCode>,
     contact: [bool; 2],
 }
 
-impl Watch {
+impl SafetyWatch {
     /// The sensor data if they are finite, otherwise the last ones that were; an event where that begins.
     pub(crate) fn admit(&mut self, sensors: &Sensors, joints: usize) -> (Sensors, Option<EventCode>) {
         let (imu, wrench) = (&sensors.imu, &sensors.foot_wrench);
@@ -49,7 +49,7 @@ impl Watch {
         (self.good, (self.bad == 1).then_some(EventCode::SensorNotFinite))
     }
 
-    /// Whether each foot presses on the ground.
+    /// Contact of each foot with the ground.
     pub(crate) fn contact(&self) -> [bool; 2] {
         self.contact
     }
@@ -60,12 +60,12 @@ impl Watch {
         self.unloaded = 0;
     }
 
-    /// Why the joints shall come to rest, until the supply was off; none: they need not.
+    /// Reason for the joints to come to rest, until the supply was off; none: they need not.
     pub(crate) fn stopped(&self) -> Option<EventCode> {
         self.why
     }
 
-    /// Stops for good if something is wrong; says why in that cycle.
+    /// Stops for good if something is wrong; the reason in that cycle.
     pub(crate) fn check(
         &mut self,
         sensors: &Sensors,

@@ -6,13 +6,13 @@
 //! never replaced ends standing. A stopping plan is a tail alone.
 
 use crate::boundary::{Ends, PlanarState};
-use crate::com::{Forcing, Ground, GroundPath, HeightPath, ThreeMassModel};
+use crate::com::{Forcing, GroundDemand, GroundPath, HeightPath, ThreeMassModel};
 use crate::feet::{self, FootPath, Swing};
 use crate::marks::Marks;
-use crate::segment::{Horizon, Segment, knot_spacing};
+use crate::segment::{Horizon, WalkSegment, knot_spacing};
 use crate::sole::Sole;
 use crate::steps::{Heights, Stride, next_foothold, next_width, nu};
-use crate::verdict::Verdict;
+use crate::verdict::PlanVerdict;
 use crate::walking_model::WalkingModel;
 use crate::zmp::{Trapezoid, ZmpProblem};
 use curves::{Path, Polyline, Sample};
@@ -34,7 +34,7 @@ pub(crate) struct Balance {
 /// Balance that a plan has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Balanced {
-    pub(crate) verdict: Verdict,
+    pub(crate) verdict: PlanVerdict,
     /// \[m\] Least distance of the modified zero-moment point from the edge of the support polygon.
     pub(crate) margin: f64,
     /// Only the divergent component of the periodic solution is met (thesis 4.6.2).
@@ -42,7 +42,7 @@ pub(crate) struct Balanced {
 }
 
 impl Balanced {
-    fn add(&mut self, verdict: Verdict) {
+    fn add(&mut self, verdict: PlanVerdict) {
         self.verdict = self.verdict.and(verdict);
     }
 }
@@ -58,17 +58,17 @@ enum Meet {
 
 /// Motions that the centre of gravity must follow.
 #[derive(Clone, Copy)]
-struct Given<'a> {
+struct GivenMotion<'a> {
     feet: &'a [FootPath; 2],
     height: &'a HeightPath,
     ground: &'a GroundPath,
 }
 
 /// Start of the periodic solution.
-struct Periodic {
+struct PeriodicStart {
     state: PlanarState,
     zmp: [f64; 2],
-    verdict: Verdict,
+    verdict: PlanVerdict,
 }
 
 /// Heights of the body mass point: over the steps of the plan, and on level ground.
@@ -95,10 +95,11 @@ impl Balance {
         (com, zmp): (&mut Path<3, C>, &mut Polyline<2, Z>),
     ) -> Balanced {
         let (from, step) = (horizon.from, &model.step);
+        // What both problems share: the height of the body, and knots for which the plan has room.
         let heights = self.heights(model, horizon, feet);
-        let given = Given { feet, height: &heights.walking, ground };
+        let given = GivenMotion { feet, height: &heights.walking, ground };
         let [spacing, tail_spacing] = knot_spacing(model, horizon);
-        let mut balanced = Balanced { verdict: Verdict::Sound, margin: f64::INFINITY, divergent: false };
+        let mut balanced = Balanced { verdict: PlanVerdict::Sound, margin: f64::INFINITY, divergent: false };
         com.restart(0.0, from.com.position);
         let mut now = PlanarState::of(&self.com.body(&from.com, feet, 0.0));
         let mut p = from.zmp;
@@ -108,7 +109,7 @@ impl Balance {
             let (s, stance) = (&horizon.strides[1], horizon.strides[0].stance);
             let target = self.periodic(model, s, stance, &heights.level, spacing);
             balanced.add(target.verdict);
-            let mut head = Segment::head(step, &self.shrunk, horizon, target.zmp);
+            let mut head = WalkSegment::head(step, &self.shrunk, horizon, target.zmp);
             balanced.add(head.reference.solve());
             let states = [&now, &target.state];
             let ends =
@@ -123,7 +124,7 @@ impl Balance {
         at[1 - last.stance] = last.landing;
         let goal = model.standing_point(&at);
         let rest = self.com.body(&Sample::rest([goal[0], goal[1], 0.0]), feet, horizon.end);
-        let mut tail = Segment::tail(step, &self.shrunk, horizon, p, goal);
+        let mut tail = WalkSegment::tail(step, &self.shrunk, horizon, p, goal);
         balanced.add(tail.reference.solve());
         let states = [&now, &PlanarState::of(&rest)];
         let ends = self.connect(model, &tail, states, Meet::State, tail_spacing, &given, &mut balanced);
@@ -164,16 +165,17 @@ impl Balance {
     fn connect(
         &mut self,
         model: &WalkingModel,
-        segment: &Segment<'_>,
+        segment: &WalkSegment<'_>,
         [begin, end]: [&PlanarState; 2],
         meet: Meet,
         spacing: f64,
-        given: &Given<'_>,
+        given: &GivenMotion<'_>,
         balanced: &mut Balanced,
     ) -> Ends {
-        let Given { feet, height, ground } = *given;
+        let GivenMotion { feet, height, ground } = *given;
         let forcing = Forcing { feet, height, ground, zmp: &segment.reference, shapes: segment.shapes };
         balanced.add(self.com.solve(&forcing, segment.marks.as_slice(), spacing));
+        // Two amplitudes per axis, and position and velocity at two ends.
         let slopes = self.com.ends();
         let mut ends = Ends { begin: begin.r, end: end.r, gamma: slopes.amplitudes(begin, end) };
         let mut margin = segment.least_margin(&model.soles, &ends);
@@ -188,9 +190,9 @@ impl Balance {
         }
         balanced.margin = balanced.margin.min(margin);
         if margin.is_nan() {
-            balanced.add(Verdict::NotFinite);
+            balanced.add(PlanVerdict::NotFinite);
         } else if margin < 0.0 {
-            balanced.add(Verdict::LeavesSupport);
+            balanced.add(PlanVerdict::LeavesSupport);
         }
         ends
     }
@@ -200,7 +202,7 @@ impl Balance {
     fn write<const C: usize, const Z: usize>(
         &self,
         model: &WalkingModel,
-        segment: &Segment<'_>,
+        segment: &WalkSegment<'_>,
         ends: &Ends,
         com: &mut Path<3, C>,
         zmp: &mut Polyline<2, Z>,
@@ -222,7 +224,7 @@ impl Balance {
         stance: usize,
         height: &HeightPath,
         spacing: f64,
-    ) -> Periodic {
+    ) -> PeriodicStart {
         // Footholds of two more steps like `s`, and their times.
         let (step, shrunk) = (&model.step, &self.shrunk);
         let (f1, f2) = (s.foothold, s.landing);
@@ -265,19 +267,19 @@ impl Balance {
         };
         let verdict = found.and(self.com.solve(&forcing, marks.as_slice(), spacing));
         let state = self.com.ends().periodic_state(&f1, &f3);
-        Periodic { state, zmp: reference.nodes()[0].p, verdict }
+        PeriodicStart { state, zmp: reference.nodes()[0].p, verdict }
     }
 }
 
 /// Can the ground do what a motion asks of it?
-fn bearable(ground: &Ground, friction: f64) -> Verdict {
+fn bearable(ground: &GroundDemand, friction: f64) -> PlanVerdict {
     if ground.least_force.is_nan() || ground.friction.is_nan() {
-        Verdict::NotFinite
+        PlanVerdict::NotFinite
     } else if ground.least_force <= 0.0 {
-        Verdict::Falling
+        PlanVerdict::Falling
     } else if ground.friction > friction {
-        Verdict::Slips
+        PlanVerdict::Slips
     } else {
-        Verdict::Sound
+        PlanVerdict::Sound
     }
 }

@@ -15,7 +15,7 @@
 
 use crate::boundary::{BoundaryProblem, EndSlopes, Ends, F, LEFT, MAX_KNOTS, RIGHT, U};
 use crate::cog_method::BoundarySolver;
-use crate::verdict::Verdict;
+use crate::verdict::PlanVerdict;
 
 /// Share by which om2 and the middle of a piece may be off and still count as constant and as straight.
 const STRAIGHT: f64 = 1e-6;
@@ -52,28 +52,28 @@ impl ClosedForm {
     }
 
     /// Verdict on the problem before it is solved.
-    fn posed(&self) -> Verdict {
+    fn posed(&self) -> PlanVerdict {
         let BoundaryProblem { n, t, om2, f, half } = &self.problem;
         let n = *n;
         if !(3..=MAX_KNOTS).contains(&n) {
-            return Verdict::Degenerate;
+            return PlanVerdict::Degenerate;
         }
         let numbers = om2[..n].iter().chain(f[..n].iter().chain(&half[..n - 1]).flatten());
         if !t[..n].iter().chain(numbers).all(|x| x.is_finite()) {
-            return Verdict::NotFinite;
+            return PlanVerdict::NotFinite;
         }
         if om2[..n].iter().any(|x| *x <= 0.0) {
-            return Verdict::Falling;
+            return PlanVerdict::Falling;
         }
         if t[..n].windows(2).any(|t| t[1] <= t[0]) {
-            return Verdict::Degenerate;
+            return PlanVerdict::Degenerate;
         }
         // Heights that change show in om2, legs that swing in loads that are no straight lines.
         let level = om2[..n].iter().all(|x| (x - om2[0]).abs() <= STRAIGHT * om2[0]);
         let straight = (1..n).all(|i| {
             (0..F).all(|k| (half[i - 1][k] - 0.5 * (f[i - 1][k] + f[i][k])).abs() <= STRAIGHT * om2[0])
         });
-        if level && straight { Verdict::Sound } else { Verdict::NotOneMass }
+        if level && straight { PlanVerdict::Sound } else { PlanVerdict::NotOneMass }
     }
 
     /// p of column `k` at knot `i`; the columns of unit ends have none.
@@ -117,9 +117,9 @@ impl BoundarySolver for ClosedForm {
         &mut self.problem
     }
 
-    fn solve(&mut self) -> Verdict {
+    fn solve(&mut self) -> PlanVerdict {
         let verdict = self.posed();
-        if verdict != Verdict::Sound {
+        if verdict != PlanVerdict::Sound {
             return verdict;
         }
         let n = self.problem.n;
@@ -137,7 +137,7 @@ impl BoundarySolver for ClosedForm {
             self.sweep(k, first, end - zeta - e * first);
         }
         let ends = self.zeta[n - 1].iter().chain(&self.xi[0]);
-        if ends.copied().all(f64::is_finite) { Verdict::Sound } else { Verdict::NotFinite }
+        if ends.copied().all(f64::is_finite) { PlanVerdict::Sound } else { PlanVerdict::NotFinite }
     }
 
     fn ends(&self) -> EndSlopes {

@@ -10,7 +10,7 @@
 use crate::boundary::{BoundaryProblem, EndSlopes, Ends};
 use crate::closed_form::ClosedForm;
 use crate::collocation::Collocation;
-use crate::verdict::Verdict;
+use crate::verdict::PlanVerdict;
 use config::gait;
 
 /// Solver of a boundary value problem that it holds.
@@ -21,8 +21,8 @@ pub trait BoundarySolver {
     /// The problem, to be written before it is solved.
     fn problem_mut(&mut self) -> &mut BoundaryProblem;
 
-    /// Solves for all columns. Anything but [`Verdict::Sound`]: there is no solution, or not by this method.
-    fn solve(&mut self) -> Verdict;
+    /// Solves for all columns. Anything but [`PlanVerdict::Sound`]: there is no solution, or not by this method.
+    fn solve(&mut self) -> PlanVerdict;
 
     /// Slopes of all columns at both ends.
     fn ends(&self) -> EndSlopes;
@@ -33,12 +33,12 @@ pub trait BoundarySolver {
 
 /// The method that a gait names.
 #[derive(Clone)]
-pub(crate) enum CogMethod {
+pub(crate) enum CogSolver {
     Collocation(Box<Collocation>),
     ClosedForm(Box<ClosedForm>),
 }
 
-impl CogMethod {
+impl CogSolver {
     pub(crate) fn new(method: gait::CogMethod) -> Self {
         match method {
             gait::CogMethod::Collocation => Self::Collocation(Box::new(Collocation::new())),

@@ -13,7 +13,8 @@
 //! | a, c | lengths of the intervals before and after a knot | s |
 
 use crate::boundary::{BoundaryProblem, EndSlopes, Ends, F, LEFT, MAX_KNOTS, RIGHT, U};
-use crate::verdict::Verdict;
+use crate::cog_method::BoundarySolver;
+use crate::verdict::PlanVerdict;
 
 /// A problem and its solution.
 #[derive(Clone)]
@@ -38,12 +39,47 @@ impl Collocation {
         Self { problem: BoundaryProblem::new(), u: [[0.0; U]; MAX_KNOTS], upper: [0.0; MAX_KNOTS] }
     }
 
-    /// Solves for all columns. Anything but [`Verdict::Sound`]: there is no solution, or not with these knots.
-    pub fn solve(&mut self) -> Verdict {
+    /// Slope of every column at knot `i` \[1/s\].
+    pub fn slope(&self, i: usize) -> [f64; U] {
+        let (from, to, third, weights) = self.slope_at(i);
+        let middle = &self.problem.half[from.min(to)];
+        std::array::from_fn(|k| {
+            let f = if k < F { [self.problem.f[from][k], middle[k]] } else { [0.0; 2] };
+            weights.apply([self.u[from][k], self.u[to][k], self.u[third][k]], f)
+        })
+    }
+
+    /// Knots that the slope at knot `i` is made of, and their weights.
+    fn slope_at(&self, i: usize) -> (usize, usize, usize, SlopeWeights) {
+        // The last knot has no interval after it: mirror the one before it.
+        let (from, to, third, sign) = if i + 1 == self.problem.n {
+            (i, i - 1, i.wrapping_sub(2), -1.0)
+        } else if i == 0 {
+            (0, 1, 2, 1.0)
+        } else {
+            (i, i + 1, i - 1, 1.0)
+        };
+        let h = (self.problem.t[to] - self.problem.t[from]).abs();
+        let x = (self.problem.t[third] - self.problem.t[from]) * sign;
+        let om2 = [from, to, third].map(|k| self.problem.om2[k]);
+        (from, to, third, SlopeWeights::new(h, x, om2, sign))
+    }
+}
+
+impl BoundarySolver for Collocation {
+    fn problem(&self) -> &BoundaryProblem {
+        &self.problem
+    }
+
+    fn problem_mut(&mut self) -> &mut BoundaryProblem {
+        &mut self.problem
+    }
+
+    fn solve(&mut self) -> PlanVerdict {
         let BoundaryProblem { n, t, om2, f, half } = &self.problem;
         let n = *n;
         if !(3..=MAX_KNOTS).contains(&n) {
-            return Verdict::Degenerate;
+            return PlanVerdict::Degenerate;
         }
         self.u[0] = [0.0; U];
         self.u[n - 1] = [0.0; U];
@@ -93,47 +129,19 @@ impl Collocation {
         let ends = f[0].iter().chain(&f[n - 1]).chain(&self.u[1]).chain(&self.u[n - 2]);
         let finite = ends.copied().all(f64::is_finite);
         match (falling, degenerate, finite) {
-            (true, ..) => Verdict::Falling,
-            (_, true, _) => Verdict::Degenerate,
-            (.., false) => Verdict::NotFinite,
-            _ => Verdict::Sound,
+            (true, ..) => PlanVerdict::Falling,
+            (_, true, _) => PlanVerdict::Degenerate,
+            (.., false) => PlanVerdict::NotFinite,
+            _ => PlanVerdict::Sound,
         }
     }
 
-    /// Slope of every column at knot `i` \[1/s\].
-    pub fn slope(&self, i: usize) -> [f64; U] {
-        let (from, to, third, weights) = self.slope_at(i);
-        let middle = &self.problem.half[from.min(to)];
-        std::array::from_fn(|k| {
-            let f = if k < F { [self.problem.f[from][k], middle[k]] } else { [0.0; 2] };
-            weights.apply([self.u[from][k], self.u[to][k], self.u[third][k]], f)
-        })
-    }
-
-    /// Slopes at both ends.
-    pub fn ends(&self) -> EndSlopes {
+    fn ends(&self) -> EndSlopes {
         let last = self.problem.n - 1;
         EndSlopes { slopes: [self.slope(0), self.slope(last)], w: self.problem.om2[last].sqrt() }
     }
 
-    /// Knots that the slope at knot `i` is made of, and their weights.
-    fn slope_at(&self, i: usize) -> (usize, usize, usize, SlopeWeights) {
-        // The last knot has no interval after it: mirror the one before it.
-        let (from, to, third, sign) = if i + 1 == self.problem.n {
-            (i, i - 1, i.wrapping_sub(2), -1.0)
-        } else if i == 0 {
-            (0, 1, 2, 1.0)
-        } else {
-            (i, i + 1, i - 1, 1.0)
-        };
-        let h = (self.problem.t[to] - self.problem.t[from]).abs();
-        let x = (self.problem.t[third] - self.problem.t[from]) * sign;
-        let om2 = [from, to, third].map(|k| self.problem.om2[k]);
-        (from, to, third, SlopeWeights::new(h, x, om2, sign))
-    }
-
-    /// Position, velocity and acceleration in the plane at knot `i` between given ends.
-    pub fn motion(&self, i: usize, ends: &Ends) -> [[f64; 2]; 3] {
+    fn motion(&self, i: usize, ends: &Ends) -> [[f64; 2]; 3] {
         let (from, to, third, weights) = self.slope_at(i);
         let middle = &self.problem.half[from.min(to)];
         let (a, b, c) = (ends.value(&self.u[from]), ends.value(&self.u[to]), ends.value(&self.u[third]));

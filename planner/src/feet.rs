@@ -4,7 +4,7 @@
 //! path has common knots for its four components.
 
 use crate::foot_rollover::FootRollover;
-use crate::origin::Origin;
+use crate::origin::PlanOrigin;
 use crate::pose::Pose;
 use crate::steps::{Heights, Stride};
 use crate::walking_model::WalkingModel;
@@ -107,7 +107,7 @@ pub(crate) struct FootTrajectories {
 
 impl FootTrajectories {
     /// Writes the motion of both feet over the steps `strides`.
-    pub(crate) fn lay(&self, model: &WalkingModel, from: &Origin, strides: &[Stride], plan: &mut Plan) {
+    pub(crate) fn lay(&self, model: &WalkingModel, from: &PlanOrigin, strides: &[Stride], plan: &mut Plan) {
         for foot in 0..2 {
             stand(&mut plan.feet[foot], 0.0, &from.feet[foot], from.heights[foot]);
         }

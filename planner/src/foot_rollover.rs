@@ -11,7 +11,7 @@
 //!
 //! Values and slopes in between are those of least acceleration (4.30).
 
-use crate::origin::Origin;
+use crate::origin::PlanOrigin;
 use crate::pose::Pose;
 use crate::steps::Stride;
 use config::{Gait, gait, gait::Bend};
@@ -61,7 +61,7 @@ impl FootRollover {
     }
 
     /// Appends to the plan what both feet do in `strides`; after the last one the robot needs `settle` \[s\] to rest.
-    pub fn lay(&self, from: &Origin, strides: &[Stride], settle: f64, plan: &mut Plan) {
+    pub fn lay(&self, from: &PlanOrigin, strides: &[Stride], settle: f64, plan: &mut Plan) {
         let flat = |k: usize, landing: f64| {
             landing + LOADING * strides.get(k).map_or(settle, |next| next.lift - next.begin)
         };

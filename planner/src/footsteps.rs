@@ -1,12 +1,12 @@
-//! Step sequence planning: which foot lands where and when (thesis 4.3), over obstacles (4.3.3) and as a skill wants it
+//! Step sequence planning: footholds and their times (thesis 4.3), over obstacles (4.3.3) and as a skill wants it
 //! (4.3.4).
 
 use crate::obstacles::Obstacles;
-use crate::origin::Origin;
+use crate::origin::PlanOrigin;
 use crate::pose::Pose;
 use crate::reactive::Reactive;
 use crate::skills::{Script, Skill};
-use crate::steps::{Heights, MAX_STEPS, Parameters, Stride, next_foothold, next_width, nu};
+use crate::steps::{Heights, MAX_STEPS, StepParameters, Stride, next_foothold, next_width, nu};
 use crate::verdict::Blocked;
 use crate::walking_model::WalkingModel;
 use config::Gait;
@@ -16,11 +16,11 @@ use messages::GaitState;
 #[derive(Clone, Copy, Debug)]
 pub struct StepDemand<'a> {
     /// Where they begin.
-    pub from: &'a Origin,
+    pub from: &'a PlanOrigin,
     /// Starting, walking or stopping.
     pub state: GaitState,
     /// Parameters that the steps are to reach.
-    pub wish: Parameters,
+    pub wish: StepParameters,
     /// \[1\] Share of the largest change from step to step that is used.
     pub share: f64,
     /// Active skill.
@@ -34,7 +34,7 @@ pub struct StepDemand<'a> {
 pub(crate) struct StepSequence {
     pub(crate) strides: [Stride; MAX_STEPS],
     pub(crate) count: usize,
-    /// Why the way is not free, if it is not.
+    /// First obstacle in the way, if there is one.
     pub(crate) blocked: Option<Blocked>,
 }
 
@@ -51,15 +51,15 @@ pub(crate) struct Footsteps {
     reactive: Option<Reactive>,
 }
 
-/// What the steps before leave to the next one.
+/// Start of a step: what the steps before have left.
 struct Foothold {
     stance: usize,
-    /// Where the stance foot stands, and where the swing foot comes from.
+    /// Poses of the stance foot and of the foot that is going to swing.
     at: Pose,
     takeoff: Pose,
     heights: Heights,
     /// Parameters and width of the step before.
-    parameters: Parameters,
+    parameters: StepParameters,
     width: f64,
     /// Its end in cycles from the start of the plan.
     end_cycle: u64,
@@ -101,7 +101,7 @@ impl Footsteps {
             let closing = closes(demand, n, &last.parameters, step.first_length);
             let (parameters, width, landing) = if closing {
                 // The swing foot is put beside the stance foot.
-                let parameters = Parameters::on_the_spot(last.parameters.duration);
+                let parameters = StepParameters::on_the_spot(last.parameters.duration);
                 (parameters, step.width, last.at.compose(&Pose::new(0.0, nu * step.width, 0.0)))
             } else {
                 let (parameters, why) = self.parameters(model, demand, n, &last);
@@ -150,11 +150,11 @@ impl Footsteps {
         demand: &StepDemand<'_>,
         n: usize,
         last: &Foothold,
-    ) -> (Parameters, Option<Blocked>) {
+    ) -> (StepParameters, Option<Blocked>) {
         let step = &model.step;
         // From the third step on, and when stopping, a plan comes to rest by itself.
         let ending = demand.state == GaitState::Stopping || n >= 2;
-        let rest = Parameters::on_the_spot(last.parameters.duration);
+        let rest = StepParameters::on_the_spot(last.parameters.duration);
         let (wish, share) = if ending { (&rest, 1.0) } else { (&demand.wish, demand.share) };
         let mut parameters = last.parameters.towards(wish, step, share);
         if n == 0 && demand.state == GaitState::Starting {
@@ -163,7 +163,7 @@ impl Footsteps {
             parameters.length = demand.wish.length.clamp(-most, most);
         }
         match demand.script.length(n) {
-            Some(length) => (Parameters { length, ..parameters }, None),
+            Some(length) => (StepParameters { length, ..parameters }, None),
             None => self.clear(model, demand, last, &parameters, wish),
         }
     }
@@ -175,12 +175,12 @@ impl Footsteps {
         model: &WalkingModel,
         demand: &StepDemand<'_>,
         last: &Foothold,
-        p: &Parameters,
-        wish: &Parameters,
-    ) -> (Parameters, Option<Blocked>) {
+        p: &StepParameters,
+        wish: &StepParameters,
+    ) -> (StepParameters, Option<Blocked>) {
         let from = demand.from;
         let room = demand.script.wall - last.at.x;
-        let mut free = Parameters { length: p.length.min(room.max(0.0)), ..*p };
+        let mut free = StepParameters { length: p.length.min(room.max(0.0)), ..*p };
         let Some(reactive) = &self.reactive else { return (free, None) };
         let at = from.frame.compose(&last.at);
         let adapted = reactive.adapt(model, at, from.height, last.stance, &free, wish);
@@ -195,7 +195,7 @@ impl Footsteps {
 
 /// Does step `n` close the feet? `previous` are the parameters of the step before, `first` \[m\] is the longest step into
 /// standing.
-fn closes(demand: &StepDemand<'_>, n: usize, previous: &Parameters, first: f64) -> bool {
+fn closes(demand: &StepDemand<'_>, n: usize, previous: &StepParameters, first: f64) -> bool {
     let last_but_one = if demand.state == GaitState::Stopping { n > 0 } else { n > 2 };
     let closing = match demand.script.length(n) {
         Some(_) => false,
@@ -206,7 +206,7 @@ fn closes(demand: &StepDemand<'_>, n: usize, previous: &Parameters, first: f64) 
 
 impl Foothold {
     /// Where a plan begins.
-    fn first(from: &Origin, swing_height: f64) -> Self {
+    fn first(from: &PlanOrigin, swing_height: f64) -> Self {
         let stance = from.stance;
         Self {
             stance,

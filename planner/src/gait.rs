@@ -4,13 +4,13 @@ use crate::commands::{self, Intent};
 use crate::foot_rollover::FootRollover;
 use crate::footsteps::StepDemand;
 use crate::obstacles::Obstacles;
-use crate::origin::Origin;
+use crate::origin::PlanOrigin;
 use crate::planned_walk::{LEAD, PlannedWalk};
 use crate::skills::{Skill, Task, Tasks};
 use crate::sole::Sole;
-use crate::steps::Parameters;
+use crate::steps::StepParameters;
 use crate::touchdown::{Touchdown, at_boundary, at_contact, is_early, touched};
-use crate::verdict::Verdict;
+use crate::verdict::PlanVerdict;
 use crate::walk::Builder;
 use config::{Gait, Robot};
 use messages::{Command, ControllerState, EventCode, GaitState, LEFT, Plan, RIGHT, Reason};
@@ -23,7 +23,7 @@ const MAX_EVENTS: usize = 16;
 pub const MAX_COMMANDS: usize = 16;
 
 /// Output of one cycle of the planner.
-pub struct Output<'a> {
+pub struct PlannerOutput<'a> {
     /// A new plan, in the cycle in which it was made.
     pub plan: Option<&'a Plan>,
     /// Events of the cycle: code and detail.
@@ -46,7 +46,7 @@ pub struct Planner {
     gait: Gait,
     pub(crate) builder: Builder,
     intent: Intent,
-    parameters: Parameters,
+    parameters: StepParameters,
     tasks: Tasks,
     /// The plan being executed, as the controller reports.
     active: PlannedWalk,
@@ -69,7 +69,7 @@ impl Planner {
             gait: gait.clone(),
             builder: Builder::new(gait, support.map(Sole::new)),
             intent: Intent::Rest,
-            parameters: Parameters::on_the_spot(duration),
+            parameters: StepParameters::on_the_spot(duration),
             tasks: Tasks::default(),
             active: PlannedWalk::new(),
             next: PlannedWalk::new(),
@@ -105,16 +105,18 @@ impl Planner {
         cycle_s: f64,
         state: Option<&ControllerState>,
         commands: &[Command],
-    ) -> Output<'_> {
+    ) -> PlannerOutput<'_> {
         self.events.clear();
         self.answers.clear();
         self.builder.model.cycle_s = cycle_s;
+        // The controller is the one that knows which plan is executed.
         if let Some(state) = state {
             if state.not_standing == 1 || state.plan_id == 0 && self.active.plan.id > 0 {
                 self.forget();
             }
             self.confirm(state);
         }
+        // Commands are answered one by one; a robot that does not stand refuses those that would move it.
         let gait = self.gait_state(tick, state);
         let down = state.filter(|s| s.not_standing == 1).and_then(|_| not_standing(gait));
         for command in commands.iter().take(MAX_COMMANDS) {
@@ -131,14 +133,14 @@ impl Planner {
             (Some(state), due) => self.make(tick, gait, state, due),
             (None, _) => false,
         };
-        Output { plan: made.then_some(&*self.next.plan), events: &self.events, answers: &self.answers }
+        PlannerOutput { plan: made.then_some(&*self.next.plan), events: &self.events, answers: &self.answers }
     }
 
     /// Without power, or a controller that knows of no plan: whatever was planned, wanted and begun is over. What comes
     /// next begins from the measured joints, and with a command.
     fn forget(&mut self) {
         self.intent = Intent::Rest;
-        self.parameters = Parameters::on_the_spot(self.parameters.duration);
+        self.parameters = StepParameters::on_the_spot(self.parameters.duration);
         self.tasks = Tasks::default();
         (self.active.plan.id, self.next.plan.id) = (0, 0);
     }
@@ -209,6 +211,7 @@ impl Planner {
                 self.tasks.stop();
                 Ok((if self.intent == Intent::Stand { Intent::Stand } else { Intent::Rest }, None))
             }
+            // Steps may be commanded at any time; a velocity also starts and stops the walk.
             Command::Step(step) => commands::from_step(step, &self.gait).map(|p| (self.intent, Some(p))),
             Command::Velocity(v) => commands::from_velocity(v, &self.gait).and_then(|p| match p {
                 None => Ok((Intent::Rest, None)),
@@ -219,6 +222,7 @@ impl Planner {
             Command::Distance(c) => self.give(Task::Distance(*c), gait),
             Command::Platform(c) => self.give(Task::Platform(*c), gait),
             Command::WalkParameter(change) => self.set(change).map(|()| (self.intent, None)),
+            // Commands of other processes.
             Command::EmergencyStop
             | Command::Reset
             | Command::Enable
@@ -238,6 +242,7 @@ impl Planner {
             }
             taken => taken,
         };
+        // A refusal changes nothing.
         match taken {
             Ok((intent, parameters)) => {
                 self.intent = intent;
@@ -252,7 +257,7 @@ impl Planner {
     }
 
     /// A skill comes next: at once from standing, otherwise after a stop.
-    fn give(&mut self, task: Task, gait: GaitState) -> Result<(Intent, Option<Parameters>), Reason> {
+    fn give(&mut self, task: Task, gait: GaitState) -> Result<(Intent, Option<StepParameters>), Reason> {
         if gait == GaitState::Idle && self.intent != Intent::Stand {
             return Err(Reason::NotNow);
         }
@@ -271,8 +276,9 @@ impl Planner {
         match due {
             Move::Nothing => false,
             Move::Stand => {
+                // From the measured joints, or from where the last plan has left the robot.
                 let from = if gait == GaitState::Idle {
-                    Origin::measured(state)
+                    PlanOrigin::measured(state)
                 } else {
                     let from = self.at_rest(RIGHT);
                     Some((from, from.heights))
@@ -306,6 +312,7 @@ impl Planner {
                     self.event(EventCode::EarlyContact, self.last_id + 1);
                     return self.publish(tick + LEAD, tick);
                 }
+                // By the clock: a plan from the next step boundary, as late as it can be made.
                 let Some(k) = self.boundary(tick) else { return false };
                 let start = self.active.plan.start_tick + self.active.strides[k].end_cycle;
                 if start > tick + LEAD || start == self.given_up {
@@ -337,7 +344,7 @@ impl Planner {
 
     /// Plans with the full change of parameters or, if that cannot be walked, with less; `true` if any can, or, where
     /// obstacles leave no way, a stop can.
-    fn walk(&mut self, from: &Origin, state: GaitState) -> bool {
+    fn walk(&mut self, from: &PlanOrigin, state: GaitState) -> bool {
         let mut wish = self.parameters;
         let starting = state == GaitState::Starting;
         let first = self.builder.model.step.first_length;
@@ -352,12 +359,12 @@ impl Planner {
         for share in [1.0, 0.5, 0.25, 0.0] {
             let demand = StepDemand { from, state, wish, share, skill: self.tasks.active, script };
             self.builder.walk(&demand, &mut self.next);
-            if self.next.verdict == Verdict::Sound || state == GaitState::Stopping {
+            if self.next.verdict == PlanVerdict::Sound || state == GaitState::Stopping {
                 break;
             }
         }
         // An obstacle in the way ends the walk, and is reported to who wanted it.
-        let Some((code, detail)) = self.next.blocked else { return self.next.verdict == Verdict::Sound };
+        let Some((code, detail)) = self.next.blocked else { return self.next.verdict == PlanVerdict::Sound };
         if commanded {
             self.event(code, detail);
             self.tasks.stop();
@@ -392,8 +399,8 @@ impl Planner {
     }
 
     /// Standing on the feet of the active plan.
-    fn at_rest(&self, stance: usize) -> Origin {
-        Origin::at_rest(&self.active, self.builder.model.cycle_s, stance, self.parameters.duration)
+    fn at_rest(&self, stance: usize) -> PlanOrigin {
+        PlanOrigin::at_rest(&self.active, self.builder.model.cycle_s, stance, self.parameters.duration)
     }
 
     pub(crate) fn event(&mut self, code: EventCode, detail: u64) {

@@ -5,7 +5,7 @@
 //! sole frames, so the point `e = p - (1 - rho) r_0 - rho r_1` must lie in both soles, each seen in its own heading.
 //! Corners are as soft as that allows. Where feet are turned against each other and it cannot be, the stabilizer lets one
 //! foot take what the other one cannot carry; what both can carry together is `(1 - rho) S_0 + rho S_1`, a sum of
-//! rectangles, and a plan whose zero-moment point leaves that is none.
+//! rectangles, and a plan whose zero-moment point leaves that cannot be walked.
 
 use crate::pose::Pose;
 use crate::segment::{Horizon, standing_shape};
@@ -186,6 +186,7 @@ fn smooth(path: &mut LoadPath, corners: &[(f64, f64)], share: f64) {
         let slope = (b.1 - a.1) / (b.0 - a.0);
         Sample { position: [a.1 + slope * (t - a.0)], velocity: [slope], acceleration: [0.0] }
     };
+    // A corner's quintic takes as much of the line before it as of the line after it.
     let mut last = Sample::rest([corners[0].1]);
     for k in 0..n - 1 {
         let radius = if k == 0 { 0.0 } else { half(k - 1).min(half(k)) };

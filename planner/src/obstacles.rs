@@ -1,4 +1,4 @@
-//! Obstacles as unordered triangles, and what of them lies in the way of a foot (thesis 4.3.3).
+//! Obstacles as unordered triangles, and the part of them in the way of a foot (thesis 4.3.3).
 //!
 //! A triangle is cut with half spaces, one after the other; what is left is a convex polygon. Nothing left: it does not
 //! reach into their intersection. That is exact for a box, and needs no case for edges or corners.
@@ -18,7 +18,7 @@ pub struct Obstacles {
     count: usize,
 }
 
-/// What of an obstacle lies in a strip along the x axis of a frame: its bounding box there.
+/// Bounding box, in a frame, of the part of an obstacle in a strip along the x axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// \[m\] Its least x.
@@ -32,7 +32,7 @@ pub struct Extent {
 /// A box that stands upright: a foot.
 #[derive(Clone, Copy, Debug)]
 pub struct Upright {
-    /// Where it is, in I_0.
+    /// Its pose in I_0.
     pub at: Pose,
     /// \[m\] Back, front, right, left, as [`crate::sole::Sole::new`] takes them.
     pub sides: [f64; 4],
@@ -54,7 +54,7 @@ impl Obstacles {
         self.triangles.is_empty()
     }
 
-    /// What of each obstacle lies between y = `strip[0]` and `strip[1]` of the frame `at`.
+    /// Extent of the part of each obstacle between y = `strip[0]` and `strip[1]` of the frame `at`.
     pub fn extents(&self, at: Pose, strip: [f64; 2]) -> impl Iterator<Item = Extent> {
         (0..self.count).filter_map(move |k| {
             let own = self.triangles.iter().filter(move |(_, number)| *number == k);

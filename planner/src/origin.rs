@@ -2,14 +2,14 @@
 
 use crate::planned_walk::PlannedWalk;
 use crate::pose::{Pose, rotate};
-use crate::steps::Parameters;
+use crate::steps::StepParameters;
 use curves::Sample;
 use messages::{ControllerState, LEFT, RIGHT};
 use std::f64::consts::FRAC_PI_2;
 
-/// Where a plan begins, in its own planning frame.
+/// Motion at the begin of a plan, in its own planning frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Origin {
+pub struct PlanOrigin {
     /// Planning frame in I_0.
     pub frame: Pose,
     /// \[m\] Its height there.
@@ -33,7 +33,7 @@ pub struct Origin {
     /// Load factor of the left foot.
     pub load_left: f64,
     /// Parameters of the step before.
-    pub previous: Parameters,
+    pub previous: StepParameters,
     /// \[m\] Width with which the stance foot was placed.
     pub width: f64,
     /// \[s, m\] By how much the stance foot has touched early, and where the zero-moment point shall be then: the first
@@ -41,7 +41,7 @@ pub struct Origin {
     pub early: Option<(f64, [f64; 2])>,
 }
 
-impl Origin {
+impl PlanOrigin {
     /// The active plan `walk` at `t` \[s\] with the feet at `soles` (x, y, z, heading), seen from the planning frame below
     /// the new stance foot (gap 5). The width is that of the feet unless one is given.
     pub(crate) fn on_plan(
@@ -49,7 +49,7 @@ impl Origin {
         t: f64,
         soles: [[f64; 4]; 2],
         stance: usize,
-        previous: Parameters,
+        previous: StepParameters,
         width: Option<f64>,
     ) -> Self {
         let plan = &*walk.plan;
@@ -64,6 +64,7 @@ impl Origin {
         com.position = [at[0], at[1], com.position[2] - ground];
         com.velocity[..2].copy_from_slice(&v);
         com.acceleration[..2].copy_from_slice(&a);
+        // So does the upper body, whose heading counts from that of the stance foot.
         let mut torso = plan.torso.sample(t);
         torso.position[2] -= frame.heading;
         let [x, y, heading] = plan.origin;
@@ -89,10 +90,10 @@ impl Origin {
     /// `duration` \[s\].
     pub(crate) fn at_rest(walk: &PlannedWalk, cycle_s: f64, stance: usize, duration: f64) -> Self {
         let t = walk.end_cycle as f64 * cycle_s;
-        Self::on_plan(walk, t, walk.soles(t), stance, Parameters::on_the_spot(duration), None)
+        Self::on_plan(walk, t, walk.soles(t), stance, StepParameters::on_the_spot(duration), None)
     }
 
-    /// Where the robot stands before its first plan, and the heights of its soles over their mean; `None` if the
+    /// The robot before its first plan, and the heights of its soles over their mean; `None` if the
     /// measurement is not finite.
     pub(crate) fn measured(state: &ControllerState) -> Option<(Self, [f64; 2])> {
         let all = state.feet.iter().flatten().chain(&state.com).chain(&state.origin);
@@ -101,6 +102,7 @@ impl Origin {
         }
         let feet = state.feet.map(|f| Pose::new(f[0], f[1], f[3]));
         let ground = 0.5 * (state.feet[0][2] + state.feet[1][2]);
+        // The planning frame lies below the right foot, on the mean height of both soles.
         let frame = feet[RIGHT];
         let [x, y, heading] = state.origin;
         let at = frame.local([state.com[0], state.com[1]]);
@@ -119,7 +121,7 @@ impl Origin {
             pitch: [Sample::rest([0.0]); 2],
             toes: [Sample::rest([0.0]); 2],
             load_left: 0.5,
-            previous: Parameters::on_the_spot(1.0),
+            previous: StepParameters::on_the_spot(1.0),
             width: feet[LEFT].y.abs(),
             early: None,
         };

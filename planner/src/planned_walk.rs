@@ -1,13 +1,13 @@
-//! A plan, and what the planner must remember of it beyond the record that the controller gets.
+//! Planned walk: a plan, and the planner's own knowledge of it.
 
 use crate::steps::{MAX_STEPS, Stride};
-use crate::verdict::{Blocked, Verdict};
+use crate::verdict::{Blocked, PlanVerdict};
 use messages::{Plan, Record};
 
 /// Cycles between the publication of a plan and its start.
 pub const LEAD: u64 = 10;
 
-/// A plan and what the planner must remember of it.
+/// A plan, and what the planner remembers of it.
 #[derive(Clone)]
 pub struct PlannedWalk {
     /// The plan as the controller gets it.
@@ -20,8 +20,8 @@ pub struct PlannedWalk {
     pub(crate) blocked: Option<Blocked>,
     /// \[m\] Least distance of the modified zero-moment point from the edge of the support polygon.
     pub margin: f64,
-    /// What is wrong with it, if anything.
-    pub verdict: Verdict,
+    /// First fault of it, if any.
+    pub verdict: PlanVerdict,
     /// It meets the periodic solution in its divergent component only (thesis 4.6.2).
     pub divergent: bool,
 }
@@ -40,7 +40,7 @@ impl PlannedWalk {
             strides: [Stride::NONE; MAX_STEPS],
             end_cycle: 0,
             margin: 0.0,
-            verdict: Verdict::Sound,
+            verdict: PlanVerdict::Sound,
             divergent: false,
             blocked: None,
         }

@@ -13,10 +13,10 @@
 //! the triangles themselves.
 
 use crate::obstacles::{Extent, Obstacles, Upright};
-use crate::origin::Origin;
+use crate::origin::PlanOrigin;
 use crate::pose::Pose;
 use crate::sole::Sole;
-use crate::steps::{Parameters, ROUNDING, Stride, nu};
+use crate::steps::{ROUNDING, StepParameters, Stride, nu};
 use crate::verdict::Blocked;
 use crate::walking_model::WalkingModel;
 use config::gait;
@@ -24,7 +24,7 @@ use messages::EventCode;
 
 /// Footholds that are looked ahead.
 const LOOK: usize = 8;
-/// \[m\] How near a swinging foot may come to a triangle.
+/// \[m\] Least distance of a swinging foot from a triangle.
 const TOUCH: f64 = 0.01;
 /// \[m\] Height of a foot.
 const FOOT_HEIGHT: f64 = 0.08;
@@ -38,7 +38,7 @@ pub(crate) struct Adapted {
     pub(crate) length: f64,
     /// An obstacle is near: steps take the time of those over obstacles.
     pub(crate) near: bool,
-    /// Why the step is shorter than it should be.
+    /// Obstacle for which the step is shorter than it should be.
     pub(crate) blocked: Option<Blocked>,
 }
 
@@ -132,8 +132,8 @@ impl Reactive {
         at: Pose,
         ground: f64,
         stance: usize,
-        p: &Parameters,
-        wish: &Parameters,
+        p: &StepParameters,
+        wish: &StepParameters,
     ) -> Adapted {
         let free = Adapted { length: p.length, near: false, blocked: None };
         if self.known.is_empty() || !(p.length > ROUNDING) {
@@ -169,11 +169,11 @@ impl Reactive {
         Adapted { length, near: true, blocked: None }
     }
 
-    /// Lifts swings over what lies in their way; what they would touch all the same.
+    /// Lifts swings over what lies in their way; the first obstacle that they would touch all the same.
     pub(crate) fn lift_over(
         &self,
         model: &WalkingModel,
-        from: &Origin,
+        from: &PlanOrigin,
         strides: &mut [Stride],
     ) -> Option<Blocked> {
         if self.known.is_empty() {
@@ -194,7 +194,7 @@ impl Reactive {
     }
 
     /// Top of the bounding box of what lies between take-off and landing of a swing.
-    fn highest(&self, model: &WalkingModel, from: &Origin, s: &Stride) -> Option<f64> {
+    fn highest(&self, model: &WalkingModel, from: &PlanOrigin, s: &Stride) -> Option<f64> {
         let sole = &model.soles[1 - s.stance];
         let margin = 0.5 * self.rules.distance;
         let ends = [s.takeoff, s.landing].map(|p| s.foothold.relative(&p));
@@ -211,7 +211,7 @@ impl Reactive {
     }
 
     /// Does the foot touch a triangle on its way, or where it lands?
-    fn touches(&self, model: &WalkingModel, from: &Origin, s: &Stride) -> bool {
+    fn touches(&self, model: &WalkingModel, from: &PlanOrigin, s: &Stride) -> bool {
         let sole = &model.soles[1 - s.stance];
         let [x, y] = sole.center;
         let [a, b] = sole.half.map(|h| h + TOUCH);

@@ -4,7 +4,7 @@
 use crate::boundary::Ends;
 use crate::com::pieces;
 use crate::marks::Marks;
-use crate::origin::Origin;
+use crate::origin::PlanOrigin;
 use crate::sole::{Hull, Sole};
 use crate::steps::Stride;
 use crate::walking_model::WalkingModel;
@@ -18,7 +18,7 @@ const COM_PIECES: usize = 96;
 /// Steps of a plan, split into the two problems that bring it to rest.
 #[derive(Clone, Copy)]
 pub(crate) struct Horizon<'a> {
-    pub(crate) from: &'a Origin,
+    pub(crate) from: &'a PlanOrigin,
     pub(crate) state: GaitState,
     pub(crate) strides: &'a [Stride],
     /// Steps of the head, which ends in the periodic solution; the tail has the others.
@@ -39,14 +39,14 @@ impl Horizon<'_> {
 }
 
 /// A boundary value problem over some steps.
-pub(crate) struct Segment<'a> {
+pub(crate) struct WalkSegment<'a> {
     pub(crate) strides: &'a [Stride],
     pub(crate) reference: ZmpProblem,
     pub(crate) marks: Marks,
     pub(crate) shapes: [Trapezoid; 2],
 }
 
-impl<'a> Segment<'a> {
+impl<'a> WalkSegment<'a> {
     /// The head: from the present zero-moment point to `to` \[m\], that of the periodic solution.
     pub(crate) fn head(step: &gait::Step, shrunk: &[Sole; 2], horizon: &Horizon<'a>, to: [f64; 2]) -> Self {
         let strides = &horizon.strides[..2];
@@ -78,6 +78,7 @@ impl<'a> Segment<'a> {
             hold(&mut reference, shrunk, s, true);
         }
         reference.fix(horizon.end, goal);
+        // Only a plan's own first step can be one out of standing.
         let state = if whole { horizon.state } else { GaitState::Walking };
         let (first, settling) = (first_shape(step, state, &strides[0]), horizon.settling());
         let mut marks = Marks::from(start);
@@ -166,7 +167,7 @@ fn first_shape(step: &gait::Step, state: GaitState, s: &Stride) -> Trapezoid {
 
 /// A reference that begins at `t` \[s\] in `p` \[m\]. After an early contact, in the first segment, it stays where it would
 /// have been until the step would have ended.
-fn begin(from: &Origin, t: f64, p: [f64; 2], first: bool) -> ZmpProblem {
+fn begin(from: &PlanOrigin, t: f64, p: [f64; 2], first: bool) -> ZmpProblem {
     let mut reference = ZmpProblem::new();
     reference.fix(t, p);
     if let Some((t, p)) = from.early.filter(|_| first) {
@@ -191,7 +192,7 @@ fn mark(marks: &mut Marks, step: &gait::Step, strides: &[Stride]) {
     }
 }
 
-fn mark_early(marks: &mut Marks, from: &Origin) {
+fn mark_early(marks: &mut Marks, from: &PlanOrigin) {
     marks.add(from.early.as_ref().map_or(&[], |e| std::slice::from_ref(&e.0)));
 }
 

@@ -6,10 +6,10 @@
 //! gravity, which cannot hurry, keeps its time. If no plan from there keeps the zero-moment point in its support, or too
 //! little time is left, the clock ends the step, and the next one begins from that height.
 //!
-//! A foot that finds no ground at its time is lowered by the stabilizer, and the clock goes on. Where it then stands is
-//! seen at the end of its step: both feet are planned that much lower, and the body follows.
+//! A foot that finds no ground at its time is lowered by the stabilizer, and the clock goes on. Its height is read at the
+//! end of its step: both feet are planned that much lower, and the body follows.
 
-use crate::origin::Origin;
+use crate::origin::PlanOrigin;
 use crate::planned_walk::{LEAD, PlannedWalk};
 use crate::pose::Pose;
 use messages::{ControllerState, Phase};
@@ -59,7 +59,7 @@ pub(crate) fn at_contact(
     state: &ControllerState,
     tick: u64,
     cycle_s: f64,
-) -> Option<Origin> {
+) -> Option<PlanOrigin> {
     let Touchdown { step, foot } = *touchdown;
     let plan = &*walk.plan;
     let s = walk.strides[step];
@@ -70,7 +70,7 @@ pub(crate) fn at_contact(
         return None;
     }
     let ground = Pose::new(soles[foot][0], soles[foot][1], soles[foot][3]);
-    let mut from = Origin::on_plan(walk, t, soles, foot, s.parameters, Some(s.width));
+    let mut from = PlanOrigin::on_plan(walk, t, soles, foot, s.parameters, Some(s.width));
     from.early = Some((s.end - t, ground.local(plan.zmp.sample(s.end).0)));
     Some(from)
 }
@@ -81,7 +81,7 @@ pub(crate) fn at_boundary(
     k: usize,
     touchdown: Option<Touchdown>,
     state: &ControllerState,
-) -> Origin {
+) -> PlanOrigin {
     let s = &walk.strides[k];
     let mut soles = walk.soles(s.end);
     if let Some(Touchdown { foot, .. }) = touchdown {
@@ -91,7 +91,7 @@ pub(crate) fn at_boundary(
     for sole in &mut soles {
         sole[2] += lower;
     }
-    Origin::on_plan(walk, s.end, soles, 1 - s.stance, s.parameters, Some(s.width))
+    PlanOrigin::on_plan(walk, s.end, soles, 1 - s.stance, s.parameters, Some(s.width))
 }
 
 /// \[m\] Height over the planning frame at which the sole of `foot`, planned at `planned`, has found the ground.
@@ -100,7 +100,7 @@ fn found(state: &ControllerState, foot: usize, planned: f64) -> f64 {
     if (is - planned).abs() > NOTICED { is } else { planned }
 }
 
-/// \[m\] How much lower (negative) or higher than planned the stabilizer has put the sole of the stance foot.
+/// \[m\] Offset by which the stabilizer has put the sole of the stance foot lower (negative) or higher than planned.
 fn lowered(state: &ControllerState, stance: usize) -> f64 {
     let by = state.modification[stance][0];
     if by.abs() > NOTICED { by } else { 0.0 }

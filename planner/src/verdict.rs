@@ -7,7 +7,7 @@ pub(crate) type Blocked = (EventCode, u64);
 
 /// First fault of a plan, if any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum PlanVerdict {
     /// Solved, and it can be walked.
     Sound,
     /// The zero-moment point leaves the support polygon.
@@ -18,6 +18,8 @@ pub enum Verdict {
     Falling,
     /// More friction is needed than there is.
     Slips,
+    /// The closed form (4.44) is for one mass at constant height, and this motion has more, or climbs.
+    NotOneMass,
     /// A support polygon is empty.
     NoSupport,
     /// Phases do not follow one another: no length, wrong order, or too long for the distance of the knots.
@@ -30,7 +32,7 @@ pub enum Verdict {
     NotFinite,
 }
 
-impl Verdict {
+impl PlanVerdict {
     /// This, unless it is sound; then `next`.
     pub fn and(self, next: Self) -> Self {
         if self == Self::Sound { next } else { self }

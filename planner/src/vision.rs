@@ -1,4 +1,4 @@
-//! What the vision system of the thesis would send: the triangles of the objects that a scene calls known, in I_0.
+//! Stand-in for the vision system of the thesis: the triangles of the objects that a scene calls known, in I_0.
 
 use std::error::Error;
 
@@ -29,7 +29,7 @@ pub fn known(setup: &Setup) -> Result<Obstacles, Box<dyn Error>> {
     Ok(obstacles)
 }
 
-/// Where I_0 begins: on the ground, in the middle between the soles of a robot whose torso stands over the origin.
+/// Origin of I_0: on the ground, in the middle between the soles of a robot whose torso stands over the origin.
 fn middle_of_soles(robot: &Robot, pose: &[f64]) -> Result<Vector3<f64>, Box<dyn Error>> {
     let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
     let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?;

@@ -6,13 +6,13 @@ use crate::feet::FootTrajectories;
 use crate::foot_rollover::FootRollover;
 use crate::footsteps::{Footsteps, StepDemand};
 use crate::load;
-use crate::origin::Origin;
+use crate::origin::PlanOrigin;
 use crate::planned_walk::PlannedWalk;
 use crate::segment::Horizon;
 use crate::sole::Sole;
 use crate::steps::Stride;
 use crate::torso;
-use crate::verdict::Verdict;
+use crate::verdict::PlanVerdict;
 use crate::walking_model::WalkingModel;
 use config::Gait;
 use curves::Sample;
@@ -72,12 +72,12 @@ impl Builder {
 
         // Contact forces: what each foot carries.
         if load::lay(&model.soles, &horizon, &plan.zmp, &mut plan.load_left) < -1e-9 {
-            out.verdict = out.verdict.and(Verdict::OverloadsSole);
+            out.verdict = out.verdict.and(PlanVerdict::OverloadsSole);
         }
     }
 
     /// Raises or lowers the body and brings the centre of gravity between the feet, whose soles are at `heights` \[m\] now.
-    pub fn stand(&mut self, from: &Origin, heights: [f64; 2], out: &mut PlannedWalk) {
+    pub fn stand(&mut self, from: &PlanOrigin, heights: [f64; 2], out: &mut PlannedWalk) {
         let model = &self.model;
         let end_cycle = model.cycles(model.model.stand_time);
         let end = end_cycle as f64 * model.cycle_s;
@@ -87,6 +87,7 @@ impl Builder {
         let last = Sample::rest([target[0], target[1], model.model.com_height]);
         plan.com.restart(0.0, from.com.position);
         plan.com.push(&from.com, &last, end);
+        // Soles that hang at different heights come to stand beside one another.
         for (i, z) in heights.into_iter().enumerate() {
             let p = from.feet[i];
             plan.feet[i].restart(0.0, [p.x, p.y, z, p.heading]);
@@ -107,13 +108,13 @@ impl Builder {
             plan.zmp.push(t, [0, 1].map(|d| c.position[d] - over * c.acceleration[d]));
         }
         out.end_cycle = end_cycle;
-        (out.margin, out.verdict, out.divergent) = (0.0, Verdict::Sound, false);
+        (out.margin, out.verdict, out.divergent) = (0.0, PlanVerdict::Sound, false);
         out.blocked = None;
     }
 }
 
 /// Height of the zero-moment point: with the load from one sole to the other.
-fn lay_ground(from: &Origin, strides: &[Stride], end: f64, path: &mut GroundPath) {
+fn lay_ground(from: &PlanOrigin, strides: &[Stride], end: f64, path: &mut GroundPath) {
     let [r, l] = from.heights;
     path.push(0.0, [(1.0 - from.load_left) * r + from.load_left * l]);
     for s in strides {
@@ -124,7 +125,7 @@ fn lay_ground(from: &Origin, strides: &[Stride], end: f64, path: &mut GroundPath
     path.push(end, [0.5 * (last.foothold + last.landing)]);
 }
 
-fn begin(plan: &mut Plan, from: &Origin, state: GaitState) {
+fn begin(plan: &mut Plan, from: &PlanOrigin, state: GaitState) {
     plan.state = state as u64;
     plan.origin = from.frame.array();
     plan.step_count = 0;

@@ -1,4 +1,4 @@
-//! Steps, masses, soles and cycle of one robot: what all stages of planning read and none of them changes.
+//! Steps, masses, soles and cycle of one robot: all stages of planning read them, none changes them.
 
 use crate::pose::{Pose, rotate};
 use crate::sole::Sole;

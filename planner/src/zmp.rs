@@ -13,7 +13,7 @@
 
 use crate::pose::Pose;
 use crate::sole::Sole;
-use crate::verdict::Verdict;
+use crate::verdict::PlanVerdict;
 
 /// Most phase boundaries of one problem.
 pub const MAX_NODES: usize = 48;
@@ -25,7 +25,7 @@ const RELAXATION: (usize, f64) = (12, 1.6);
 
 /// A rectangle that holds a point: a shrunk sole on the ground.
 #[derive(Clone, Copy, Debug)]
-pub struct Hold {
+pub struct ZmpHold {
     /// \[m\] Middle.
     pub center: [f64; 2],
     /// Its longitudinal axis.
@@ -34,7 +34,7 @@ pub struct Hold {
     pub half: [f64; 2],
 }
 
-impl Hold {
+impl ZmpHold {
     /// The rectangle of `sole` at the pose `at`.
     pub fn new(sole: &Sole, at: &Pose) -> Self {
         let (s, c) = at.heading.sin_cos();
@@ -52,7 +52,7 @@ impl Hold {
         [c * v[0] + s * v[1], c * v[1] - s * v[0]]
     }
 
-    /// The inverse of [`Hold::local`].
+    /// The inverse of [`ZmpHold::local`].
     pub fn point(&self, q: [f64; 2]) -> [f64; 2] {
         let [c, s] = self.axis;
         [self.center[0] + c * q[0] - s * q[1], self.center[1] + s * q[0] + c * q[1]]
@@ -74,13 +74,13 @@ impl Hold {
 
 /// One phase boundary.
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
+pub struct ZmpNode {
     /// \[s\]
     pub time: f64,
     /// \[m\]
     pub p: [f64; 2],
     /// Rectangle that holds the point; none: the point is given.
-    pub hold: Option<Hold>,
+    pub hold: Option<ZmpHold>,
 }
 
 /// Phase boundaries in the order of time.
@@ -88,7 +88,7 @@ pub struct Node {
 pub struct ZmpProblem {
     len: usize,
     full: bool,
-    nodes: [Node; MAX_NODES],
+    nodes: [ZmpNode; MAX_NODES],
 }
 
 impl Default for ZmpProblem {
@@ -100,7 +100,7 @@ impl Default for ZmpProblem {
 impl ZmpProblem {
     /// No boundaries yet.
     pub const fn new() -> Self {
-        Self { len: 0, full: false, nodes: [Node { time: 0.0, p: [0.0; 2], hold: None }; MAX_NODES] }
+        Self { len: 0, full: false, nodes: [ZmpNode { time: 0.0, p: [0.0; 2], hold: None }; MAX_NODES] }
     }
 
     /// Removes all boundaries.
@@ -110,16 +110,16 @@ impl ZmpProblem {
 
     /// Appends a given point.
     pub fn fix(&mut self, time: f64, p: [f64; 2]) {
-        self.push(Node { time, p, hold: None });
+        self.push(ZmpNode { time, p, hold: None });
     }
 
     /// Appends a point that a sole holds.
     pub fn hold(&mut self, time: f64, sole: &Sole, at: &Pose) {
-        let hold = Hold::new(sole, at);
-        self.push(Node { time, p: hold.center, hold: Some(hold) });
+        let hold = ZmpHold::new(sole, at);
+        self.push(ZmpNode { time, p: hold.center, hold: Some(hold) });
     }
 
-    fn push(&mut self, node: Node) {
+    fn push(&mut self, node: ZmpNode) {
         self.full |= self.len == MAX_NODES;
         if !self.full {
             self.nodes[self.len] = node;
@@ -128,52 +128,52 @@ impl ZmpProblem {
     }
 
     /// The boundaries.
-    pub fn nodes(&self) -> &[Node] {
+    pub fn nodes(&self) -> &[ZmpNode] {
         &self.nodes[..self.len]
     }
 
-    pub(crate) fn nodes_mut(&mut self) -> &mut [Node] {
+    pub(crate) fn nodes_mut(&mut self) -> &mut [ZmpNode] {
         &mut self.nodes[..self.len]
     }
 
     /// Verdict on the problem before it is solved.
-    fn posed(&self) -> Verdict {
+    fn posed(&self) -> PlanVerdict {
         let nodes = self.nodes();
         if self.full {
-            return Verdict::TooLong;
+            return PlanVerdict::TooLong;
         }
         for (k, n) in nodes.iter().enumerate() {
             let numbers = [n.time, n.p[0], n.p[1]];
             if !numbers.iter().chain(n.hold.iter().flat_map(|h| &h.half)).all(|x| x.is_finite()) {
-                return Verdict::NotFinite;
+                return PlanVerdict::NotFinite;
             }
             if n.hold.is_some_and(|h| h.half[0] < 0.0 || h.half[1] < 0.0) {
-                return Verdict::NoSupport;
+                return PlanVerdict::NoSupport;
             }
             if k > 0 && n.time <= nodes[k - 1].time {
-                return Verdict::Degenerate;
+                return PlanVerdict::Degenerate;
             }
         }
-        if nodes.len() < 2 { Verdict::Degenerate } else { Verdict::Sound }
+        if nodes.len() < 2 { PlanVerdict::Degenerate } else { PlanVerdict::Sound }
     }
 
     /// Solves (4.42) between given ends.
-    pub fn solve(&mut self) -> Verdict {
+    pub fn solve(&mut self) -> PlanVerdict {
         match self.posed() {
-            Verdict::Sound if self.solve_directly() => Verdict::Sound,
-            Verdict::Sound => self.relax(SWEEPS),
+            PlanVerdict::Sound if self.solve_directly() => PlanVerdict::Sound,
+            PlanVerdict::Sound => self.relax(SWEEPS),
             wrong => wrong,
         }
     }
 
     /// Solves (4.42) by at most so many sweeps of projected Gauss-Seidel.
-    pub fn relax(&mut self, sweeps: usize) -> Verdict {
+    pub fn relax(&mut self, sweeps: usize) -> PlanVerdict {
         let wrong = self.posed();
         let omega = if self.len > RELAXATION.0 { RELAXATION.1 } else { 1.0 };
-        if wrong != Verdict::Sound || (0..sweeps).any(|_| self.sweep(omega) <= TOLERANCE) {
+        if wrong != PlanVerdict::Sound || (0..sweeps).any(|_| self.sweep(omega) <= TOLERANCE) {
             return wrong;
         }
-        Verdict::Unsettled
+        PlanVerdict::Unsettled
     }
 
     /// One sweep of [`ZmpProblem::relax`]; how far \[m\] a point moved at most.
@@ -188,11 +188,11 @@ impl ZmpProblem {
 
     /// Solves (4.42) for a problem whose last point is the first one moved by the rigid motion that takes the pose
     /// `from` to `to` (gap 12).
-    pub fn solve_periodic(&mut self, from: &Pose, to: &Pose) -> Verdict {
+    pub fn solve_periodic(&mut self, from: &Pose, to: &Pose) -> PlanVerdict {
         let wrong = self.posed();
         let n = self.len;
-        if wrong != Verdict::Sound || n < 3 {
-            return wrong.and(Verdict::Degenerate);
+        if wrong != PlanVerdict::Sound || n < 3 {
+            return wrong.and(PlanVerdict::Degenerate);
         }
         let (there, back) = (RigidMotion::new(from, to), RigidMotion::new(to, from));
         let period = self.nodes[n - 1].time - self.nodes[0].time;
@@ -205,10 +205,10 @@ impl ZmpProblem {
             self.nodes[n - 1].p = there.of(self.nodes[0].p);
             change = change.max(self.sweep(1.0));
             if change <= TOLERANCE {
-                return Verdict::Sound;
+                return PlanVerdict::Sound;
             }
         }
-        Verdict::Unsettled
+        PlanVerdict::Unsettled
     }
 
     /// The reference at `t`: linear between boundaries.
@@ -231,7 +231,7 @@ impl ZmpProblem {
     }
 }
 
-impl Node {
+impl ZmpNode {
     /// One Gauss-Seidel update; returns how far the point moved.
     fn relax(&mut self, before: (f64, [f64; 2]), after: (f64, [f64; 2]), omega: f64) -> f64 {
         let Some(hold) = &self.hold else { return 0.0 };

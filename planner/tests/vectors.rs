@@ -1,10 +1,11 @@
 //! Vectors of errata 2 and orders of convergence.
 
 use planner::boundary::PlanarState;
+use planner::cog_method::BoundarySolver;
 use planner::collocation::Collocation;
 use planner::pose::Pose;
 use planner::sole::Sole;
-use planner::steps::{Parameters, displacement, next_foothold, nu, required_distance};
+use planner::steps::{StepParameters, displacement, next_foothold, nu, required_distance};
 use planner::zmp::{Trapezoid, ZmpProblem};
 
 const G: f64 = 9.81;
@@ -13,8 +14,8 @@ fn close(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance, "{a} instead of {b}");
 }
 
-fn parameters(length: f64, side: f64, turn: f64) -> Parameters {
-    Parameters { length, side, turn, duration: 0.8 }
+fn parameters(length: f64, side: f64, turn: f64) -> StepParameters {
+    StepParameters { length, side, turn, duration: 0.8 }
 }
 
 #[test]

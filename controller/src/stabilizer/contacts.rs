@@ -1,10 +1,10 @@
-//! First stage of figure 5.8: which feet carry, what their contacts resist, and how they move apart from forces.
+//! First stage of figure 5.8: contacts of the feet, what they resist, and their position-control inputs.
 
 use messages::Sensors;
 use nalgebra::{Matrix3, Vector3, Vector6};
 
-use super::cycle::Cycle;
-use crate::contact::{Contact, Signs};
+use super::cycle::ControlCycle;
+use crate::contact::{FootContact, Signs};
 use crate::contact_force::FootWrench;
 use crate::force_control::{Compliance, FootReference, contact_stiffness};
 use crate::task_space::TaskSpace;
@@ -15,7 +15,7 @@ const OPEN: f64 = 0.004;
 /// Contacts of both feet, right and left.
 #[derive(Clone)]
 pub(super) struct FootContacts {
-    contacts: [Contact; 2],
+    contacts: [FootContact; 2],
     /// K of each foot, and K^+ that was made of it.
     stiffness: [Matrix3<f64>; 2],
     compliance: [Compliance; 2],
@@ -23,7 +23,7 @@ pub(super) struct FootContacts {
     pub(super) filtered: Vector6<f64>,
 }
 
-/// What later stages know of the feet in this cycle.
+/// Contacts of this cycle.
 pub(super) struct Footing {
     /// Compliance and position-control inputs: right, left.
     pub(super) feet: [(Compliance, FootReference); 2],
@@ -32,7 +32,7 @@ pub(super) struct Footing {
 }
 
 impl Footing {
-    pub(super) fn contacts(&self) -> [Contact; 2] {
+    pub(super) fn contacts(&self) -> [FootContact; 2] {
         [self.feet[0].1.contact, self.feet[1].1.contact]
     }
 }
@@ -40,7 +40,7 @@ impl Footing {
 impl FootContacts {
     pub(super) fn new() -> Self {
         Self {
-            contacts: [Contact::default(); 2],
+            contacts: [FootContact::default(); 2],
             stiffness: [Matrix3::zeros(); 2],
             compliance: [Compliance::new(&Matrix3::zeros()); 2],
             filtered: Vector6::zeros(),
@@ -49,12 +49,12 @@ impl FootContacts {
 
     /// Both feet swing, and the filter begins with what is `measured`.
     pub(super) fn reset(&mut self, measured: Vector6<f64>) {
-        self.contacts = [Contact::default(); 2];
+        self.contacts = [FootContact::default(); 2];
         self.filtered = measured;
     }
 
     /// One cycle with these `measured` forces \[N, N m\].
-    pub(super) fn update_contacts(&mut self, cycle: &Cycle<'_>, measured: Vector6<f64>) -> Footing {
+    pub(super) fn update_contacts(&mut self, cycle: &ControlCycle<'_>, measured: Vector6<f64>) -> Footing {
         let a = (cycle.dt / cycle.control.force_filter).min(1.0);
         self.filtered += (measured - self.filtered) * a;
         let feet = [0, 1].map(|foot| {
@@ -76,7 +76,7 @@ impl FootContacts {
 
 /// K of a foot on the contact points that the plan has on the ground: all of a flat foot, one edge of a pitched
 /// one, those of the toe segment while the toe bends (5.23).
-fn stiffness(cycle: &Cycle<'_>, foot: usize) -> Matrix3<f64> {
+fn stiffness(cycle: &ControlCycle<'_>, foot: usize) -> Matrix3<f64> {
     let (s, c) = cycle.end.pitch[foot].position[0].sin_cos();
     let points = cycle.kinematics.contact_points(foot).map(|p| (p, c * p.z - s * p.x));
     let lowest = points.clone().fold(f64::INFINITY, |low, (_, height)| low.min(height));
@@ -85,7 +85,7 @@ fn stiffness(cycle: &Cycle<'_>, foot: usize) -> Matrix3<f64> {
 }
 
 /// Swing foot modification for an upper body that leans: where the plan wants it over the ground (4.9).
-fn inclination_target(cycle: &Cycle<'_>, foot: usize) -> Vector3<f64> {
+fn inclination_target(cycle: &ControlCycle<'_>, foot: usize) -> Vector3<f64> {
     let now = cycle.now;
     let error = |i: usize| now.torso.position[i] - cycle.estimate.angles[i];
     // Rotation that takes the torso back, in the planning frame's axes for a heading of zero: phi_x rises with

@@ -40,7 +40,7 @@ impl CycleClock {
 
 /// Inputs that all stages of a cycle share.
 #[derive(Clone, Copy)]
-pub(super) struct Cycle<'a> {
+pub(super) struct ControlCycle<'a> {
     pub(super) robot: &'a Robot,
     pub(super) control: &'a Control,
     /// \[s\]
@@ -55,7 +55,7 @@ pub(super) struct Cycle<'a> {
     pub(super) kinematics: &'a TaskSpace,
 }
 
-impl Cycle<'_> {
+impl ControlCycle<'_> {
     /// Axes of the planned foot (heading x, y, normal of the sole) in torso axes.
     pub(super) fn foot_axes(&self, foot: usize) -> Matrix3<f64> {
         let at = self.end;

@@ -1,15 +1,15 @@
-//! Second stage of figure 5.8: what the feet shall press so that the body stays upright (5.2)-(5.22).
+//! Second stage of figure 5.8: force targets of the feet (5.2)-(5.22).
 
 use nalgebra::{Rotation3, Vector2, Vector3, Vector6};
 
 use super::contacts::{Footing, force_coordinates};
-use super::cycle::{Cycle, pitched};
-use crate::contact::{Contact, felt_load};
+use super::cycle::{ControlCycle, pitched};
+use crate::contact::{FootContact, felt_load};
 use crate::contact_force::{FootWrench, Support, distribute, stabilize};
 use crate::force_control::{Compliance, ForceTargets};
 use crate::plan_follower::Desired;
 
-/// Forces that the feet shall have in this cycle.
+/// Force targets of this cycle.
 pub(super) struct FootForces {
     /// Targets of the force controller.
     pub(super) targets: ForceTargets,
@@ -19,9 +19,9 @@ pub(super) struct FootForces {
     pub(super) deformation: [[Vector3<f64>; 2]; 2],
 }
 
-/// Contact forces: what the plan wants with the stabilizing part, and what is measured (5.2)-(5.22).
-pub(super) fn force_targets(cycle: &Cycle<'_>, footing: &Footing) -> FootForces {
-    let Cycle { control, now, end, estimate, .. } = *cycle;
+/// Force targets: those of the plan with the stabilizing part, beside the measured forces (5.2)-(5.22).
+pub(super) fn force_targets(cycle: &ControlCycle<'_>, footing: &Footing) -> FootForces {
+    let ControlCycle { control, now, end, estimate, .. } = *cycle;
     // Stabilizing force and moment, from the errors of inclination and height.
     let error = Vector2::from_fn(|i, _| now.torso.position[i] - estimate.angles[i]);
     let rate = Vector2::from_fn(|i, _| now.torso.velocity[i] - estimate.rates[i]);
@@ -58,7 +58,7 @@ pub(super) fn force_targets(cycle: &Cycle<'_>, footing: &Footing) -> FootForces 
 
 /// lambda_d1 in the sensor frames, whose axes are those of the flat soles (5.20), (5.21).
 fn foot_forces(
-    cycle: &Cycle<'_>,
+    cycle: &ControlCycle<'_>,
     at: &Desired,
     load: [f64; 2],
     stabilizing: (Vector3<f64>, f64),
@@ -80,8 +80,8 @@ fn foot_forces(
     })
 }
 
-/// Where a foot carries, as planned.
-fn support(cycle: &Cycle<'_>, at: &Desired, load: f64, foot: usize) -> Support {
+/// Support of a foot, as planned.
+fn support(cycle: &ControlCycle<'_>, at: &Desired, load: f64, foot: usize) -> Support {
     let offset = cycle.sensor_from_sole(foot);
     let [x, y, z, heading] = at.feet[foot].position;
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), heading);
@@ -99,7 +99,7 @@ fn support(cycle: &Cycle<'_>, at: &Desired, load: f64, foot: usize) -> Support {
 /// Deformation of a sole under the planned `forces` (now, end of the cycle) and its rate (z, roll, pitch), as far as the
 /// foot trajectories are to have it (4.9).
 fn deformation(
-    cycle: &Cycle<'_>,
+    cycle: &ControlCycle<'_>,
     compliance: &Compliance,
     forces: &[Vector6<f64>; 2],
     foot: usize,
@@ -111,7 +111,7 @@ fn deformation(
 
 /// A foot that has come before its load presses with at least `press` \[N\], which the other foot need not carry: without
 /// it the foot leaves the ground again, and strikes when its load comes.
-fn keep_ground(wrenches: &mut [FootWrench; 2], contacts: &[Contact; 2], press: f64) {
+fn keep_ground(wrenches: &mut [FootWrench; 2], contacts: &[FootContact; 2], press: f64) {
     for (foot, _) in contacts.iter().enumerate().filter(|(_, contact)| contact.waits) {
         let lack = (press - wrenches[foot].force.z).max(0.0);
         wrenches[foot].force.z += lack;
@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn a_foot_that_waits_for_its_load_presses_and_the_sum_stays() {
         let wrench = |z| FootWrench { force: Vector3::new(1.0, 2.0, z), moment: Vector3::new(3.0, 4.0, 0.0) };
-        let contact = |waits| Contact { waits, ..Contact::default() };
+        let contact = |waits| FootContact { waits, ..FootContact::default() };
         for (forces, waits, expected) in [
             ([600.0, 0.0], [false, true], [550.0, 50.0]),
             ([600.0, 0.0], [false, false], [600.0, 0.0]),

@@ -7,7 +7,7 @@ use messages::Plan;
 use multibody::ModelError;
 use nalgebra::Matrix6;
 
-use super::cycle::Cycle;
+use super::cycle::ControlCycle;
 use super::joints::{JointState, Onset};
 use super::task;
 use crate::approach::Approach;
@@ -68,7 +68,7 @@ impl JointSpeeds {
     }
 
     /// N of the modification, through the inverse kinematics (5.30).
-    pub(super) fn sole_motion(&self, cycle: &Cycle<'_>, task: &Factorised) -> Matrix6<f64> {
+    pub(super) fn sole_motion(&self, cycle: &ControlCycle<'_>, task: &Factorised) -> Matrix6<f64> {
         let speeds = self.ik.columns(task, &task::unit_modifications(cycle));
         task::sole_motion(cycle, &speeds, &self.free)
     }
@@ -77,7 +77,7 @@ impl JointSpeeds {
     /// much the joints lag behind their targets.
     pub(super) fn solve(
         &mut self,
-        cycle: &Cycle<'_>,
+        cycle: &ControlCycle<'_>,
         (task, velocity): (&Factorised, &TaskVector),
         joints: &JointState,
         onset: Onset,
@@ -96,7 +96,13 @@ impl JointSpeeds {
     }
 
     /// Speeds of the joints that no foot needs: toes as planned, the others to their comfortable angles.
-    fn given_speeds(&self, cycle: &Cycle<'_>, joints: &JointState, onset: Onset, lag: &[f64]) -> JointVector {
+    fn given_speeds(
+        &self,
+        cycle: &ControlCycle<'_>,
+        joints: &JointState,
+        onset: Onset,
+        lag: &[f64],
+    ) -> JointVector {
         let mut speeds = JointVector::zeros();
         let settle = SETTLE.eased(onset.share);
         for (j, joint) in cycle.robot.joints.iter().enumerate().filter(|(j, _)| !self.free[*j]) {
@@ -124,7 +130,7 @@ fn toe_speed(plan: &Sample<1>, angle: f64, bent: f64, drift: f64) -> f64 {
 }
 
 /// Motion of the torso as the camera head takes it, in the planning frame of `plan`.
-pub(super) fn torso_motion(cycle: &Cycle<'_>, plan: &Plan, omega: [f64; 3]) -> TorsoMotion {
+pub(super) fn torso_motion(cycle: &ControlCycle<'_>, plan: &Plan, omega: [f64; 3]) -> TorsoMotion {
     let estimate = cycle.estimate;
     TorsoMotion {
         origin: plan.origin,

@@ -3,14 +3,14 @@
 
 use nalgebra::{Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 
-use super::cycle::Cycle;
+use super::cycle::ControlCycle;
 use crate::force_control::Modification;
 use crate::inverse_kinematics::{TASK, TaskVector};
 use crate::plan_follower::Desired;
 use crate::torso;
 
 /// One unit of each component of the modification, (z, roll, pitch) right, then left, as task velocities.
-pub(super) fn unit_modifications(cycle: &Cycle<'_>) -> SMatrix<f64, TASK, 6> {
+pub(super) fn unit_modifications(cycle: &ControlCycle<'_>) -> SMatrix<f64, TASK, 6> {
     let mut unit = SMatrix::<f64, TASK, 6>::zeros();
     for foot in 0..2 {
         let axes = cycle.foot_axes(foot);
@@ -24,7 +24,7 @@ pub(super) fn unit_modifications(cycle: &Cycle<'_>) -> SMatrix<f64, TASK, 6> {
 /// N: lift, roll and pitch of both soles against the torso per unit of modification, from the `speeds` of the joints that
 /// realise it (5.30); `free` marks the joints that take part.
 pub(super) fn sole_motion<const JOINTS: usize>(
-    cycle: &Cycle<'_>,
+    cycle: &ControlCycle<'_>,
     speeds: &SMatrix<f64, JOINTS, 6>,
     free: &[bool],
 ) -> Matrix6<f64> {
@@ -45,7 +45,7 @@ pub(super) fn sole_motion<const JOINTS: usize>(
 /// x'_d1 with drift compensation K_x (x_d1 - x), torso axes (5.33), (5.35); `drift` is K_x \[1/s\], `deformation` that of
 /// each sole and its rate.
 pub(super) fn task_velocity(
-    cycle: &Cycle<'_>,
+    cycle: &ControlCycle<'_>,
     modification: &Modification,
     deformation: &[[Vector3<f64>; 2]; 2],
     drift: f64,

@@ -1,4 +1,4 @@
-//! What the controller publishes: joint targets, its state, events. All of it is written here.
+//! Records and events that the controller publishes: all of them are written here.
 
 use messages::{
     ControllerState, EventCode, GaitState, JointMode, JointTargets, Parameters, Plan, Sensors, StartUp,
@@ -11,7 +11,7 @@ use crate::contact_force::FootWrench;
 use crate::estimate::Estimate;
 use crate::force_control::Modification;
 use crate::plan_follower::{Desired, PlanFollower};
-use crate::watch::{FALLING, Watch};
+use crate::watch::{FALLING, SafetyWatch};
 use config::gait::Control;
 use config::parameters::STABILIZER;
 
@@ -23,7 +23,7 @@ const QUIET: f64 = 1.0;
 pub(super) struct Telemetry {
     pub(super) targets: JointTargets,
     pub(super) state: ControllerState,
-    /// What happened and was not fetched yet, the first one first.
+    /// Events that were not fetched yet, the first one first.
     events: [Option<(EventCode, u64)>; 4],
     /// Ticks at which each kind of limit was met last.
     met: [Option<u64>; 3],
@@ -31,7 +31,7 @@ pub(super) struct Telemetry {
 
 /// Limits that a cycle met.
 #[derive(Clone, Copy)]
-pub(super) struct Limits {
+pub(super) struct MetLimits {
     /// The task is nearly singular and damped.
     pub(super) damped: bool,
     /// A modification is at its limit.
@@ -41,9 +41,9 @@ pub(super) struct Limits {
 }
 
 /// Outcome of a cycle that is to be published.
-pub(super) struct Outcome<'a> {
+pub(super) struct CycleOutcome<'a> {
     pub(super) plan: &'a PlanFollower,
-    pub(super) watch: &'a Watch,
+    pub(super) watch: &'a SafetyWatch,
     pub(super) joints: &'a JointState,
     pub(super) modification: &'a Modification,
     /// lambda_d1, if the robot was stabilized.
@@ -70,7 +70,7 @@ impl Telemetry {
 
     /// Counts limits. An event where a nearly singular task begins to be damped (1), a modification (2) or a joint (3) meets
     /// its limit, each once until it was quiet for [`QUIET`].
-    pub(super) fn note_limits(&mut self, limits: &Limits, clock: &CycleClock) {
+    pub(super) fn note_limits(&mut self, limits: &MetLimits, clock: &CycleClock) {
         self.state.limited += u64::from(limits.damped) + u64::from(limits.modification) + limits.joints;
         let met = [limits.damped, limits.modification, limits.joints > 0];
         let tick = clock.tick();
@@ -84,8 +84,8 @@ impl Telemetry {
     }
 
     /// Writes the records of a cycle.
-    pub(super) fn report(&mut self, sensors: &Sensors, clock: &CycleClock, outcome: &Outcome<'_>) {
-        let Outcome { plan, watch, joints, now, estimate, .. } = *outcome;
+    pub(super) fn report(&mut self, sensors: &Sensors, clock: &CycleClock, outcome: &CycleOutcome<'_>) {
+        let CycleOutcome { plan, watch, joints, now, estimate, .. } = *outcome;
         let t = plan.time(sensors.header.tick, clock.dt);
         self.targets.header = sensors.header;
         self.targets.mode = match (plan.id(), watch.stopped()) {
@@ -131,8 +131,8 @@ impl Telemetry {
 }
 
 /// Gait state of the robot. Who lies, or was stopped, is in none.
-fn gait(sensors: &Sensors, outcome: &Outcome<'_>, t: f64) -> GaitState {
-    let Outcome { plan, watch, estimate, .. } = *outcome;
+fn gait(sensors: &Sensors, outcome: &CycleOutcome<'_>, t: f64) -> GaitState {
+    let CycleOutcome { plan, watch, estimate, .. } = *outcome;
     // Without a plan nobody watches the inclination; an IMU that says nothing yet is no fall.
     let lies = (0..2).any(|i| (FRAC_PI_2 - estimate.angles[i]).abs() > FALLING);
     match watch.stopped() {

@@ -2,6 +2,7 @@
 //! knots on the phases and without (errata 2.7, 2.8).
 
 use planner::boundary::U;
+use planner::cog_method::BoundarySolver;
 use planner::collocation::Collocation;
 
 use super::{Chart, Cost, Point, cost};
