@@ -255,12 +255,12 @@ impl Gait {
         }
         let leg_mass = self.model.leg_mass;
         if self.model.cog_method == CogMethod::ClosedForm && (leg_mass > 0.0 || self.obstacles.is_some()) {
-            let climbs = if self.obstacles.is_some() { "there are [obstacles]" } else { "no [obstacles]" };
+            let has = if self.obstacles.is_some() { "with" } else { "without" };
             top.problem(
                 "model",
                 format!(
                     "cog_method `closed_form` is for one mass at constant height: it wants leg_mass 0 and no [obstacles] \
-                     (now {leg_mass}, {climbs}); or take `collocation`"
+                     (now {leg_mass}, {has}); or take `collocation`"
                 ),
             );
         }
