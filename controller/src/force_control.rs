@@ -197,7 +197,7 @@ fn free_part(
     rate
 }
 
-/// \[m/s\] How fast a foot goes down that searches for the ground, whose modification is `height` \[m\] and that went down
+/// \[m/s\] Speed of a foot that goes down to search for the ground, whose modification is `height` \[m\] and that went down
 /// at `last` \[m/s\].
 fn search_speed(control: &Control, height: f64, last: f64, dt: f64) -> f64 {
     let [most, depth] = control.search;

@@ -35,6 +35,13 @@ use telemetry::{CycleOutcome, MetLimits, Telemetry};
 /// Feedback path 2.
 const MEASURED: u64 = 2;
 
+/// Desired and measured task space of a cycle, and the desired wrenches of the feet, if the robot was stabilized.
+struct Followed {
+    now: Desired,
+    estimate: Estimate,
+    wrenches: Option<[FootWrench; 2]>,
+}
+
 /// The stabilizing control of one robot.
 #[derive(Clone)]
 pub struct Controller {
@@ -75,7 +82,7 @@ impl Controller {
         })
     }
 
-    /// What it carries from cycle to cycle besides the plan, for studies that disturb it: joint targets \[rad\],
+    /// Memory from cycle to cycle besides the plan, for studies that disturb it: joint targets \[rad\],
     /// modification \[m, rad, rad\], filtered forces \[N, N m, N m\].
     pub fn memory(&mut self) -> [&mut [f64]; 3] {
         let n = self.robot.joints.len();
@@ -136,9 +143,9 @@ impl Controller {
         let lag = self.joints.lag(sensors, self.robot.joints.len());
         let mut wrenches = None;
         for past in oldest..tick {
-            wrenches = self.follow(sensors, &lag, past).2.or(wrenches);
+            wrenches = self.follow(sensors, &lag, past).wrenches.or(wrenches);
         }
-        let (now, estimate, new) = self.follow(sensors, &lag, tick);
+        let Followed { now, estimate, wrenches: new } = self.follow(sensors, &lag, tick);
         let outcome = CycleOutcome {
             plan: &self.plan,
             watch: &self.watch,
@@ -153,14 +160,8 @@ impl Controller {
         (&self.telemetry.targets, &self.telemetry.state)
     }
 
-    /// Joint targets for the end of the cycle `tick`; the desired and the measured task space, and the desired wrenches of
-    /// the feet, if the robot was stabilized.
-    fn follow(
-        &mut self,
-        sensors: &Sensors,
-        lag: &[f64; MAX_JOINTS],
-        tick: u64,
-    ) -> (Desired, Estimate, Option<[FootWrench; 2]>) {
+    /// Joint targets for the end of the cycle `tick`.
+    fn follow(&mut self, sensors: &Sensors, lag: &[f64; MAX_JOINTS], tick: u64) -> Followed {
         self.telemetry.note(self.plan.update(tick, None));
         let dt = self.clock.dt;
         let t = self.plan.time(tick, dt);
@@ -174,14 +175,15 @@ impl Controller {
             let why = self.watch.check(sensors, &now, &estimate);
             self.telemetry.note(why.map(|code| (code, 0)));
         }
-        if powered && self.watch.stopped().is_none() {
+        let wrenches = if powered && self.watch.stopped().is_none() {
             let (wrenches, limits) = self.stabilize(sensors, lag, &now, &end, &estimate);
             self.telemetry.note_limits(&limits, &self.clock);
-            (now, estimate, Some(wrenches))
+            Some(wrenches)
         } else {
             self.joints.rest();
-            (now, estimate, None)
-        }
+            None
+        };
+        Followed { now, estimate, wrenches }
     }
 
     /// Stands still where the joints are: while the supply is off the targets follow the measured angles.

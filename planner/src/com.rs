@@ -46,7 +46,7 @@ pub struct Forcing<'a> {
     pub ground: &'a GroundPath,
     /// Reference of the zero-moment point.
     pub zmp: &'a ZmpProblem,
-    /// Where the zero-moment point may be modified.
+    /// Shapes of the modification of the zero-moment point.
     pub shapes: [Trapezoid; 2],
 }
 

@@ -15,7 +15,7 @@ use messages::GaitState;
 /// Demand on the steps of one plan.
 #[derive(Clone, Copy, Debug)]
 pub struct StepDemand<'a> {
-    /// Where they begin.
+    /// Origin of the plan.
     pub from: &'a PlanOrigin,
     /// Starting, walking or stopping.
     pub state: GaitState,
@@ -205,7 +205,7 @@ fn closes(demand: &StepDemand<'_>, n: usize, previous: &StepParameters, first: f
 }
 
 impl Foothold {
-    /// Where a plan begins.
+    /// Start of the first step of a plan.
     fn first(from: &PlanOrigin, swing_height: f64) -> Self {
         let stance = from.stance;
         Self {
