@@ -155,26 +155,6 @@ fn rules_of_a_gait() {
     );
 }
 
-/// The closed form knows one mass at constant height: whoever wants more of it is told so when the file is read.
-#[test]
-fn closed_form_of_three_masses() {
-    let copy =
-        Copy::new("closed-form").spoil("gaits/lola.toml", "[model]", "[model]\ncog_method = \"closed_form\"");
-    let error = copy.gait();
-    let error = text(&error);
-    assert!(
-        error.contains("cog_method `closed_form` is for one mass at constant height: it wants leg_mass 0 and no [obstacles]"),
-        "{error}"
-    );
-    let copy = Copy::new("no-form").spoil("gaits/lola.toml", "[model]", "[model]\ncog_method = \"spline\"");
-    let error = copy.gait();
-    assert!(
-        text(&error).contains("`spline` is not known; it takes one of `collocation`, `closed_form`"),
-        "{}",
-        text(&error)
-    );
-}
-
 #[test]
 fn not_toml() {
     let copy = Copy::new("syntax").spoil("gaits/lola.toml", "width = 0.21", "width 0.21");

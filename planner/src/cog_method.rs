@@ -41,8 +41,8 @@ pub(crate) enum CogSolver {
 impl CogSolver {
     pub(crate) fn new(method: gait::CogMethod) -> Self {
         match method {
-            gait::CogMethod::Collocation => Self::Collocation(Box::new(Collocation::new())),
-            gait::CogMethod::ClosedForm => Self::ClosedForm(Box::new(ClosedForm::new())),
+            gait::CogMethod::Collocation => Self::Collocation(Box::default()),
+            gait::CogMethod::ClosedForm => Self::ClosedForm(Box::default()),
         }
     }
 
