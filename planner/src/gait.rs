@@ -272,66 +272,75 @@ impl Planner {
         Ok((if still { Intent::Walk } else { intent }, None))
     }
 
+    /// Makes the plan that is due; `false` if none is, or none can be walked.
     fn make(&mut self, tick: u64, gait: GaitState, state: &ControllerState, due: Move) -> bool {
         match due {
             Move::Nothing => false,
-            Move::Stand => {
-                // From the measured joints, or from where the last plan has left the robot.
-                let from = if gait == GaitState::Idle {
-                    PlanOrigin::measured(state)
-                } else {
-                    let from = self.at_rest(RIGHT);
-                    Some((from, from.heights))
-                };
-                let Some((from, heights)) = from else { return false };
-                self.builder.stand(&from, heights, &mut self.next);
-                self.publish(tick + LEAD, tick)
-            }
-            Move::Start => {
-                // The foot on the side to which the robot goes or turns swings first.
-                let p = self.parameters;
-                let left_first = if p.side == 0.0 { p.turn >= 0.0 } else { p.side > 0.0 };
-                let from = self.at_rest(if left_first { RIGHT } else { LEFT });
-                self.intent = Intent::Walk;
-                if !self.tasks.begin(&from, &self.gait, &self.builder.model.soles[from.stance])
-                    || !self.walk(&from, GaitState::Starting)
-                {
-                    self.intent = Intent::Rest;
-                    self.event(EventCode::PlanKept, self.active.plan.id);
-                    return false;
-                }
-                let rest = self.active.plan.start_tick + self.active.end_cycle;
-                self.publish((tick + LEAD).max(rest), tick)
-            }
-            Move::Step(to) => {
-                // A skill knows the heights it steps on.
-                let blind = self.tasks.active == Skill::Walk;
-                let touched =
-                    touched(&self.active, state, tick, self.builder.model.cycle_s).filter(|_| blind);
-                if touched.is_some_and(|touchdown| self.end_early(&touchdown, tick, state, to)) {
-                    self.event(EventCode::EarlyContact, self.last_id + 1);
-                    return self.publish(tick + LEAD, tick);
-                }
-                // By the clock: a plan from the next step boundary, as late as it can be made.
-                let Some(k) = self.boundary(tick) else { return false };
-                let start = self.active.plan.start_tick + self.active.strides[k].end_cycle;
-                if start > tick + LEAD || start == self.given_up {
-                    return false;
-                }
-                let from = at_boundary(&self.active, k, touched.filter(|t| t.step == k), state);
-                if !self.walk(&from, to) {
-                    // The active plan goes on: it can be walked, and ends standing.
-                    self.given_up = start;
-                    if self.tasks.active != Skill::Walk {
-                        self.tasks.stop();
-                        self.intent = Intent::Rest;
-                    }
-                    self.event(EventCode::PlanKept, self.active.plan.id);
-                    return false;
-                }
-                self.publish(start, tick)
-            }
+            Move::Stand => self.make_stand(tick, gait, state),
+            Move::Start => self.make_start(tick),
+            Move::Step(to) => self.make_step(tick, state, to),
         }
+    }
+
+    /// Takes the standing pose.
+    fn make_stand(&mut self, tick: u64, gait: GaitState, state: &ControllerState) -> bool {
+        // From the measured joints, or from where the last plan has left the robot.
+        let from = if gait == GaitState::Idle {
+            PlanOrigin::measured(state)
+        } else {
+            let from = self.at_rest(RIGHT);
+            Some((from, from.heights))
+        };
+        let Some((from, heights)) = from else { return false };
+        self.builder.stand(&from, heights, &mut self.next);
+        self.publish(tick + LEAD, tick)
+    }
+
+    /// Walks out of standing.
+    fn make_start(&mut self, tick: u64) -> bool {
+        // The foot on the side to which the robot goes or turns swings first.
+        let p = self.parameters;
+        let left_first = if p.side == 0.0 { p.turn >= 0.0 } else { p.side > 0.0 };
+        let from = self.at_rest(if left_first { RIGHT } else { LEFT });
+        self.intent = Intent::Walk;
+        if !self.tasks.begin(&from, &self.gait, &self.builder.model.soles[from.stance])
+            || !self.walk(&from, GaitState::Starting)
+        {
+            self.intent = Intent::Rest;
+            self.event(EventCode::PlanKept, self.active.plan.id);
+            return false;
+        }
+        let rest = self.active.plan.start_tick + self.active.end_cycle;
+        self.publish((tick + LEAD).max(rest), tick)
+    }
+
+    /// Goes on from a step of the active plan: from an early contact of its foot, or from its end.
+    fn make_step(&mut self, tick: u64, state: &ControllerState, to: GaitState) -> bool {
+        // A skill knows the heights it steps on.
+        let blind = self.tasks.active == Skill::Walk;
+        let touched = touched(&self.active, state, tick, self.builder.model.cycle_s).filter(|_| blind);
+        if touched.is_some_and(|touchdown| self.end_early(&touchdown, tick, state, to)) {
+            self.event(EventCode::EarlyContact, self.last_id + 1);
+            return self.publish(tick + LEAD, tick);
+        }
+        // By the clock: a plan from the next step boundary, as late as it can be made.
+        let Some(k) = self.boundary(tick) else { return false };
+        let start = self.active.plan.start_tick + self.active.strides[k].end_cycle;
+        if start > tick + LEAD || start == self.given_up {
+            return false;
+        }
+        let from = at_boundary(&self.active, k, touched.filter(|t| t.step == k), state);
+        if !self.walk(&from, to) {
+            // The active plan goes on: it can be walked, and ends standing.
+            self.given_up = start;
+            if self.tasks.active != Skill::Walk {
+                self.tasks.stop();
+                self.intent = Intent::Rest;
+            }
+            self.event(EventCode::PlanKept, self.active.plan.id);
+            return false;
+        }
+        self.publish(start, tick)
     }
 
     /// The next step boundary of the active plan at which another step follows.
