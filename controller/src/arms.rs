@@ -34,7 +34,7 @@ const REACH: f64 = 0.8;
 
 /// The arms of one robot.
 #[derive(Clone)]
-pub struct Arms {
+pub struct ArmSwing {
     joints: [usize; 2],
     /// First joint of each leg that the other leg does not need.
     hips: [usize; 2],
@@ -50,7 +50,7 @@ pub struct Arms {
     returning: [f64; 2],
 }
 
-impl Arms {
+impl ArmSwing {
     /// Arms that swing `gain` as far as the legs; none if the robot has none or nobody wants it.
     pub fn new(robot: &Robot, gain: Option<f64>) -> Result<Option<Self>, ModelError> {
         let (Some(arms), Some(gain)) = (robot.arms, gain) else { return Ok(None) };
@@ -121,7 +121,7 @@ mod tests {
 
     struct Rig {
         robot: Robot,
-        arms: Arms,
+        arms: ArmSwing,
         desired: TaskSpace,
         q: Vec<f64>,
     }
@@ -130,7 +130,7 @@ mod tests {
         fn new(name: &str, gain: f64) -> Self {
             let robot = Robot::load(&root(None).join("robots").join(name)).unwrap();
             let q = robot.joints.iter().map(|j| j.comfort).collect();
-            let arms = Arms::new(&robot, Some(gain)).unwrap().unwrap();
+            let arms = ArmSwing::new(&robot, Some(gain)).unwrap().unwrap();
             Self { arms, desired: TaskSpace::new(&robot).unwrap(), q, robot }
         }
 
@@ -194,8 +194,8 @@ mod tests {
     #[test]
     fn nobody_swings_who_has_no_arms_or_is_not_asked_to() {
         let mut robot = Robot::load(&root(None).join("robots/lola")).unwrap();
-        assert!(Arms::new(&robot, None).unwrap().is_none());
+        assert!(ArmSwing::new(&robot, None).unwrap().is_none());
         robot.arms = None;
-        assert!(Arms::new(&robot, Some(1.0)).unwrap().is_none());
+        assert!(ArmSwing::new(&robot, Some(1.0)).unwrap().is_none());
     }
 }

@@ -13,7 +13,7 @@ use crate::torso::{self, TorsoAngles};
 
 /// Measured upper body, centre of gravity and feet in the planning frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Estimate {
+pub struct TaskEstimate {
     /// phi_x, phi_y from the IMU, alpha from the anchor foot \[rad\].
     pub angles: TorsoAngles,
     /// Their rates \[rad/s\].
@@ -43,7 +43,7 @@ pub const LOADED: f64 = 20.0;
 /// Its sole counts as part of the support polygon from this one on \[N\].
 const TOUCHING: f64 = 1.0;
 
-impl Estimate {
+impl TaskEstimate {
     /// From the sensors, the kinematics of the measured joints and what is desired. The anchor is the foot that is
     /// planned to carry more, unless it has lost the ground and the other one has not.
     pub fn new(robot: &Robot, sensors: &Sensors, measured: &TaskSpace, desired: &Desired) -> Self {

@@ -19,7 +19,7 @@ use multibody::ModelError;
 use std::f64::consts::FRAC_PI_2;
 
 use crate::contact_force::FootWrench;
-use crate::estimate::Estimate;
+use crate::estimate::TaskEstimate;
 use crate::force_control::{Modification, modify};
 use crate::plan_follower::{Desired, PlanFollower};
 use crate::task_space::TaskSpace;
@@ -38,7 +38,7 @@ const MEASURED: u64 = 2;
 /// Desired and measured task space of a cycle, and the desired wrenches of the feet, if the robot was stabilized.
 struct Followed {
     now: Desired,
-    estimate: Estimate,
+    estimate: TaskEstimate,
     wrenches: Option<[FootWrench; 2]>,
 }
 
@@ -168,7 +168,7 @@ impl Controller {
         let (now, end) = (self.plan.sample(t), self.plan.sample(t + dt));
         let reported = self.telemetry.state.plan_id;
         self.modification.absorb_plan_switch(self.plan.height_steps(reported, &now, &end));
-        let estimate = Estimate::new(&self.robot, sensors, &self.measured, &self.reference(&now));
+        let estimate = TaskEstimate::new(&self.robot, sensors, &self.measured, &self.reference(&now));
         let powered = self.plan.id() > 0 && sensors.power == 1;
         if powered {
             // A fall, or being lifted, ends the plan before anything is made of it.
@@ -216,7 +216,7 @@ impl Controller {
         lag: &[f64; MAX_JOINTS],
         now: &Desired,
         end: &Desired,
-        estimate: &Estimate,
+        estimate: &TaskEstimate,
     ) -> ([FootWrench; 2], MetLimits) {
         // Direct kinematics of what is fed back, and the task of the feet there.
         let fed_back = self.control.feedback == MEASURED;

@@ -3,7 +3,7 @@
 
 use messages::{EventCode, Sensors};
 
-use crate::estimate::{Estimate, LOADED};
+use crate::estimate::{LOADED, TaskEstimate};
 use crate::plan_follower::Desired;
 
 /// \[N\] Normal force from which a foot counts as being in contact, above what a swinging foot's inertia reads; contact
@@ -70,7 +70,7 @@ impl SafetyWatch {
         &mut self,
         sensors: &Sensors,
         now: &Desired,
-        estimate: &Estimate,
+        estimate: &TaskEstimate,
     ) -> Option<EventCode> {
         let tilt = (0..2).map(|i| (now.torso.position[i] - estimate.angles[i]).abs()).fold(0.0, f64::max);
         let load = sensors.foot_wrench[0].force[2].max(sensors.foot_wrench[1].force[2]);

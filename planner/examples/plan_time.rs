@@ -6,7 +6,7 @@
 mod robot;
 
 use messages::{Command, command::VelocityCommand};
-use planner::boundary::{Ends, PlanarState};
+use planner::boundary::{EndConditions, PlanarState};
 use planner::closed_form::ClosedForm;
 use planner::cog_method::BoundarySolver;
 use planner::collocation::Collocation;
@@ -130,7 +130,7 @@ fn solution(solver: &mut dyn BoundarySolver, steps: usize, per_step: usize) -> [
     timed(|| {
         solver.solve();
         let gamma = solver.ends().amplitudes(&BEGIN, &target);
-        let ends = Ends { begin: BEGIN.r, end: target.r, gamma };
+        let ends = EndConditions { begin: BEGIN.r, end: target.r, gamma };
         (0..solver.problem().n).map(|i| solver.motion(i, &ends)[0][0]).sum::<f64>()
     })
 }

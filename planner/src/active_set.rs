@@ -21,9 +21,9 @@ const TOUCH: f64 = 1e-12;
 
 /// Edge that holds a point along each axis of its rectangle: -1, 1, or 0 for none.
 type HeldEdges = [i8; 2];
-type Block = [[f64; 2]; 2];
+type NodeBlock = [[f64; 2]; 2];
 
-fn times(m: &Block, v: [f64; 2]) -> [f64; 2] {
+fn times(m: &NodeBlock, v: [f64; 2]) -> [f64; 2] {
     m.map(|row| row[0] * v[0] + row[1] * v[1])
 }
 
@@ -103,10 +103,10 @@ fn eliminate(
     hold: &ZmpHold,
     free: [bool; 2],
     held: [f64; 2],
-    m: &Block,
+    m: &NodeBlock,
     r: [f64; 2],
     c: f64,
-) -> (Block, [f64; 2]) {
+) -> (NodeBlock, [f64; 2]) {
     // A point on an edge has one unknown, its way along it; in a corner it has none.
     let on_edge = |axis: [f64; 2]| {
         let origin = hold.point(held);

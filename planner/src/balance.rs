@@ -5,7 +5,7 @@
 //! steps 0 and 1, leads there from where the robot is (4.32). The *tail* leads from there to rest, so that a plan that is
 //! never replaced ends standing. A stopping plan is a tail alone.
 
-use crate::boundary::{Ends, PlanarState};
+use crate::boundary::{EndConditions, PlanarState};
 use crate::com::{Forcing, GroundDemand, GroundPath, HeightPath, ThreeMassModel};
 use crate::feet::{self, FootPath, Swing};
 use crate::marks::Marks;
@@ -171,13 +171,13 @@ impl Balance {
         spacing: f64,
         given: &GivenMotion<'_>,
         balanced: &mut Balanced,
-    ) -> Ends {
+    ) -> EndConditions {
         let GivenMotion { feet, height, ground } = *given;
         let forcing = Forcing { feet, height, ground, zmp: &segment.reference, shapes: segment.shapes };
         balanced.add(self.com.solve(&forcing, segment.marks.as_slice(), spacing));
         // Two amplitudes per axis, and position and velocity at two ends.
         let slopes = self.com.ends();
-        let mut ends = Ends { begin: begin.r, end: end.r, gamma: slopes.amplitudes(begin, end) };
+        let mut ends = EndConditions { begin: begin.r, end: end.r, gamma: slopes.amplitudes(begin, end) };
         let mut margin = segment.least_margin(&model.soles, &ends);
         // Where the full state would leave the support, what converges by itself need not be met (thesis 4.6.2).
         if meet == Meet::StateOrDivergent && !(margin >= 0.0) {
@@ -203,7 +203,7 @@ impl Balance {
         &self,
         model: &WalkingModel,
         segment: &WalkSegment<'_>,
-        ends: &Ends,
+        ends: &EndConditions,
         com: &mut Path<3, C>,
         zmp: &mut Polyline<2, Z>,
         balanced: &mut Balanced,

@@ -76,7 +76,7 @@ impl BoundaryProblem {
 
 /// Selection of one solution: positions at both ends and amplitudes, per axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ends {
+pub struct EndConditions {
     /// \[m\]
     pub begin: [f64; 2],
     /// \[m\]
@@ -85,7 +85,7 @@ pub struct Ends {
     pub gamma: [[f64; 2]; 2],
 }
 
-impl Ends {
+impl EndConditions {
     pub(crate) fn value(&self, u: &[f64; U]) -> [f64; 2] {
         [0, 1].map(|d| {
             u[d] + self.gamma[0][d] * u[2]
@@ -147,14 +147,14 @@ impl EndSlopes {
 
     /// The ends that begin with `begin` and meet only the divergent component of `target` (thesis 4.6.2, Takenaka;
     /// gap 13), by the smallest amplitudes.
-    pub fn divergent_ends(&self, begin: &PlanarState, target: &PlanarState) -> Ends {
+    pub fn divergent_ends(&self, begin: &PlanarState, target: &PlanarState) -> EndConditions {
         let [a, b] = &self.slopes;
         let w = self.w;
         let left = b[RIGHT] + w; // v_n + w r_n = xi w, solved for r_n, and that put into the slope at the begin
         let by = a[RIGHT] / left;
         let c = [a[2] - by * b[2], a[3] - by * b[3]];
         let square = c[0] * c[0] + c[1] * c[1];
-        let mut ends = Ends { begin: begin.r, end: [0.0; 2], gamma: [[0.0; 2]; 2] };
+        let mut ends = EndConditions { begin: begin.r, end: [0.0; 2], gamma: [[0.0; 2]; 2] };
         for d in 0..2 {
             let rest = target.v[d] + w * target.r[d] - b[d] - b[LEFT] * begin.r[d];
             let e = begin.v[d] - a[d] - a[LEFT] * begin.r[d] - by * rest;

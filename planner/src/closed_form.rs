@@ -13,7 +13,7 @@
 //! | p, s | -f / w^2, zero-moment point T/(m g) of a column, and its rate in a piece over w | m |
 //! | e | e^{-w h} of all pieces together | 1 |
 
-use crate::boundary::{BoundaryProblem, EndSlopes, Ends, F, LEFT, MAX_KNOTS, RIGHT, U};
+use crate::boundary::{BoundaryProblem, EndConditions, EndSlopes, F, LEFT, MAX_KNOTS, RIGHT, U};
 use crate::cog_method::BoundarySolver;
 use crate::verdict::PlanVerdict;
 
@@ -144,7 +144,7 @@ impl BoundarySolver for ClosedForm {
         EndSlopes { slopes: [self.slope(0), self.slope(self.problem.n - 1)], w: self.w }
     }
 
-    fn motion(&self, i: usize, ends: &Ends) -> [[f64; 2]; 3] {
+    fn motion(&self, i: usize, ends: &EndConditions) -> [[f64; 2]; 3] {
         let (r, f) = (ends.value(&self.value(i)), ends.load(&self.problem.f[i]));
         let v = ends.value(&self.slope(i));
         [r, v, [0, 1].map(|d| self.problem.om2[i] * r[d] + f[d])]

@@ -7,7 +7,7 @@
 //!
 //! Another method is another implementation of [`BoundarySolver`], a variant here and a word in `config::gait::CogMethod`.
 
-use crate::boundary::{BoundaryProblem, EndSlopes, Ends};
+use crate::boundary::{BoundaryProblem, EndConditions, EndSlopes};
 use crate::closed_form::ClosedForm;
 use crate::collocation::Collocation;
 use crate::verdict::PlanVerdict;
@@ -28,7 +28,7 @@ pub trait BoundarySolver {
     fn ends(&self) -> EndSlopes;
 
     /// Position, velocity and acceleration in the plane at knot `i` between given ends.
-    fn motion(&self, i: usize, ends: &Ends) -> [[f64; 2]; 3];
+    fn motion(&self, i: usize, ends: &EndConditions) -> [[f64; 2]; 3];
 }
 
 /// The method that a gait names.

@@ -12,7 +12,7 @@
 //! | u | columns: the same, then unit value at the left end, unit value at the right end | m |
 //! | a, c | lengths of the intervals before and after a knot | s |
 
-use crate::boundary::{BoundaryProblem, EndSlopes, Ends, F, LEFT, MAX_KNOTS, RIGHT, U};
+use crate::boundary::{BoundaryProblem, EndConditions, EndSlopes, F, LEFT, MAX_KNOTS, RIGHT, U};
 use crate::cog_method::BoundarySolver;
 use crate::verdict::PlanVerdict;
 
@@ -141,7 +141,7 @@ impl BoundarySolver for Collocation {
         EndSlopes { slopes: [self.slope(0), self.slope(last)], w: self.problem.om2[last].sqrt() }
     }
 
-    fn motion(&self, i: usize, ends: &Ends) -> [[f64; 2]; 3] {
+    fn motion(&self, i: usize, ends: &EndConditions) -> [[f64; 2]; 3] {
         let (from, to, third, weights) = self.slope_at(i);
         let middle = &self.problem.half[from.min(to)];
         let (a, b, c) = (ends.value(&self.u[from]), ends.value(&self.u[to]), ends.value(&self.u[third]));

@@ -16,7 +16,7 @@
 //! | z_l, y_l | leg mass point: `leg_height` above the sole frame's origin | m |
 //! | gamma | amplitude of a modification of the zero-moment point (4.49) | m |
 
-use crate::boundary::{BoundaryProblem, EndSlopes, Ends, F, MAX_KNOTS, PlanarState};
+use crate::boundary::{BoundaryProblem, EndConditions, EndSlopes, F, MAX_KNOTS, PlanarState};
 use crate::cog_method::CogSolver;
 use crate::feet::{FOOT_PIECES, FootPath};
 use crate::verdict::PlanVerdict;
@@ -219,14 +219,14 @@ impl ThreeMassModel {
     }
 
     /// Position and velocity of the body mass point where the problem that was solved last ends.
-    pub fn end(&self, ends: &Ends) -> PlanarState {
+    pub fn end(&self, ends: &EndConditions) -> PlanarState {
         let [r, v, _] = self.method.solver().motion(self.problem().n - 1, ends);
         PlanarState { r, v }
     }
 
     /// Appends the robot's centre of gravity to `com`: quintics through position, velocity and acceleration at knots.
     /// Returns what the ground must do meanwhile.
-    pub fn write<const N: usize>(&self, ends: &Ends, com: &mut Path<3, N>) -> GroundDemand {
+    pub fn write<const N: usize>(&self, ends: &EndConditions, com: &mut Path<3, N>) -> GroundDemand {
         let mut last = self.com(0, ends);
         let mut ground = GroundDemand::UNTOUCHED.with(last.acceleration);
         for i in 1..self.problem().n {
@@ -244,7 +244,7 @@ impl ThreeMassModel {
         ground
     }
 
-    fn com(&self, i: usize, ends: &Ends) -> Sample<3> {
+    fn com(&self, i: usize, ends: &EndConditions) -> Sample<3> {
         let ([r, v, a], z, legs) = (self.method.solver().motion(i, ends), &self.heights[i], &self.legs[i]);
         let of = |b: [f64; 2], z: [f64; 1], l: &[f64; 3]| {
             let b = [b[0], b[1], z[0]];

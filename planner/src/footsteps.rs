@@ -1,7 +1,7 @@
 //! Step sequence planning: footholds and their times (thesis 4.3), over obstacles (4.3.3) and as a skill wants it
 //! (4.3.4).
 
-use crate::obstacles::Obstacles;
+use crate::obstacles::KnownObstacles;
 use crate::origin::PlanOrigin;
 use crate::pose::Pose;
 use crate::reactive::Reactive;
@@ -69,12 +69,13 @@ impl Footsteps {
     /// For a gait; nothing is known of obstacles yet.
     pub(crate) fn new(gait: &Gait) -> Self {
         let longest = gait.limits.length[1];
-        let reactive = gait.obstacles.map(|rules| Reactive { known: Obstacles::default(), rules, longest });
+        let reactive =
+            gait.obstacles.map(|rules| Reactive { known: KnownObstacles::default(), rules, longest });
         Self { reactive }
     }
 
     /// Obstacles that are known from now on; a gait without steps over obstacles knows of none.
-    pub(crate) fn see(&mut self, known: Obstacles) {
+    pub(crate) fn see(&mut self, known: KnownObstacles) {
         if let Some(reactive) = &mut self.reactive {
             reactive.known = known;
         }

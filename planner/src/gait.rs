@@ -3,10 +3,10 @@
 use crate::commands::{self, Intent};
 use crate::foot_rollover::FootRollover;
 use crate::footsteps::StepDemand;
-use crate::obstacles::Obstacles;
+use crate::obstacles::KnownObstacles;
 use crate::origin::PlanOrigin;
 use crate::planned_walk::{LEAD, PlannedWalk};
-use crate::skills::{Skill, Task, Tasks};
+use crate::skills::{Skill, SkillTask, Tasks};
 use crate::sole::Sole;
 use crate::steps::StepParameters;
 use crate::touchdown::{Touchdown, at_boundary, at_contact, is_early, touched};
@@ -94,7 +94,7 @@ impl Planner {
     }
 
     /// Obstacles that are known from now on \[m\] @I_0; a gait without steps over obstacles knows of none.
-    pub fn see(&mut self, known: Obstacles) {
+    pub fn see(&mut self, known: KnownObstacles) {
         self.builder.footsteps.see(known);
     }
 
@@ -219,8 +219,8 @@ impl Planner {
                 Some(p) => Ok((Intent::Walk, Some(p))),
             }),
             Command::Stand | Command::Start => Err(Reason::NotNow),
-            Command::Distance(c) => self.give(Task::Distance(*c), gait),
-            Command::Platform(c) => self.give(Task::Platform(*c), gait),
+            Command::Distance(c) => self.give(SkillTask::Distance(*c), gait),
+            Command::Platform(c) => self.give(SkillTask::Platform(*c), gait),
             Command::WalkParameter(change) => self.set(change).map(|()| (self.intent, None)),
             // Commands of other processes.
             Command::EmergencyStop
@@ -257,7 +257,7 @@ impl Planner {
     }
 
     /// A skill comes next: at once from standing, otherwise after a stop.
-    fn give(&mut self, task: Task, gait: GaitState) -> Result<(Intent, Option<StepParameters>), Reason> {
+    fn give(&mut self, task: SkillTask, gait: GaitState) -> Result<(Intent, Option<StepParameters>), Reason> {
         if gait == GaitState::Idle && self.intent != Intent::Stand {
             return Err(Reason::NotNow);
         }

@@ -12,7 +12,7 @@
 //! keep agreeing. What swings is lifted over the bounding box of what lies in its way, and its path is then held against
 //! the triangles themselves.
 
-use crate::obstacles::{Extent, Obstacles, Upright};
+use crate::obstacles::{Extent, KnownObstacles, Upright};
 use crate::origin::PlanOrigin;
 use crate::pose::Pose;
 use crate::sole::Sole;
@@ -45,7 +45,7 @@ pub(crate) struct Adapted {
 /// Obstacles, and how they are stepped over.
 #[derive(Clone)]
 pub(crate) struct Reactive {
-    pub(crate) known: Obstacles,
+    pub(crate) known: KnownObstacles,
     pub(crate) rules: gait::Obstacles,
     /// \[m\] Longest step that is not over an obstacle.
     pub(crate) longest: f64,

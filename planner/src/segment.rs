@@ -1,7 +1,7 @@
 //! One boundary value problem of a plan: zero-moment point reference, kinks, shapes of its modification (thesis 4.6.4,
 //! (4.49)), and how far the modified zero-moment point stays inside the support polygons.
 
-use crate::boundary::Ends;
+use crate::boundary::EndConditions;
 use crate::com::pieces;
 use crate::marks::Marks;
 use crate::origin::PlanOrigin;
@@ -92,7 +92,7 @@ impl<'a> WalkSegment<'a> {
     }
 
     /// The modified zero-moment point (4.49).
-    pub(crate) fn zmp(&self, t: f64, ends: &Ends) -> [f64; 2] {
+    pub(crate) fn zmp(&self, t: f64, ends: &EndConditions) -> [f64; 2] {
         let p = self.reference.at(t);
         let s = self.shapes.map(|s| s.at(t));
         [0, 1].map(|d| p[d] + ends.gamma[0][d] * s[0] + ends.gamma[1][d] * s[1])
@@ -100,7 +100,7 @@ impl<'a> WalkSegment<'a> {
 
     /// Least distance of the modified zero-moment point from the edge of the support polygon. It moves in straight
     /// lines between marks, and polygons are convex and change at marks only: no other instant can be worse.
-    pub(crate) fn least_margin(&self, soles: &[Sole; 2], ends: &Ends) -> f64 {
+    pub(crate) fn least_margin(&self, soles: &[Sole; 2], ends: &EndConditions) -> f64 {
         let strides = self.strides;
         let mut margin = f64::INFINITY;
         let mut both: Option<(usize, Hull)> = None;

@@ -100,14 +100,14 @@ pub enum Skill {
 
 /// Task to begin with from standing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Task {
+pub enum SkillTask {
     /// See [`Skill::Distance`].
     Distance(DistanceCommand),
     /// See [`Skill::Platform`].
     Platform(PlatformCommand),
 }
 
-impl Task {
+impl SkillTask {
     /// Checks that the robot can do it; otherwise code and detail of an event.
     ///
     /// # Errors
@@ -173,7 +173,7 @@ pub struct Tasks {
     /// The active one.
     pub active: Skill,
     /// Task that begins when the robot stands.
-    pub next: Option<Task>,
+    pub next: Option<SkillTask>,
     /// The active one is given up: the robot stops.
     pub aborted: bool,
 }

@@ -8,14 +8,14 @@ use environment::{Mesh, Pose};
 use multibody::{Data, Model};
 use nalgebra::Vector3;
 
-use crate::obstacles::Obstacles;
+use crate::obstacles::KnownObstacles;
 
 /// The known objects of a scene.
 ///
 /// # Errors
 /// A mesh cannot be read, or the robot's data do not fit together.
-pub fn known(setup: &Setup) -> Result<Obstacles, Box<dyn Error>> {
-    let mut obstacles = Obstacles::default();
+pub fn known(setup: &Setup) -> Result<KnownObstacles, Box<dyn Error>> {
+    let mut obstacles = KnownObstacles::default();
     let begin = middle_of_soles(&setup.robot, &setup.robot.poses[&setup.scene.start_pose])?;
     for object in setup.scene.objects.iter().filter(|o| o.known) {
         let mesh = match &object.shape {

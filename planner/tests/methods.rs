@@ -1,6 +1,6 @@
 //! Methods against one another, and where they fail: closed form and collocation, direct construction and sweeps.
 
-use planner::boundary::{BoundaryProblem, Ends, MAX_KNOTS, PlanarState};
+use planner::boundary::{BoundaryProblem, EndConditions, MAX_KNOTS, PlanarState};
 use planner::closed_form::ClosedForm;
 use planner::cog_method::BoundarySolver;
 use planner::collocation::Collocation;
@@ -64,13 +64,13 @@ fn pose(problem: &mut BoundaryProblem, knots: &[f64], p: impl Fn(f64) -> [f64; 2
 }
 
 /// The motion that begins with `begin` and ends at `goal`: the hat's amplitude is what meets the velocity.
-fn ends(solver: &dyn BoundarySolver, begin: &PlanarState, goal: [f64; 2]) -> Ends {
+fn ends(solver: &dyn BoundarySolver, begin: &PlanarState, goal: [f64; 2]) -> EndConditions {
     let slope = solver.ends().slopes[0];
     let gamma = [0, 1].map(|d| {
         let rest = begin.v[d] - slope[d] - slope[4] * begin.r[d] - slope[5] * goal[d];
         rest / slope[2]
     });
-    Ends { begin: begin.r, end: goal, gamma: [gamma, [0.0; 2]] }
+    EndConditions { begin: begin.r, end: goal, gamma: [gamma, [0.0; 2]] }
 }
 
 /// Straight lines through points.
@@ -360,7 +360,7 @@ fn divergent_component_is_met() {
     assert_eq!(c.solve(), PlanVerdict::Sound);
     let begin = PlanarState { r: [0.02, 0.03], v: [0.1, -0.1] };
     let target = PlanarState { r: [0.2, 0.04], v: [0.15, 0.1] };
-    let full = Ends { begin: begin.r, end: target.r, gamma: c.ends().amplitudes(&begin, &target) };
+    let full = EndConditions { begin: begin.r, end: target.r, gamma: c.ends().amplitudes(&begin, &target) };
     let loose = c.ends().divergent_ends(&begin, &target);
     for d in 0..2 {
         for ends in [&full, &loose] {
@@ -370,7 +370,7 @@ fn divergent_component_is_met() {
             let [r, v, _] = c.motion(80, ends);
             close(r[d] + v[d] / w, target.r[d] + target.v[d] / w, 1e-10);
         }
-        let size = |e: &Ends| e.gamma[0][d].hypot(e.gamma[1][d]);
+        let size = |e: &EndConditions| e.gamma[0][d].hypot(e.gamma[1][d]);
         assert!(size(&loose) <= size(&full) + 1e-12);
     }
 }

@@ -4,7 +4,7 @@ use config::Robot;
 use config::gait::Control;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use crate::estimate::Estimate;
+use crate::estimate::TaskEstimate;
 use crate::plan_follower::Desired;
 use crate::task_space::TaskSpace;
 use crate::torso;
@@ -48,7 +48,7 @@ pub(super) struct ControlCycle<'a> {
     /// The plan now and at the end of the cycle.
     pub(super) now: &'a Desired,
     pub(super) end: &'a Desired,
-    pub(super) estimate: &'a Estimate,
+    pub(super) estimate: &'a TaskEstimate,
     /// Planning frame from torso, as planned for the end of the cycle.
     pub(super) torso: Matrix3<f64>,
     /// Kinematics of the joint targets (feedback path 1) or of the measured joints (path 2).

@@ -11,7 +11,7 @@ use super::cycle::ControlCycle;
 use super::joints::{JointState, Onset};
 use super::task;
 use crate::approach::Approach;
-use crate::arms::Arms;
+use crate::arms::ArmSwing;
 use crate::gaze::{Gaze, TorsoMotion};
 use crate::inverse_kinematics::{Factorised, InverseKinematics, JointVector, TaskJacobian, TaskVector};
 use crate::task_space::TaskSpace;
@@ -30,7 +30,7 @@ pub(super) struct JointSpeeds {
     free: Vec<bool>,
     jacobian: TaskJacobian,
     pub(super) gaze: Option<Gaze>,
-    arms: Option<Arms>,
+    arms: Option<ArmSwing>,
 }
 
 impl JointSpeeds {
@@ -47,7 +47,7 @@ impl JointSpeeds {
             free,
             jacobian: TaskJacobian::zeros(),
             gaze: Gaze::new(robot)?,
-            arms: Arms::new(robot, arm_swing)?,
+            arms: ArmSwing::new(robot, arm_swing)?,
         })
     }
 

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::cycle::CycleClock;
 use super::joints::JointState;
 use crate::contact_force::FootWrench;
-use crate::estimate::Estimate;
+use crate::estimate::TaskEstimate;
 use crate::force_control::Modification;
 use crate::plan_follower::{Desired, PlanFollower};
 use crate::watch::{FALLING, SafetyWatch};
@@ -51,7 +51,7 @@ pub(super) struct CycleOutcome<'a> {
     /// \[rad\] q_d - q
     pub(super) lag: &'a [f64],
     pub(super) now: &'a Desired,
-    pub(super) estimate: &'a Estimate,
+    pub(super) estimate: &'a TaskEstimate,
 }
 
 impl Telemetry {
