@@ -98,12 +98,31 @@ pub struct Model {
     pub leg_height: f64,
     /// \[m\] Distance the planned zero-moment point keeps from the edges of the support polygon.
     pub zmp_margin: f64,
-    /// \[s\] Largest spacing of collocation points.
+    /// Method for the trajectory of the centre of gravity.
+    pub cog_method: CogMethod,
+    /// \[s\] Largest spacing of its knots.
     pub spacing: f64,
     /// \[s\] Time for raising or lowering the body while standing.
     pub stand_time: f64,
     /// \[1\] Most friction a plan may ask of the ground.
     pub friction: f64,
+}
+
+/// Methods for the trajectory of the centre of gravity (thesis 4.6.5).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CogMethod {
+    /// Spline collocation (4.50): three masses, any heights.
+    #[default]
+    Collocation,
+    /// Closed form (4.44), exact for one mass at constant height: `leg_mass` must be 0, and there is no `[obstacles]`.
+    ClosedForm,
+}
+
+impl CogMethod {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Collocation, Self::ClosedForm];
+    /// Their names in a gait file, in the same order.
+    pub const WORDS: [&str; 2] = ["collocation", "closed_form"];
 }
 
 /// Ranges of walking commands (thesis 4.6.1); outside of them a command is refused.
@@ -234,6 +253,17 @@ impl Gait {
                 );
             }
         }
+        let leg_mass = self.model.leg_mass;
+        if self.model.cog_method == CogMethod::ClosedForm && (leg_mass > 0.0 || self.obstacles.is_some()) {
+            let has = if self.obstacles.is_some() { "with" } else { "without" };
+            top.problem(
+                "model",
+                format!(
+                    "cog_method `closed_form` is for one mass at constant height: it wants leg_mass 0 and no [obstacles] \
+                     (now {leg_mass}, {has}); or take `collocation`"
+                ),
+            );
+        }
         for (i, [speed, length, duration]) in step.by_speed.iter().enumerate() {
             if *length < limits.length[0] || *length > limits.length[1] {
                 top.problem(
@@ -301,6 +331,11 @@ impl Model {
             leg_mass: table.number("leg_mass", "", 0.0..=0.4),
             leg_height: table.number("leg_height", "m", 0.0..=1.0),
             zmp_margin: table.number("zmp_margin", "m", 0.0..=0.2),
+            cog_method: if table.has("cog_method") {
+                CogMethod::ALL[table.word("cog_method", &CogMethod::WORDS)]
+            } else {
+                CogMethod::default()
+            },
             spacing: table.number("spacing", "s", 0.005..=0.5),
             stand_time: table.number("stand_time", "s", 0.1..=20.0),
             friction: table.number("friction", "", POSITIVE),

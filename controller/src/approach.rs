@@ -1,7 +1,7 @@
 //! Return of a joint to where it belongs, bounded in speed and acceleration: at most its speed in between, and slowed down
 //! in time to come to rest there.
 
-/// How fast a joint returns.
+/// Bounds of a joint's return.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Approach {
     /// \[1/s\] Rate at which small errors vanish.
@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_that_is_no_number_moves_nothing() {
+    fn a_nan_error_moves_nothing() {
         let approach = Approach { rate: 2.0, speed: 0.5, acceleration: 5.0 };
         assert_eq!(approach.next(f64::NAN, 0.3, 1e-3), 0.0);
     }

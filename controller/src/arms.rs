@@ -25,7 +25,7 @@ use crate::task_space::TaskSpace;
 
 /// \[m/rad\] Damping of the division by l: an arm that is stretched out forward cannot move that way.
 const DAMPING: f64 = 0.02;
-/// How an arm returns that is not where it should be, as after standing up from a crouch.
+/// Return of an arm that is not where it should be, as after standing up from a crouch.
 const RETURN: Approach = Approach { rate: f64::INFINITY, speed: 0.5, acceleration: 5.0 };
 /// Share of its lever at rest that an arm has at least while it hangs.
 const HANGS: f64 = 0.3;
@@ -34,7 +34,7 @@ const REACH: f64 = 0.8;
 
 /// The arms of one robot.
 #[derive(Clone)]
-pub struct Arms {
+pub struct ArmSwing {
     joints: [usize; 2],
     /// First joint of each leg that the other leg does not need.
     hips: [usize; 2],
@@ -50,7 +50,7 @@ pub struct Arms {
     returning: [f64; 2],
 }
 
-impl Arms {
+impl ArmSwing {
     /// Arms that swing `gain` as far as the legs; none if the robot has none or nobody wants it.
     pub fn new(robot: &Robot, gain: Option<f64>) -> Result<Option<Self>, ModelError> {
         let (Some(arms), Some(gain)) = (robot.arms, gain) else { return Ok(None) };
@@ -80,7 +80,7 @@ impl Arms {
         self.returning = [0.0; 2];
     }
 
-    /// Speeds of the shoulders, `desired` being the kinematics of the `angles` \[rad\] that the joints were told last; small
+    /// Speeds of the shoulders, `desired` being the kinematics of the `angles` \[rad\] commanded last; small
     /// errors vanish with `drift` \[1/s\], large ones within bounds of speed and acceleration, of which there is a `share`
     /// while the motion sets in.
     pub fn drive(
@@ -121,7 +121,7 @@ mod tests {
 
     struct Rig {
         robot: Robot,
-        arms: Arms,
+        arms: ArmSwing,
         desired: TaskSpace,
         q: Vec<f64>,
     }
@@ -130,7 +130,7 @@ mod tests {
         fn new(name: &str, gain: f64) -> Self {
             let robot = Robot::load(&root(None).join("robots").join(name)).unwrap();
             let q = robot.joints.iter().map(|j| j.comfort).collect();
-            let arms = Arms::new(&robot, Some(gain)).unwrap().unwrap();
+            let arms = ArmSwing::new(&robot, Some(gain)).unwrap().unwrap();
             Self { arms, desired: TaskSpace::new(&robot).unwrap(), q, robot }
         }
 
@@ -194,8 +194,8 @@ mod tests {
     #[test]
     fn nobody_swings_who_has_no_arms_or_is_not_asked_to() {
         let mut robot = Robot::load(&root(None).join("robots/lola")).unwrap();
-        assert!(Arms::new(&robot, None).unwrap().is_none());
+        assert!(ArmSwing::new(&robot, None).unwrap().is_none());
         robot.arms = None;
-        assert!(Arms::new(&robot, Some(1.0)).unwrap().is_none());
+        assert!(ArmSwing::new(&robot, Some(1.0)).unwrap().is_none());
     }
 }

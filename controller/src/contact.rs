@@ -1,4 +1,4 @@
-//! What the plan wants of a foot against what its sensor feels: swing, early contact, stance, late contact.
+//! Contact state of a foot, from its planned load and its force sensor: swing, early contact, stance, late contact.
 //!
 //! Contact that comes before its time stops the foot where it is: it presses lightly and is not pushed on, and is followed
 //! if the foot bounces off. Contact that does not come at its time is searched for downwards, slowly and not far. What either has changed in height is
@@ -6,9 +6,9 @@
 
 use config::gait::Control;
 
-/// What a foot is doing.
+/// Contact phase of a foot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Phase {
+pub enum ContactPhase {
     /// In the air as planned: position controlled.
     #[default]
     Swing,
@@ -20,7 +20,7 @@ pub enum Phase {
     Late,
 }
 
-/// What is known about a foot in a cycle.
+/// Observations of one foot in a cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct Signs {
     /// \[1\] Planned load factor now and at the end of the cycle.
@@ -33,16 +33,16 @@ pub struct Signs {
 
 /// Contact of one foot.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Contact {
+pub struct FootContact {
     /// Its phase.
-    pub phase: Phase,
+    pub phase: ContactPhase,
     /// \[1\] 0 without felt force, 1 from the upper force of `force_blend` on.
     pub felt: f64,
-    /// Whether it has come and its load has not: until then it keeps the ground with the upper force of `force_blend`.
+    /// The foot has come and its load has not: until then it keeps the ground with the upper force of `force_blend`.
     pub waits: bool,
 }
 
-impl Contact {
+impl FootContact {
     /// One cycle.
     pub fn update(&mut self, control: &Control, signs: &Signs) {
         let [low, high] = control.force_blend;
@@ -52,23 +52,24 @@ impl Contact {
         let (felt, falling) = (self.felt > 0.0, signs.rise < 0.0);
         let loading = end > now || now >= HALF;
         self.phase = match self.phase {
-            Phase::Swing | Phase::Early if end <= 0.0 => {
-                let early = falling && (signs.force > high || self.phase == Phase::Early);
-                if early { Phase::Early } else { Phase::Swing }
+            ContactPhase::Swing | ContactPhase::Early if end <= 0.0 => {
+                let early = falling && (signs.force > high || self.phase == ContactPhase::Early);
+                if early { ContactPhase::Early } else { ContactPhase::Swing }
             }
-            _ if now <= 0.0 && end <= 0.0 => Phase::Swing,
-            _ if felt || !loading => Phase::Stance,
-            _ => Phase::Late,
+            _ if now <= 0.0 && end <= 0.0 => ContactPhase::Swing,
+            _ if felt || !loading => ContactPhase::Stance,
+            _ => ContactPhase::Late,
         };
-        self.waits = self.phase == Phase::Early || (self.phase == Phase::Stance && loading && now < HALF);
+        self.waits = self.phase == ContactPhase::Early
+            || (self.phase == ContactPhase::Stance && loading && now < HALF);
     }
 
     /// \[1\] alpha_lambda: 1 force controlled, 0 position controlled.
     pub fn force_share(&self) -> f64 {
         match self.phase {
-            Phase::Swing | Phase::Late => 0.0,
-            Phase::Early => 1.0,
-            Phase::Stance => self.felt,
+            ContactPhase::Swing | ContactPhase::Late => 0.0,
+            ContactPhase::Early => 1.0,
+            ContactPhase::Stance => self.felt,
         }
     }
 }
@@ -77,7 +78,7 @@ impl Contact {
 const HALF: f64 = 0.5;
 
 /// Load factors of the feet that are felt: the other foot carries for one that finds no ground.
-pub fn felt_load(planned: [f64; 2], contacts: &[Contact; 2]) -> [f64; 2] {
+pub fn felt_load(planned: [f64; 2], contacts: &[FootContact; 2]) -> [f64; 2] {
     let felt = [planned[0] * contacts[0].felt, planned[1] * contacts[1].felt];
     let sum = felt[0] + felt[1];
     if sum > 0.0 { felt.map(|f| f / sum) } else { planned }
@@ -87,37 +88,41 @@ pub fn felt_load(planned: [f64; 2], contacts: &[Contact; 2]) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    fn after(contact: &mut Contact, load: [f64; 2], rise: f64, force: f64) -> Phase {
+    fn after(contact: &mut FootContact, load: [f64; 2], rise: f64, force: f64) -> ContactPhase {
         contact.update(&crate::test_gains(), &Signs { load, rise, force });
         contact.phase
     }
 
     #[test]
     fn a_step_as_planned() {
-        let mut c = Contact::default();
-        assert_eq!(after(&mut c, [1.0; 2], 0.0, 600.0), Phase::Stance);
-        assert_eq!(after(&mut c, [0.01, 0.005], 0.0, 3.0), Phase::Stance, "leaves: nothing to search for");
-        assert_eq!(after(&mut c, [0.0; 2], 0.1, 30.0), Phase::Swing, "still touches, but rises");
+        let mut c = FootContact::default();
+        assert_eq!(after(&mut c, [1.0; 2], 0.0, 600.0), ContactPhase::Stance);
+        assert_eq!(
+            after(&mut c, [0.01, 0.005], 0.0, 3.0),
+            ContactPhase::Stance,
+            "leaves: nothing to search for"
+        );
+        assert_eq!(after(&mut c, [0.0; 2], 0.1, 30.0), ContactPhase::Swing, "still touches, but rises");
         assert_eq!(c.force_share(), 0.0);
-        assert_eq!(after(&mut c, [0.0; 2], -0.1, 0.0), Phase::Swing);
-        assert_eq!(after(&mut c, [0.0, 0.01], 0.0, 30.0), Phase::Stance);
+        assert_eq!(after(&mut c, [0.0; 2], -0.1, 0.0), ContactPhase::Swing);
+        assert_eq!(after(&mut c, [0.0, 0.01], 0.0, 30.0), ContactPhase::Stance);
         assert!(c.force_share() > 0.0 && c.force_share() < 1.0);
     }
 
     #[test]
     fn early_contact_lasts_until_the_foot_shall_carry() {
-        let mut c = Contact::default();
-        assert_eq!(after(&mut c, [0.0; 2], -0.1, 30.0), Phase::Swing, "inertia or noise");
-        assert_eq!(after(&mut c, [0.0; 2], -0.1, 60.0), Phase::Early);
-        assert_eq!(after(&mut c, [0.0; 2], -0.1, 0.0), Phase::Early, "a bounce");
+        let mut c = FootContact::default();
+        assert_eq!(after(&mut c, [0.0; 2], -0.1, 30.0), ContactPhase::Swing, "inertia or noise");
+        assert_eq!(after(&mut c, [0.0; 2], -0.1, 60.0), ContactPhase::Early);
+        assert_eq!(after(&mut c, [0.0; 2], -0.1, 0.0), ContactPhase::Early, "a bounce");
         assert_eq!(c.force_share(), 1.0);
-        assert_eq!(after(&mut c, [0.0, 0.01], 0.0, 0.0), Phase::Late, "and gone when it should carry");
-        assert_eq!(after(&mut c, [0.01, 0.02], 0.0, 30.0), Phase::Stance);
+        assert_eq!(after(&mut c, [0.0, 0.01], 0.0, 0.0), ContactPhase::Late, "and gone when it should carry");
+        assert_eq!(after(&mut c, [0.01, 0.02], 0.0, 30.0), ContactPhase::Stance);
     }
 
     #[test]
     fn a_foot_that_came_waits_until_it_carries() {
-        let mut c = Contact::default();
+        let mut c = FootContact::default();
         let mut waits = |load, rise, force| {
             after(&mut c, load, rise, force);
             c.waits
@@ -132,20 +137,20 @@ mod tests {
 
     #[test]
     fn ground_is_searched_for_while_load_shall_come_or_is_there() {
-        let mut c = Contact::default();
-        assert_eq!(after(&mut c, [0.1, 0.2], 0.0, 0.0), Phase::Late);
-        assert_eq!(after(&mut c, [1.0; 2], 0.0, 0.0), Phase::Late);
-        assert_eq!(after(&mut c, [1.0; 2], 0.0, 100.0), Phase::Stance);
+        let mut c = FootContact::default();
+        assert_eq!(after(&mut c, [0.1, 0.2], 0.0, 0.0), ContactPhase::Late);
+        assert_eq!(after(&mut c, [1.0; 2], 0.0, 0.0), ContactPhase::Late);
+        assert_eq!(after(&mut c, [1.0; 2], 0.0, 100.0), ContactPhase::Stance);
         assert_eq!(
             after(&mut c, [0.4, 0.3], 0.0, 0.0),
-            Phase::Stance,
+            ContactPhase::Stance,
             "load goes: the foot is about to lift"
         );
     }
 
     #[test]
     fn who_finds_no_ground_is_carried_for() {
-        let felt = |felt| Contact { phase: Phase::Stance, felt, ..Contact::default() };
+        let felt = |felt| FootContact { phase: ContactPhase::Stance, felt, ..FootContact::default() };
         assert_eq!(felt_load([0.4, 0.6], &[felt(1.0), felt(0.0)]), [1.0, 0.0]);
         assert_eq!(felt_load([0.4, 0.6], &[felt(1.0); 2]), [0.4, 0.6]);
         assert_eq!(felt_load([0.4, 0.6], &[felt(0.0); 2]), [0.4, 0.6], "in the air the plan is all there is");

@@ -1,4 +1,4 @@
-//! Contact force modification (thesis 5.2): what the feet shall press so that the upper body stays upright.
+//! Contact force modification (thesis 5.2): foot wrenches that keep the upper body upright.
 //!
 //! | symbol | name | unit | frame |
 //! |---|---|---|---|
@@ -24,7 +24,7 @@ pub struct FootWrench {
     pub moment: Vector3<f64>,
 }
 
-/// Where and how a foot can carry.
+/// Support that a foot can give.
 #[derive(Clone, Copy, Debug)]
 pub struct Support {
     /// \[m\] @I Force sensor.

@@ -50,13 +50,14 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             break;
         }
         d.begin_woken(header);
+        // Commands first: they hold from this cycle on.
         while let Some(live) = timeline.due(header.tick).map(Live::of_scene).or_else(|| commands.next()) {
-            let told = controller.command(&live.command);
-            if let Some((code, detail)) = told {
+            let event = controller.command(&live.command);
+            if let Some((code, detail)) = event {
                 d.report(header, code, detail);
             }
-            commands.answer(&live, verdict(told));
-            d.log.took(header, &live, &verdict(told));
+            commands.answer(&live, verdict(event));
+            d.log.took(header, &live, &verdict(event));
             if !matches!(live.command, Command::Parameter(_)) {
                 continue;
             }
@@ -66,6 +67,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         }
         d.log.left_out(header, commands.as_mut());
         let plan = plan.latest();
+        // What is read here is what the cycle can be replayed from.
         d.log.uses(0, &SENSORS, Some(measured));
         d.log.uses(1, &PLAN, plan);
         let (new_targets, new_state) = controller.step(measured, plan);
@@ -87,7 +89,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Whether the planner has just fallen silent. The plan it left is walked to its end.
+/// Detector of a planner that falls silent. The plan it left is walked to its end.
 #[derive(Default)]
 struct PlannerSilence(bool);
 

@@ -1,4 +1,4 @@
-//! What the sensors say about the task space.
+//! Task space as the sensors measure it.
 //!
 //! The inclination comes from the inertial measurement unit; heading and position from the foot that is planned to
 //! carry more, which is taken to stand where the plan wants it.
@@ -7,18 +7,18 @@ use config::Robot;
 use messages::{ControllerState, Sensors};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector2, Vector3};
 
-use crate::following::Desired;
+use crate::plan_follower::Desired;
 use crate::task_space::TaskSpace;
 use crate::torso::{self, TorsoAngles};
 
 /// Measured upper body, centre of gravity and feet in the planning frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Estimate {
+pub struct TaskEstimate {
     /// phi_x, phi_y from the IMU, alpha from the anchor foot \[rad\].
     pub angles: TorsoAngles,
     /// Their rates \[rad/s\].
     pub rates: Vector3<f64>,
-    /// \[rad\] That heading less the one the IMU says.
+    /// \[rad\] That heading less that of the IMU.
     pub turn: f64,
     /// world_from_torso with that heading.
     pub rotation: Matrix3<f64>,
@@ -43,7 +43,7 @@ pub const LOADED: f64 = 20.0;
 /// Its sole counts as part of the support polygon from this one on \[N\].
 const TOUCHING: f64 = 1.0;
 
-impl Estimate {
+impl TaskEstimate {
     /// From the sensors, the kinematics of the measured joints and what is desired. The anchor is the foot that is
     /// planned to carry more, unless it has lost the ground and the other one has not.
     pub fn new(robot: &Robot, sensors: &Sensors, measured: &TaskSpace, desired: &Desired) -> Self {
@@ -55,6 +55,7 @@ impl Estimate {
         let lost = force(heavier) <= LOADED && force(1 - heavier) > LOADED;
         let anchor = if lost { 1 - heavier } else { heavier };
 
+        // The IMU knows where up is, the anchor foot where it was put: together the pose of the torso.
         let sole = measured.sole(anchor);
         let seen = imu.matrix() * sole.rotation;
         let planned = desired.feet[anchor].position;
@@ -62,6 +63,7 @@ impl Estimate {
         let rotation = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), turn).matrix() * imu.matrix();
         let torso = Vector3::new(planned[0], planned[1], planned[2]) - rotation * sole.position;
         let omega = rotation * Vector3::from(sensors.imu.angular_velocity);
+        // Everything else hangs on that pose.
         let mut estimate = Self {
             angles: torso::angles(&rotation),
             rates: torso::rates_from_omega(&rotation) * omega,
@@ -97,6 +99,7 @@ impl Estimate {
             let t = m + p.cross(&f);
             moment += Vector2::new(-t.y, t.x);
             normal += f.z;
+            // A sole that presses is part of the support polygon, all of it.
             if f.z > TOUCHING {
                 let [back, front, right, left] = robot.feet[foot].support;
                 let [x, y, _, heading] = self.feet[foot];

@@ -1,4 +1,4 @@
-//! Hybrid position/force control (thesis 5.3): how the feet move so that they press as they shall.
+//! Hybrid position/force control (thesis 5.3): foot motion that brings the contact forces to their targets.
 //!
 //! Per foot three coordinates are force controlled while it carries and position controlled while it swings:
 //! height, roll, pitch (z, -s1, s0) against F_z, T_x, T_y.
@@ -19,7 +19,7 @@
 use config::gait::Control;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-use crate::contact::{Contact, Phase};
+use crate::contact::{ContactPhase, FootContact};
 
 /// Change of (F_z, T_x, T_y) about the sensor with (z, roll, pitch) of the sole frame (5.23).
 ///
@@ -39,10 +39,10 @@ pub fn contact_stiffness(
     k
 }
 
-/// \[s\] A search is at its full speed after so long: what a foot misses is mostly just below it.
+/// \[s\] Ramp-up time of the ground-search speed: what a foot misses is mostly just below it.
 const HASTE: f64 = 0.05;
 
-/// What a foot's contact resists.
+/// Compliance of a foot's contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compliance {
     /// K^+ \[m/N, rad/(N m)\]
@@ -84,11 +84,25 @@ pub struct Modification {
     pub value: Vector6<f64>,
     /// Its rate \[m/s, rad/s, rad/s\]
     pub rate: Vector6<f64>,
-    /// Whether a limit held it back.
+    /// A limit held it back.
     pub limited: bool,
 }
 
 impl Modification {
+    /// Takes up steps \[m\] in the planned heights of the soles, so that the feet do not jump.
+    pub(crate) fn absorb_plan_switch(&mut self, steps: [Option<f64>; 2]) {
+        for (foot, step) in steps.into_iter().enumerate() {
+            if let Some(step) = step {
+                self.value[3 * foot] += step;
+            }
+        }
+    }
+
+    /// Forgets what was modified.
+    pub(crate) fn reset(&mut self) {
+        *self = Self::default();
+    }
+
     /// Moves component `i`, which is coordinate `c` of its foot, within its limits (5.33).
     fn step(&mut self, control: &Control, (i, c): (usize, usize), wanted: f64, dt: f64) {
         let (limit, rate_limit) = (control.modification_limit[c], control.modification_rate[c]);
@@ -100,9 +114,9 @@ impl Modification {
     }
 }
 
-/// What the force controller is told in a cycle; vectors are (F_z, T_x, T_y) right, then left \[N, N m\].
+/// Force targets of a cycle beside the measured forces; vectors are (F_z, T_x, T_y) right, then left \[N, N m\].
 #[derive(Clone, Copy, Debug)]
-pub struct Forces {
+pub struct ForceTargets {
     /// Desired, modified: lambda_d1.
     pub desired: Vector6<f64>,
     /// Rate of the planned ones.
@@ -111,14 +125,14 @@ pub struct Forces {
     pub measured: Vector6<f64>,
 }
 
-/// What a foot's modification is to do apart from forces.
+/// Position-control inputs of one foot: contact state, planned vertical speed, target of its modification.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Guide {
+pub struct FootReference {
     /// Contact of the foot.
-    pub contact: Contact,
+    pub contact: FootContact,
     /// \[m/s\] Planned vertical velocity of the sole.
     pub rise: f64,
-    /// \[m, rad, rad\] Where a foot in the air takes its modification.
+    /// \[m, rad, rad\] Modification that a foot in the air returns to.
     pub target: Vector3<f64>,
 }
 
@@ -128,28 +142,31 @@ pub struct Guide {
 pub fn modify(
     control: &Control,
     motion: &Matrix6<f64>,
-    feet: &[(Compliance, Guide); 2],
-    forces: &Forces,
+    feet: &[(Compliance, FootReference); 2],
+    forces: &ForceTargets,
     last: &Modification,
     dt: f64,
 ) -> Modification {
     let k = Vector6::from_fn(|i, _| control.force_gain[i % 3]);
     let wanted = forces.desired_rate * control.force_feed_forward
         + k.component_mul(&(forces.desired - forces.measured)); // (5.26)
+    // Motion of each sole that answers its force error, as far as the foot is force controlled.
     let mut of_soles = Vector6::zeros();
-    for (i, (compliance, guide)) in feet.iter().enumerate() {
-        let alpha = guide.contact.force_share();
+    for (i, (compliance, reference)) in feet.iter().enumerate() {
+        let alpha = reference.contact.force_share();
         of_soles
             .fixed_rows_mut::<3>(3 * i)
             .copy_from(&(compliance.inverse * wanted.fixed_rows::<3>(3 * i) * alpha));
     }
     let force_part = motion.lu().solve(&of_soles).unwrap_or_else(Vector6::zeros); // (5.30)
+    // What the contact does not resist is position controlled; both parts within the same limits.
     let mut next = *last;
     next.limited = false;
-    for (i, (compliance, guide)) in feet.iter().enumerate() {
+    for (i, (compliance, reference)) in feet.iter().enumerate() {
         let value = last.value.fixed_rows::<3>(3 * i).into_owned();
-        let fall = search_speed(control, value[0], -last.rate[3 * i] - guide.rise, dt);
-        let rate = force_part.fixed_rows::<3>(3 * i) + free_part(control, compliance, guide, &value, fall);
+        let fall = search_speed(control, value[0], -last.rate[3 * i] - reference.rise, dt);
+        let rate =
+            force_part.fixed_rows::<3>(3 * i) + free_part(control, compliance, reference, &value, fall);
         for c in 0..3 {
             next.step(control, (3 * i + c, c), rate[c], dt);
         }
@@ -162,25 +179,25 @@ pub fn modify(
 fn free_part(
     control: &Control,
     foot: &Compliance,
-    guide: &Guide,
+    reference: &FootReference,
     value: &Vector3<f64>,
     fall: f64,
 ) -> Vector3<f64> {
-    let alpha = guide.contact.force_share();
-    let back = (guide.target - value) * control.position_gain;
+    let alpha = reference.contact.force_share();
+    let back = (reference.target - value) * control.position_gain;
     let mut rate = back - foot.resisted * back * alpha;
-    match guide.contact.phase {
+    match reference.contact.phase {
         // A foot that rises must not be held down by what it gives up.
-        Phase::Swing if guide.rise >= 0.0 => rate[0] = rate[0].max(-guide.rise),
-        Phase::Swing | Phase::Stance => {}
-        Phase::Early if guide.contact.felt > 0.0 => rate[0] -= guide.rise,
-        Phase::Early => rate[0] -= guide.rise + fall,
-        Phase::Late => rate[0] = -fall,
+        ContactPhase::Swing if reference.rise >= 0.0 => rate[0] = rate[0].max(-reference.rise),
+        ContactPhase::Swing | ContactPhase::Stance => {}
+        ContactPhase::Early if reference.contact.felt > 0.0 => rate[0] -= reference.rise,
+        ContactPhase::Early => rate[0] -= reference.rise + fall,
+        ContactPhase::Late => rate[0] = -fall,
     }
     rate
 }
 
-/// \[m/s\] How fast a foot goes down that searches for the ground, whose modification is `height` \[m\] and that went down
+/// \[m/s\] Speed of a foot that goes down to search for the ground, whose modification is `height` \[m\] and that went down
 /// at `last` \[m/s\].
 fn search_speed(control: &Control, height: f64, last: f64, dt: f64) -> f64 {
     let [most, depth] = control.search;
@@ -201,17 +218,17 @@ mod tests {
         contact_stiffness(flat_foot(), Vector3::zeros(), 1.5e5)
     }
 
-    fn foot(phase: Phase, felt: f64) -> (Compliance, Guide) {
-        let guide = Guide {
-            contact: Contact { phase, felt, ..Contact::default() },
+    fn foot(phase: ContactPhase, felt: f64) -> (Compliance, FootReference) {
+        let reference = FootReference {
+            contact: FootContact { phase, felt, ..FootContact::default() },
             rise: 0.0,
             target: Vector3::zeros(),
         };
-        (Compliance::new(&stiffness()), guide)
+        (Compliance::new(&stiffness()), reference)
     }
 
-    fn no_forces() -> Forces {
-        Forces { desired: Vector6::zeros(), desired_rate: Vector6::zeros(), measured: Vector6::zeros() }
+    fn no_forces() -> ForceTargets {
+        ForceTargets { desired: Vector6::zeros(), desired_rate: Vector6::zeros(), measured: Vector6::zeros() }
     }
 
     fn raised() -> Modification {
@@ -263,13 +280,13 @@ mod tests {
         let mut k = Matrix6::zeros();
         k.fixed_view_mut::<3, 3>(0, 0).copy_from(&stiffness());
         k.fixed_view_mut::<3, 3>(3, 3).copy_from(&stiffness());
-        let mut forces = Forces {
+        let mut forces = ForceTargets {
             desired: Vector6::new(330.0, 4.0, -6.0, 270.0, 0.0, 0.0),
             measured: Vector6::new(300.0, 0.0, 0.0, 300.0, 0.0, 0.0),
             ..no_forces()
         };
         let error = forces.desired - forces.measured;
-        let feet = [foot(Phase::Stance, 1.0); 2];
+        let feet = [foot(ContactPhase::Stance, 1.0); 2];
         let mut m = Modification::default();
         for _ in 0..100 {
             m = modify(&control, &motion, &feet, &forces, &m, 1e-3);
@@ -285,7 +302,7 @@ mod tests {
     #[test]
     fn a_foot_in_the_air_forgets_its_modification_but_never_presses_down_for_it_while_it_rises() {
         let control = crate::test_gains();
-        let mut feet = [foot(Phase::Swing, 0.0), foot(Phase::Stance, 1.0)];
+        let mut feet = [foot(ContactPhase::Swing, 0.0), foot(ContactPhase::Stance, 1.0)];
         feet[0].1.rise = 1e-4;
         let mut m = raised();
         for _ in 0..100 {
@@ -302,7 +319,7 @@ mod tests {
     #[test]
     fn an_early_foot_stops_and_a_late_one_goes_down_to_its_depth() {
         let control = crate::test_gains();
-        let mut feet = [foot(Phase::Early, 1.0), foot(Phase::Late, 0.0)];
+        let mut feet = [foot(ContactPhase::Early, 1.0), foot(ContactPhase::Late, 0.0)];
         feet[0].1.rise = -0.2;
         let mut m = Modification::default();
         m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);

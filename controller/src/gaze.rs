@@ -26,7 +26,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::f64::consts::TAU;
 
 use crate::inverse_kinematics::JointVector;
-use crate::saccade::{self, AXES, Limits, State, Target};
+use crate::saccade::{self, AXES, AxisLimits, AxisState, Target};
 use crate::task_space::TaskSpace;
 
 /// Pose and motion of the torso as measured.
@@ -48,18 +48,18 @@ pub struct TorsoMotion {
     pub omega: Vector3<f64>,
 }
 
-/// What the head is to do.
+/// Goal of the head.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Goal {
+enum HeadGoal {
     /// Nobody has asked yet.
     None,
     Point(Vector3<f64>),
     Angles([f64; AXES]),
 }
 
-/// How it gets there.
+/// Way of getting there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Motion {
+enum GazeMode {
     Pursuit,
     /// With this time left \[s\].
     Saccade(f64),
@@ -67,7 +67,7 @@ enum Motion {
 
 /// One joint of the head: pan, tilt, vergence in their directions of the table above.
 #[derive(Clone, Copy, Debug)]
-struct Axis {
+struct HeadAxis {
     joint: usize,
     /// Of the joint's angle against the one above.
     sign: f64,
@@ -81,19 +81,19 @@ pub struct Gaze {
     head: Head,
     /// Joints of the robot, for events.
     joints: usize,
-    axes: [Option<Axis>; AXES],
+    axes: [Option<HeadAxis>; AXES],
     /// C \[m\] @torso
     centre: Vector3<f64>,
-    goal: Goal,
-    motion: Motion,
+    goal: HeadGoal,
+    mode: GazeMode,
     /// \[rad/s^2\] Of the last cycle.
     acceleration: [f64; AXES],
     /// \[rad\] Heading in I_0 less the one that the IMU says, over a longer time.
     turn: Option<f64>,
-    /// \[m\] @I_0 Where odometry has the torso; and how far beside that the head believes it.
+    /// \[m\] @I_0 Torso by odometry; and the offset at which the head believes it beside that.
     odometry: Option<Vector3<f64>>,
     beside: Vector3<f64>,
-    /// Why the point cannot be looked at, as in [`EventCode::GazeHeld`].
+    /// Obstacle to looking at the point, as in [`EventCode::GazeHeld`].
     held: Option<u64>,
     /// News of the point and of the way there.
     event: Option<(EventCode, u64)>,
@@ -111,16 +111,17 @@ impl Gaze {
         let axis = |(joint, sign): (usize, f64)| {
             let j = &robot.joints[joint];
             let (a, b) = (sign * j.range[0], sign * j.range[1]);
-            Axis { joint, sign, range: [a.min(b), a.max(b)], comfort: sign * j.comfort }
+            HeadAxis { joint, sign, range: [a.min(b), a.max(b)], comfort: sign * j.comfort }
         };
         let vergence = head.vergence.map(|(joint, _)| (joint, 1.0));
         Ok(Some(Self {
+            // Ranges and comfort in the directions of the table above.
             axes: [Some((head.pan, signs[0])), Some((head.tilt, signs[1])), vergence].map(|a| a.map(axis)),
             head,
             joints: robot.joints.len(),
             centre,
-            goal: Goal::None,
-            motion: Motion::Pursuit,
+            goal: HeadGoal::None,
+            mode: GazeMode::Pursuit,
             acceleration: [0.0; AXES],
             turn: None,
             odometry: None,
@@ -139,17 +140,17 @@ impl Gaze {
     /// Takes a command to the head; `false` if it cannot be done and nothing changes.
     pub fn command(&mut self, command: &Command) -> bool {
         let goal = match command {
-            Command::Fixate(f) => Goal::Point(f.point.into()),
-            Command::HeadJoints(h) => Goal::Angles([h.pan, h.tilt, self.comfort(2)]),
-            Command::HeadRest => Goal::Angles([0, 1, 2].map(|i| self.comfort(i))),
+            Command::Fixate(f) => HeadGoal::Point(f.point.into()),
+            Command::HeadJoints(h) => HeadGoal::Angles([h.pan, h.tilt, self.comfort(2)]),
+            Command::HeadRest => HeadGoal::Angles([0, 1, 2].map(|i| self.comfort(i))),
             _ => return false,
         };
         let possible = match goal {
-            Goal::Point(p) => p.iter().all(|x| x.is_finite()),
-            Goal::Angles(angles) => self.axes.iter().zip(angles).all(|(axis, angle)| {
+            HeadGoal::Point(p) => p.iter().all(|x| x.is_finite()),
+            HeadGoal::Angles(angles) => self.axes.iter().zip(angles).all(|(axis, angle)| {
                 axis.is_none_or(|a| angle >= a.range[0] && angle <= a.range[1]) // no NaN is
             }),
-            Goal::None => true,
+            HeadGoal::None => true,
         };
         if possible {
             self.goal = goal;
@@ -164,13 +165,13 @@ impl Gaze {
 
     /// The joints are at rest, wherever they are.
     pub fn halt(&mut self) {
-        self.motion = Motion::Pursuit;
+        self.mode = GazeMode::Pursuit;
         self.acceleration = [0.0; AXES];
         self.turn = None;
     }
 
-    /// Speeds of the head's joints at the end of this cycle of `dt` \[s\], from the angles and speeds they were told at
-    /// its beginning.
+    /// Speeds of the head's joints at the end of this cycle of `dt` \[s\], from the angles and speeds commanded at its
+    /// beginning.
     pub fn drive(
         &mut self,
         torso: &TorsoMotion,
@@ -180,30 +181,32 @@ impl Gaze {
         given: &mut JointVector,
     ) {
         let torso = &self.stabilized(torso, dt);
-        let mut now = [State::default(); AXES];
+        // The motion goes on from what was commanded, not from what is measured: the joints' lag is not fed back.
+        let mut now = [AxisState::default(); AXES];
         for (i, axis) in self.axes.iter().enumerate() {
-            let Some(Axis { joint, sign, .. }) = *axis else { continue };
-            now[i] = State { p: sign * angle[joint], v: sign * speed[joint], a: self.acceleration[i] };
+            let Some(HeadAxis { joint, sign, .. }) = *axis else { continue };
+            now[i] = AxisState { p: sign * angle[joint], v: sign * speed[joint], a: self.acceleration[i] };
         }
+        // Nobody has asked: the head goes to its comfort like any joint without a task.
         let targets = match self.goal {
-            Goal::None => return,
-            Goal::Angles(angles) => angles.map(|p| Target { p, v: 0.0 }),
-            Goal::Point(point) => self.targets(torso, &point, &now, dt),
+            HeadGoal::None => return,
+            HeadGoal::Angles(angles) => angles.map(|p| Target { p, v: 0.0 }),
+            HeadGoal::Point(point) => self.targets(torso, &point, &now, dt),
         };
         let next = self.follow(&now, &targets, dt);
         for (i, axis) in self.axes.iter().enumerate() {
-            let Some(Axis { joint, sign, .. }) = *axis else { continue };
+            let Some(HeadAxis { joint, sign, .. }) = *axis else { continue };
             given[joint] = sign * next[i].0;
             self.acceleration[i] = next[i].1;
         }
     }
 
-    /// Where the joints are to be at the end of the cycle to look at a point; where they are if that cannot be done.
+    /// Targets of the joints at the end of the cycle to look at a point; where they are if that cannot be done.
     fn targets(
         &mut self,
         torso: &TorsoMotion,
         point: &Vector3<f64>,
-        now: &[State; AXES],
+        now: &[AxisState; AXES],
         dt: f64,
     ) -> [Target; AXES] {
         let (r, rate) = self.seen(torso, point);
@@ -213,9 +216,10 @@ impl Gaze {
             self.hold(Some(self.joints as u64));
             return here;
         };
+        // An axis at the end of its range waits there until the point comes back.
         let (mut targets, mut held) = (here, None);
         for (i, axis) in self.axes.iter().enumerate() {
-            let Some(Axis { joint, range, .. }) = *axis else { continue };
+            let Some(HeadAxis { joint, range, .. }) = *axis else { continue };
             let (p, inside) = reached(end[i], now[i].p, range);
             let turned = end[i] - begin[i];
             let v = (turned - TAU * (turned / TAU).round()) / dt;
@@ -280,25 +284,25 @@ impl Gaze {
     }
 
     /// Speeds and accelerations at the end of the cycle: a jump if the error is large, pursuit otherwise.
-    fn follow(&mut self, now: &[State; AXES], targets: &[Target; AXES], dt: f64) -> [(f64, f64); AXES] {
-        let limits = Limits { speed: self.head.saccade_speed, acceleration: self.head.acceleration };
+    fn follow(&mut self, now: &[AxisState; AXES], targets: &[Target; AXES], dt: f64) -> [(f64, f64); AXES] {
+        let limits = AxisLimits { speed: self.head.saccade_speed, acceleration: self.head.acceleration };
         // Of the beginning of the cycle, as the states are.
         let begin = targets.map(|t| Target { p: t.p - t.v * dt, ..t });
         let error = (0..AXES).map(|i| (begin[i].p - now[i].p).abs()).fold(0.0, f64::max);
-        let begins = self.motion == Motion::Pursuit && error > self.head.saccade_error;
-        let left = match self.motion {
-            Motion::Saccade(left) => Some(left.max(dt)),
-            Motion::Pursuit => begins.then_some(dt),
+        let begins = self.mode == GazeMode::Pursuit && error > self.head.saccade_error;
+        let left = match self.mode {
+            GazeMode::Saccade(left) => Some(left.max(dt)),
+            GazeMode::Pursuit => begins.then_some(dt),
         };
         if let Some(least) = left {
             let time = saccade::duration(now, &begin, least, &limits);
             if begins {
                 self.jump = Some((EventCode::Saccade, (time * 1e6) as u64));
             }
-            self.motion = if time > 1.5 * dt { Motion::Saccade(time - dt) } else { Motion::Pursuit };
+            self.mode = if time > 1.5 * dt { GazeMode::Saccade(time - dt) } else { GazeMode::Pursuit };
             return std::array::from_fn(|i| saccade::jump(&now[i], &begin[i], time, dt));
         }
-        let limits = Limits { speed: self.head.pursuit_speed, ..limits };
+        let limits = AxisLimits { speed: self.head.pursuit_speed, ..limits };
         let w = self.head.pursuit_bandwidth;
         std::array::from_fn(|i| saccade::pursue(&now[i], &targets[i], w, dt, &limits))
     }

@@ -46,7 +46,7 @@ pub struct InverseKinematics {
 pub struct Factorised {
     jacobian: TaskJacobian,
     gram: Cholesky<f64, Const<TASK>>,
-    /// Whether damping was needed because the task is nearly singular (a straight knee).
+    /// Damping was needed because the task is nearly singular (a straight knee).
     pub damped: bool,
 }
 

@@ -4,7 +4,7 @@
 //!
 //! | stage | equations | where |
 //! |---|---|---|
-//! | which plan, and what it wants now | | [`following`] |
+//! | plan, and desired task space now | | [`plan_follower`] |
 //! | measured task space, inclination, zero-moment point | (4.11)-(4.17), (3.5) | [`estimate`], [`torso`] |
 //! | early and late contact | | [`contact`] |
 //! | contact force modification | (5.2)-(5.22) | [`contact_force`] |
@@ -20,10 +20,10 @@ pub mod contact;
 pub mod contact_force;
 pub mod daemon;
 pub mod estimate;
-pub mod following;
 pub mod force_control;
 pub mod gaze;
 pub mod inverse_kinematics;
+pub mod plan_follower;
 pub mod saccade;
 mod stabilizer;
 pub mod task_space;

@@ -5,7 +5,7 @@
 //!
 //! | symbol | name | unit |
 //! |---|---|---|
-//! | p, v, a | angle, speed, acceleration of a joint that is told | rad, rad/s, rad/s^2 |
+//! | p, v, a | angle, speed, acceleration of a joint, commanded | rad, rad/s, rad/s^2 |
 //! | T | time left of a jump | s |
 //! | w | cut-off of the low pass of pursuit, damping 1 | rad/s |
 //!
@@ -17,9 +17,9 @@ use curves::quintic;
 /// Most joints that move together: pan, tilt, vergence.
 pub const AXES: usize = 3;
 
-/// What a joint is told in a cycle.
+/// Commanded motion of a joint in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct State {
+pub struct AxisState {
     /// \[rad\]
     pub p: f64,
     /// \[rad/s\]
@@ -28,7 +28,7 @@ pub struct State {
     pub a: f64,
 }
 
-/// Where a joint is to be at some instant, and how fast that place moves.
+/// Target of a joint at some instant, and its speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Target {
     /// \[rad\]
@@ -37,9 +37,9 @@ pub struct Target {
     pub v: f64,
 }
 
-/// What a motion keeps to.
+/// AxisLimits of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct AxisLimits {
     /// \[rad/s\]
     pub speed: f64,
     /// \[rad/s^2\]
@@ -55,7 +55,7 @@ const LONGER: (f64, u32) = (1.1, 80);
 const GRACE: f64 = 1.02;
 
 /// By how much a jump of `time` \[s\] would pass its limits: largest ratio over all joints and instants.
-fn excess(from: &[State; AXES], to: &[Target; AXES], time: f64, limits: &Limits) -> f64 {
+fn excess(from: &[AxisState; AXES], to: &[Target; AXES], time: f64, limits: &AxisLimits) -> f64 {
     let mut most = 0.0f64;
     for (s, target) in from.iter().zip(to) {
         let c = quintic((s.p, s.v, s.a), (target.p + target.v * time, target.v, 0.0), time);
@@ -77,12 +77,12 @@ fn rates(c: &[f64; 6], t: f64) -> (f64, f64) {
 
 /// \[s\] Shortest duration from `least` on in which the jump keeps to its limits, by trial; the one that passes them
 /// least if there is none, as for a target that runs away.
-pub fn duration(from: &[State; AXES], to: &[Target; AXES], least: f64, limits: &Limits) -> f64 {
+pub fn duration(from: &[AxisState; AXES], to: &[Target; AXES], least: f64, limits: &AxisLimits) -> f64 {
     if excess(from, to, least, limits) <= GRACE {
         return least;
     }
     // No motion is faster than its fastest instant.
-    let way = |(s, t): (&State, &Target)| (t.p - s.p).abs() / (limits.speed + t.v.abs());
+    let way = |(s, t): (&AxisState, &Target)| (t.p - s.p).abs() / (limits.speed + t.v.abs());
     let least = from.iter().zip(to).map(way).fold(least, f64::max);
     let (mut best, mut time) = ((f64::INFINITY, least), least / LONGER.0);
     for _ in 0..LONGER.1 {
@@ -99,7 +99,7 @@ pub fn duration(from: &[State; AXES], to: &[Target; AXES], least: f64, limits: &
 }
 
 /// `time` keeps to the limits, one step less does not: bisection to a thousandth.
-fn refined(from: &[State; AXES], to: &[Target; AXES], time: f64, limits: &Limits) -> f64 {
+fn refined(from: &[AxisState; AXES], to: &[Target; AXES], time: f64, limits: &AxisLimits) -> f64 {
     let (mut short, mut long) = (time / LONGER.0, time);
     for _ in 0..7 {
         let middle = 0.5 * (short + long);
@@ -109,7 +109,7 @@ fn refined(from: &[State; AXES], to: &[Target; AXES], time: f64, limits: &Limits
 }
 
 /// Speed and acceleration after `dt` \[s\] of a jump that takes `time` \[s\].
-pub fn jump(from: &State, to: &Target, time: f64, dt: f64) -> (f64, f64) {
+pub fn jump(from: &AxisState, to: &Target, time: f64, dt: f64) -> (f64, f64) {
     let c = quintic((from.p, from.v, from.a), (to.p + to.v * time, to.v, 0.0), time);
     rates(&c, dt)
 }
@@ -117,7 +117,7 @@ pub fn jump(from: &State, to: &Target, time: f64, dt: f64) -> (f64, f64) {
 /// Speed and acceleration after `dt` \[s\] of smooth pursuit: low pass of second order with damping 1, which carries the
 /// target's speed on and so has no lag behind an even motion; held to its limits. Implicit, so that no step is too long;
 /// `to` is the target at the end of the step.
-pub fn pursue(from: &State, to: &Target, w: f64, dt: f64, limits: &Limits) -> (f64, f64) {
+pub fn pursue(from: &AxisState, to: &Target, w: f64, dt: f64, limits: &AxisLimits) -> (f64, f64) {
     let error = to.p - from.p - 0.5 * dt * from.v;
     let v = (from.v + dt * (w * w * error + 2.0 * w * to.v)) / (1.0 + 2.0 * w * dt + 0.5 * w * w * dt * dt);
     let v = v.clamp(-limits.speed, limits.speed);
@@ -130,11 +130,11 @@ pub fn pursue(from: &State, to: &Target, w: f64, dt: f64, limits: &Limits) -> (f
 mod tests {
     use super::*;
 
-    const LIMITS: Limits = Limits { speed: 2.5, acceleration: 20.0 };
+    const LIMITS: AxisLimits = AxisLimits { speed: 2.5, acceleration: 20.0 };
     const DT: f64 = 1e-3;
 
-    fn at(p: f64) -> [State; AXES] {
-        [State { p, ..State::default() }; AXES]
+    fn at(p: f64) -> [AxisState; AXES] {
+        [AxisState { p, ..AxisState::default() }; AXES]
     }
 
     fn to(p: f64, v: f64) -> [Target; AXES] {
@@ -164,7 +164,7 @@ mod tests {
         while left > 1.5 * DT {
             left = duration(&s, &moving, left, &LIMITS);
             let (v, a) = jump(&s[0], &moving[0], left, DT);
-            s = [State { p: s[0].p + 0.5 * DT * (s[0].v + v), v, a }; AXES];
+            s = [AxisState { p: s[0].p + 0.5 * DT * (s[0].v + v), v, a }; AXES];
             (left, t) = (left - DT, t + DT);
             moving = to(1.0 + 0.3 * t, 0.3);
             worst = worst.max((v - rates(&whole, t).0).abs());
@@ -181,7 +181,7 @@ mod tests {
             left = duration(&s, &target, left.max(2.0 * DT), &LIMITS);
             let (v, a) = jump(&s[0], &target[0], left, DT);
             (peak, hardest) = (peak.max(v.abs()), hardest.max((v - s[0].v).abs() / DT));
-            s = [State { p: s[0].p + 0.5 * DT * (s[0].v + v), v, a }; AXES];
+            s = [AxisState { p: s[0].p + 0.5 * DT * (s[0].v + v), v, a }; AXES];
             left -= DT;
         }
         assert!(peak <= GRACE * LIMITS.speed, "{peak} rad/s");
@@ -196,11 +196,11 @@ mod tests {
         assert!(t.is_finite() && excess(&at(0.0), &to(1.0, 2.0 * LIMITS.speed), t, &LIMITS) > 1.0);
     }
 
-    fn pursued(w: f64, dt: f64, target: impl Fn(f64) -> Target) -> State {
-        let mut s = State::default();
+    fn pursued(w: f64, dt: f64, target: impl Fn(f64) -> Target) -> AxisState {
+        let mut s = AxisState::default();
         for k in 1..=(2.0 / dt) as u32 {
             let (v, a) = pursue(&s, &target(f64::from(k) * dt), w, dt, &LIMITS);
-            s = State { p: s.p + 0.5 * dt * (s.v + v), v, a };
+            s = AxisState { p: s.p + 0.5 * dt * (s.v + v), v, a };
         }
         s
     }
@@ -212,12 +212,12 @@ mod tests {
         // Closed form: the error of this filter to a sine of f is f^2/(f^2 + w^2) of it.
         let (f, w, sway) = (7.0, 40.0, 0.1);
         let mut worst = 0.0f64;
-        let mut s = State::default();
+        let mut s = AxisState::default();
         for k in 1..4000 {
             let t = f64::from(k) * DT;
             let to = Target { p: sway * (f * t).sin(), v: sway * f * (f * t).cos() };
             let (v, a) = pursue(&s, &to, w, DT, &LIMITS);
-            s = State { p: s.p + 0.5 * DT * (s.v + v), v, a };
+            s = AxisState { p: s.p + 0.5 * DT * (s.v + v), v, a };
             if t > 1.0 {
                 worst = worst.max((s.p - to.p).abs());
             }
@@ -231,9 +231,9 @@ mod tests {
     fn pursuit_bears_missed_cycles_and_its_limits() {
         let s = pursued(200.0, 0.035, |_| Target { p: 0.5, v: 0.0 });
         assert!((s.p - 0.5).abs() < 1e-3, "{s:?}");
-        let (v, _) = pursue(&State::default(), &Target { p: 9.0, v: 9.0 }, 40.0, DT, &LIMITS);
+        let (v, _) = pursue(&AxisState::default(), &Target { p: 9.0, v: 9.0 }, 40.0, DT, &LIMITS);
         assert!((v - LIMITS.acceleration * DT).abs() < 1e-12);
-        let fast = State { v: 2.5, ..State::default() };
+        let fast = AxisState { v: 2.5, ..AxisState::default() };
         assert!(pursue(&fast, &Target { p: 9.0, v: 9.0 }, 40.0, DT, &LIMITS).0 <= 2.5);
     }
 }

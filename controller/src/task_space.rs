@@ -11,7 +11,7 @@ use crate::inverse_kinematics::TaskJacobian;
 
 /// Pose of a sole or a sensor against the torso.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct FramePose {
     /// \[m\] @torso
     pub position: Vector3<f64>,
     /// torso_from_frame
@@ -107,7 +107,7 @@ impl TaskSpace {
     }
 
     /// Sole frame of a foot.
-    pub fn sole(&self, foot: usize) -> Place {
+    pub fn sole(&self, foot: usize) -> FramePose {
         self.place(&self.soles[foot])
     }
 
@@ -125,7 +125,7 @@ impl TaskSpace {
     }
 
     /// A link's own frame.
-    pub fn link(&self, name: &str) -> Result<Place, ModelError> {
+    pub fn link(&self, name: &str) -> Result<FramePose, ModelError> {
         Ok(self.place(&self.model.frame(name, [0.0; 3])?))
     }
 
@@ -136,7 +136,7 @@ impl TaskSpace {
     }
 
     /// Sensor frame of a foot.
-    pub fn sensor(&self, foot: usize) -> Place {
+    pub fn sensor(&self, foot: usize) -> FramePose {
         self.place(&self.sensors[foot])
     }
 
@@ -148,9 +148,9 @@ impl TaskSpace {
         self.points[foot].iter().map(move |frame| back * (at(frame) - sole.position))
     }
 
-    fn place(&self, frame: &Frame) -> Place {
+    fn place(&self, frame: &Frame) -> FramePose {
         let pose = self.model.frame_pose(&self.data, frame);
-        Place { position: pose.translation.vector, rotation: *pose.rotation.matrix() }
+        FramePose { position: pose.translation.vector, rotation: *pose.rotation.matrix() }
     }
 
     /// Jacobian of both soles' position relative to the centre of gravity and of their rotation; the rows of the

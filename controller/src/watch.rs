@@ -1,10 +1,10 @@
-//! Which feet press on the ground, and what ends in a controlled stop: sensor data that are not finite, a fall, being
+//! Contact flags of the feet, and what ends in a controlled stop: sensor data that are not finite, a fall, being
 //! lifted.
 
 use messages::{EventCode, Sensors};
 
-use crate::estimate::{Estimate, LOADED};
-use crate::following::Desired;
+use crate::estimate::{LOADED, TaskEstimate};
+use crate::plan_follower::Desired;
 
 /// \[N\] Normal force from which a foot counts as being in contact, above what a swinging foot's inertia reads; contact
 /// ends below [`LOADED`].
@@ -18,17 +18,17 @@ const BAD_CYCLES: u32 = 20;
 
 /// Admits sensor data and decides when to stop.
 #[derive(Clone, Default)]
-pub(crate) struct Watch {
+pub(crate) struct SafetyWatch {
     /// The last sensor data without a NaN, and how many with one came since.
     good: Sensors,
     bad: u32,
     unloaded: u32,
-    /// Why the joints shall come to rest, if they shall.
+    /// Reason for the joints to come to rest, if there is one.
     why: Option<EventCode>,
     contact: [bool; 2],
 }
 
-impl Watch {
+impl SafetyWatch {
     /// The sensor data if they are finite, otherwise the last ones that were; an event where that begins.
     pub(crate) fn admit(&mut self, sensors: &Sensors, joints: usize) -> (Sensors, Option<EventCode>) {
         let (imu, wrench) = (&sensors.imu, &sensors.foot_wrench);
@@ -49,28 +49,28 @@ impl Watch {
         (self.good, (self.bad == 1).then_some(EventCode::SensorNotFinite))
     }
 
-    /// Whether each foot presses on the ground.
+    /// Contact of each foot with the ground.
     pub(crate) fn contact(&self) -> [bool; 2] {
         self.contact
     }
 
     /// Begins anew, as with a supply that was switched on.
-    pub(crate) fn restart(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.why = None;
         self.unloaded = 0;
     }
 
-    /// Why the joints shall come to rest, until the supply was off; none: they need not.
+    /// Reason for the joints to come to rest, until the supply was off; none: they need not.
     pub(crate) fn stopped(&self) -> Option<EventCode> {
         self.why
     }
 
-    /// Stops for good if something is wrong; says why in that cycle.
+    /// Stops for good if something is wrong; the reason in that cycle.
     pub(crate) fn check(
         &mut self,
         sensors: &Sensors,
         now: &Desired,
-        estimate: &Estimate,
+        estimate: &TaskEstimate,
     ) -> Option<EventCode> {
         let tilt = (0..2).map(|i| (now.torso.position[i] - estimate.angles[i]).abs()).fold(0.0, f64::max);
         let load = sensors.foot_wrench[0].force[2].max(sensors.foot_wrench[1].force[2]);

@@ -1,4 +1,4 @@
-//! The stabilizer on Lola's kinematics, with a robot that does exactly what it is told and presses exactly as desired.
+//! The stabilizer on Lola's kinematics, with a robot that does exactly as commanded and presses exactly as desired.
 
 use config::gait::Control;
 use config::{Gait, Robot, root};
@@ -50,8 +50,8 @@ impl Rig {
         (targets, state)
     }
 
-    /// Whether the controller has told of this since it was asked last.
-    fn told(&mut self, what: EventCode) -> bool {
+    /// `true` if the controller has reported this since it was asked last.
+    fn reported(&mut self, what: EventCode) -> bool {
         std::iter::from_fn(|| self.controller.take_event()).any(|(code, _)| code == what)
     }
 
@@ -93,7 +93,7 @@ fn the_joints_bring_the_centre_of_gravity_where_the_plan_wants_it() {
 fn a_plan_beyond_the_length_of_the_legs_is_held_back_and_says_so() {
     let mut rig = Rig::new("stand");
     let plan = rig.plan([0.0, 0.0, 0.15]);
-    let (mut state, mut told) = (ControllerState::default(), false);
+    let (mut state, mut reported) = (ControllerState::default(), false);
     for _ in 0..3000 {
         let (targets, now) = rig.cycle(Some(&plan));
         for (j, joint) in rig.robot.joints.iter().enumerate() {
@@ -102,10 +102,10 @@ fn a_plan_beyond_the_length_of_the_legs_is_held_back_and_says_so() {
             assert!(targets.speed[j].abs() <= joint.speed_limit);
         }
         state = now;
-        told |= rig.told(EventCode::ControlLimited);
+        reported |= rig.reported(EventCode::ControlLimited);
     }
     assert!(state.limited > 0, "a straight knee is reported");
-    assert!(told, "as an event");
+    assert!(reported, "as an event");
 }
 
 /// Feedback path 2: the same motion with the measured joints in the loop.
@@ -222,7 +222,7 @@ fn falling_and_being_lifted_end_in_a_stop() {
     rig.sensors.imu.orientation = [(0.3f64).sin(), 0.0, 0.0, (0.3f64).cos()]; // 0.6 rad of roll
     let (targets, _) = rig.cycle(Some(&plan));
     assert_eq!(targets.mode, JointMode::Stop as u64);
-    assert!(rig.told(EventCode::Fallen));
+    assert!(rig.reported(EventCode::Fallen));
 
     let mut rig = Rig::new("stand");
     let plan = rig.plan([0.0; 3]);
@@ -236,5 +236,5 @@ fn falling_and_being_lifted_end_in_a_stop() {
         }
     }
     assert_eq!(mode, JointMode::Stop as u64);
-    assert!(rig.told(EventCode::Lifted));
+    assert!(rig.reported(EventCode::Lifted));
 }

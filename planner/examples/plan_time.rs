@@ -6,11 +6,13 @@
 mod robot;
 
 use messages::{Command, command::VelocityCommand};
-use planner::analytic::Analytic;
-use planner::collocation::{Collocation, Ends, State};
+use planner::boundary::{EndConditions, PlanarState};
+use planner::closed_form::ClosedForm;
+use planner::cog_method::BoundarySolver;
+use planner::collocation::Collocation;
 use planner::pose::Pose;
 use planner::sole::Sole;
-use planner::zmp::Chain;
+use planner::zmp::ZmpProblem;
 use realtime::clock;
 use robot::{Robot, checks};
 use std::hint::black_box;
@@ -25,12 +27,13 @@ fn main() {
         whole_plan(kmh, spacing);
     }
     println!("\nsolution of the boundary value problem alone (4.6.5)        median   p99");
-    for steps in [3, 20] {
-        row(&format!("closed form, {steps} steps"), closed_form(steps));
-    }
     for (steps, per_step) in [(5, 8), (20, 8)] {
         let points = steps * per_step;
-        row(&format!("collocation, {points} points, {steps} steps"), collocation(steps, per_step));
+        let row = |name: &str, solver: &mut dyn BoundarySolver| {
+            row(&format!("{name}, {points} points, {steps} steps"), solution(solver, steps, per_step));
+        };
+        row("closed form", &mut *Box::new(ClosedForm::new()));
+        row("collocation", &mut *Box::new(Collocation::new()));
     }
     println!("\nreference of the zero-moment point (4.6.4)                   median   p99");
     for steps in [3, 7, 20] {
@@ -84,9 +87,9 @@ fn timed<T>(mut call: impl FnMut() -> T) -> [f64; 2] {
 }
 
 /// Steps straight on: two phases each.
-fn chain(steps: usize) -> Chain {
+fn chain(steps: usize) -> ZmpProblem {
     let sole = Sole { center: [0.0; 2], half: [0.1, 0.03] };
-    let mut chain = Chain::new();
+    let mut chain = ZmpProblem::new();
     let foot = |k: usize| Pose::new(0.4 * k as f64, if k.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0);
     chain.fix(0.0, [0.0, -0.1]);
     for k in 1..=steps {
@@ -101,38 +104,33 @@ fn chain(steps: usize) -> Chain {
     chain
 }
 
-const BEGIN: State = State { r: [0.01, -0.05], v: [0.2, 0.15] };
-
-fn closed_form(steps: usize) -> [f64; 2] {
-    let mut reference = chain(steps);
-    reference.solve();
-    let mut a = Analytic::new(0.9);
-    let goal = [0.4 * steps as f64, -0.02];
-    timed(|| (a.follow(black_box(&reference)), a.solve(&BEGIN, goal)))
-}
+const BEGIN: PlanarState = PlanarState { r: [0.01, -0.05], v: [0.2, 0.15] };
 
 /// Solution with amplitudes of both ends, and the motion at every point.
-fn collocation(steps: usize, per_step: usize) -> [f64; 2] {
+fn solution(solver: &mut dyn BoundarySolver, steps: usize, per_step: usize) -> [f64; 2] {
     let mut reference = chain(steps);
     reference.solve();
     let om2 = 9.81 / 0.9;
+    // The modifications rise and fall between knots, so that the closed form holds, too.
+    let spacing = 0.8 / per_step as f64;
     let end = 0.8 * steps as f64;
-    let trapezoid = |t: f64, at: f64| ((t - at) / 0.1).min((at + 0.8 - t) / 0.1).clamp(0.0, 1.0);
-    let forces = |t: f64| {
-        let p = reference.at(t);
-        [-om2 * p[0], -om2 * p[1], -om2 * trapezoid(t, 0.0), -om2 * trapezoid(t, end - 0.8)]
+    let trapezoid = |t: f64, at: f64| ((t - at) / spacing).min((at + 0.8 - t) / spacing).clamp(0.0, 1.0);
+    let problem = solver.problem_mut();
+    problem.n = steps * per_step + 1;
+    let knot = |i: usize| {
+        let (t, p) = (spacing * i as f64, reference.at(spacing * i as f64));
+        (t, [-om2 * p[0], -om2 * p[1], -om2 * trapezoid(t, 0.0), -om2 * trapezoid(t, end - 0.8)])
     };
-    let mut c = Box::new(Collocation::new());
-    c.n = steps * per_step;
-    let spacing = end / (c.n - 1) as f64;
-    for i in 0..c.n {
-        let t = spacing * i as f64;
-        (c.t[i], c.om2[i], c.f[i], c.half[i]) = (t, om2, forces(t), forces(t + 0.5 * spacing));
+    for i in 0..problem.n {
+        let ((t, f), (_, next)) = (knot(i), knot(i + 1));
+        (problem.t[i], problem.om2[i], problem.f[i]) = (t, om2, f);
+        problem.half[i] = std::array::from_fn(|k| 0.5 * (f[k] + next[k]));
     }
-    let target = State { r: [0.4 * steps as f64, -0.02], v: [0.2, 0.1] };
+    let target = PlanarState { r: [0.4 * steps as f64, -0.02], v: [0.2, 0.1] };
     timed(|| {
-        c.solve();
-        let ends = Ends { begin: BEGIN.r, end: target.r, gamma: c.amplitudes(&BEGIN, &target) };
-        (0..c.n).map(|i| c.motion(i, &ends)[0][0]).sum::<f64>()
+        solver.solve();
+        let gamma = solver.ends().amplitudes(&BEGIN, &target);
+        let ends = EndConditions { begin: BEGIN.r, end: target.r, gamma };
+        (0..solver.problem().n).map(|i| solver.motion(i, &ends)[0][0]).sum::<f64>()
     })
 }

@@ -12,18 +12,18 @@
 //! | A_k, b_k | the point as seen from the next one: p_k = A_k p_{k+1} + b_k | 1, m |
 //! | M | what is left of the diagonal block after elimination | 1/s |
 
-use crate::zmp::{Chain, Hold, MAX_NODES};
+use crate::zmp::{MAX_NODES, ZmpHold, ZmpProblem};
 
 /// Most rounds.
 const ROUNDS: usize = 24;
 /// \[m\] A point this far outside lies on the edge.
 const TOUCH: f64 = 1e-12;
 
-/// Which edge holds a point along each axis of its rectangle: -1, 1, or 0 for none.
-type Edges = [i8; 2];
-type Matrix = [[f64; 2]; 2];
+/// Edge that holds a point along each axis of its rectangle: -1, 1, or 0 for none.
+type HeldEdges = [i8; 2];
+type NodeBlock = [[f64; 2]; 2];
 
-fn times(m: &Matrix, v: [f64; 2]) -> [f64; 2] {
+fn times(m: &NodeBlock, v: [f64; 2]) -> [f64; 2] {
     m.map(|row| row[0] * v[0] + row[1] * v[1])
 }
 
@@ -31,7 +31,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-impl Chain {
+impl ZmpProblem {
     /// Solves (4.42) between given ends; `false` if the choice of edges does not settle.
     pub fn solve_directly(&mut self) -> bool {
         let n = self.nodes().len();
@@ -48,8 +48,8 @@ impl Chain {
         false
     }
 
-    /// Chooses the edges that hold each point, as its neighbours pull it; whether the choice has changed.
-    fn choose(&self, edges: &mut [Edges; MAX_NODES]) -> bool {
+    /// Chooses the edges that hold each point, as its neighbours pull it; `true` if the choice has changed.
+    fn choose(&self, edges: &mut [HeldEdges; MAX_NODES]) -> bool {
         let nodes = self.nodes();
         let mut changed = false;
         for k in 1..nodes.len() - 1 {
@@ -70,9 +70,10 @@ impl Chain {
     }
 
     /// Places all points as the edges allow: elimination forwards, substitution backwards.
-    fn place(&mut self, edges: &[Edges]) {
+    fn place(&mut self, edges: &[HeldEdges]) {
         let nodes = self.nodes_mut();
         let last = nodes.len() - 1;
+        // p_k = A_k p_{k+1} + b_k, from the first point, which is given, on.
         let mut seen = [([[0.0; 2]; 2], [0.0; 2]); MAX_NODES];
         seen[0].1 = nodes[0].p;
         for k in 1..last {
@@ -88,6 +89,7 @@ impl Chain {
             let held = [0, 1].map(|d| f64::from(edges[k][d]) * hold.half[d]);
             seen[k] = eliminate(hold, free, held, &m, b.map(|b| a * b), c);
         }
+        // Substitution, from the last point, which is given, back.
         for k in (1..last).rev() {
             let (a, b) = &seen[k];
             let next = times(a, nodes[k + 1].p);
@@ -98,13 +100,14 @@ impl Chain {
 
 /// A and b of a point with the block `m`, the load `r` of the points before it and the pull `c` of the next one.
 fn eliminate(
-    hold: &Hold,
+    hold: &ZmpHold,
     free: [bool; 2],
     held: [f64; 2],
-    m: &Matrix,
+    m: &NodeBlock,
     r: [f64; 2],
     c: f64,
-) -> (Matrix, [f64; 2]) {
+) -> (NodeBlock, [f64; 2]) {
+    // A point on an edge has one unknown, its way along it; in a corner it has none.
     let on_edge = |axis: [f64; 2]| {
         let origin = hold.point(held);
         let by = 1.0 / dot(axis, times(m, axis));
@@ -113,6 +116,7 @@ fn eliminate(
         (a, [origin[0] + along * axis[0], origin[1] + along * axis[1]])
     };
     match free {
+        // Free along both axes: the block itself is inverted.
         [true, true] => {
             let by = 1.0 / (m[0][0] * m[1][1] - m[0][1] * m[1][0]);
             let inverse = [[by * m[1][1], -by * m[0][1]], [-by * m[1][0], by * m[0][0]]];

@@ -16,10 +16,11 @@
 //! | z_l, y_l | leg mass point: `leg_height` above the sole frame's origin | m |
 //! | gamma | amplitude of a modification of the zero-moment point (4.49) | m |
 
-use crate::collocation::{Collocation, Ends, F, MAX_KNOTS};
+use crate::boundary::{BoundaryProblem, EndConditions, EndSlopes, F, MAX_KNOTS, PlanarState};
+use crate::cog_method::CogSolver;
 use crate::feet::{FOOT_PIECES, FootPath};
-use crate::verdict::Verdict;
-use crate::zmp::{Chain, Shape};
+use crate::verdict::PlanVerdict;
+use crate::zmp::{Trapezoid, ZmpProblem};
 use config::gait;
 use curves::{Cursor, Path, Polyline, Sample};
 
@@ -36,7 +37,7 @@ pub type GroundPath = Polyline<1, 24>;
 
 /// Everything that drives the centre of gravity.
 #[derive(Clone, Copy)]
-pub struct Drive<'a> {
+pub struct Forcing<'a> {
     /// Feet: right, left.
     pub feet: &'a [FootPath; 2],
     /// Height of the body mass point \[m\].
@@ -44,9 +45,9 @@ pub struct Drive<'a> {
     /// Height of the zero-moment point \[m\].
     pub ground: &'a GroundPath,
     /// Reference of the zero-moment point.
-    pub zmp: &'a Chain,
-    /// Where the zero-moment point may be modified.
-    pub shapes: [Shape; 2],
+    pub zmp: &'a ZmpProblem,
+    /// Shapes of the modification of the zero-moment point.
+    pub shapes: [Trapezoid; 2],
 }
 
 /// Sums over both leg mass points.
@@ -57,16 +58,16 @@ struct Legs {
     acceleration: [f64; 3],
 }
 
-/// What the ground must do for a motion.
+/// Forces that a motion asks of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ground {
+pub struct GroundDemand {
     /// Least vertical force over the robot's weight.
     pub least_force: f64,
     /// Largest ratio of horizontal to vertical force.
     pub friction: f64,
 }
 
-impl Ground {
+impl GroundDemand {
     /// Nothing asked of it yet.
     pub const UNTOUCHED: Self = Self { least_force: f64::INFINITY, friction: 0.0 };
 
@@ -80,39 +81,39 @@ impl Ground {
     }
 }
 
-/// Collocation of the three-mass model over one interval.
+/// Three-mass model of one robot over one interval of time.
 #[derive(Clone)]
-pub struct ComSolver {
+pub struct ThreeMassModel {
     leg: f64,
     body: f64,
     leg_height: f64,
-    problem: Box<Collocation>,
+    method: CogSolver,
     legs: Box<[Legs; MAX_KNOTS]>,
     heights: Box<[Sample<1>; MAX_KNOTS]>,
 }
 
 /// Reads everything that drives the centre of gravity, in the order of time.
-struct Reader<'a> {
+struct ForcingReader<'a> {
     feet: [Cursor<'a, 4, FOOT_PIECES>; 2],
     height: Cursor<'a, 1, HEIGHT_PIECES>,
     ground: &'a GroundPath,
     /// Height of the ground, if it is level.
     level: Option<f64>,
-    zmp: &'a Chain,
+    zmp: &'a ZmpProblem,
     node: usize,
-    shapes: [Shape; 2],
+    shapes: [Trapezoid; 2],
 }
 
-impl<'a> Reader<'a> {
-    fn new(drive: &Drive<'a>) -> Self {
+impl<'a> ForcingReader<'a> {
+    fn new(forcing: &Forcing<'a>) -> Self {
         Self {
-            feet: [drive.feet[0].cursor(), drive.feet[1].cursor()],
-            height: drive.height.cursor(),
-            ground: drive.ground,
-            level: level(drive.ground),
-            zmp: drive.zmp,
+            feet: [forcing.feet[0].cursor(), forcing.feet[1].cursor()],
+            height: forcing.height.cursor(),
+            ground: forcing.ground,
+            level: level(forcing.ground),
+            zmp: forcing.zmp,
             node: 0,
-            shapes: drive.shapes,
+            shapes: forcing.shapes,
         }
     }
 }
@@ -124,14 +125,14 @@ fn level(ground: &GroundPath) -> Option<f64> {
     values.iter().all(|v| v[0] == first).then_some(first)
 }
 
-impl ComSolver {
-    /// A solver for the masses of `model`.
+impl ThreeMassModel {
+    /// For the masses of `model`.
     pub fn new(model: &gait::Model) -> Self {
         Self {
             leg: model.leg_mass,
             body: 1.0 - 2.0 * model.leg_mass,
             leg_height: model.leg_height,
-            problem: Box::new(Collocation::new()),
+            method: CogSolver::new(model.cog_method),
             legs: Box::new([Legs::default(); MAX_KNOTS]),
             heights: Box::new([Sample::rest([0.0]); MAX_KNOTS]),
         }
@@ -160,7 +161,7 @@ impl ComSolver {
     }
 
     /// om2 and right-hand sides at `t`, and what they were made of.
-    fn forces(&self, reader: &mut Reader<'_>, t: f64) -> (f64, [f64; F], Legs, Sample<1>) {
+    fn forces(&self, reader: &mut ForcingReader<'_>, t: f64) -> (f64, [f64; F], Legs, Sample<1>) {
         let [right, left] = &mut reader.feet;
         let feet = [right.sample(t), left.sample(t)];
         let legs = self.legs(&feet);
@@ -183,52 +184,55 @@ impl ComSolver {
         ((zdd_b + GRAVITY) * by_z, [r[0], r[1], q[0], q[1]], legs, z)
     }
 
-    /// Places knots on all `marks` \[s\], and between them no farther apart than `spacing`, and solves (4.50).
-    pub fn solve(&mut self, drive: &Drive, marks: &[f64], spacing: f64) -> Verdict {
-        let mut n = 0;
-        self.problem.t[0] = marks[0];
-        for pair in marks.windows(2) {
-            let pieces = pieces(pair[1] - pair[0], spacing);
-            if n + pieces >= MAX_KNOTS {
-                return Verdict::TooLong;
-            }
-            let step = (pair[1] - pair[0]) / pieces as f64;
-            for k in 1..pieces {
-                self.problem.t[n + k] = pair[0] + k as f64 * step;
-            }
-            n += pieces;
-            self.problem.t[n] = pair[1];
+    /// Places knots on all `marks` \[s\], and between them no farther apart than `spacing`, and solves the boundary value
+    /// problem there.
+    pub fn solve(&mut self, forcing: &Forcing<'_>, marks: &[f64], spacing: f64) -> PlanVerdict {
+        if !place_knots(self.method.solver_mut().problem_mut(), marks, spacing) {
+            return PlanVerdict::TooLong;
         }
-        self.problem.n = n + 1;
-        let mut reader = Reader::new(drive);
-        for i in 0..=n {
-            let t = self.problem.t[i];
+        // Coefficients at the knots and half-way between them, read in the order of time.
+        let last = self.problem().n - 1;
+        let mut reader = ForcingReader::new(forcing);
+        for i in 0..=last {
+            let t = self.problem().t[i];
             let (om2, f, legs, height) = self.forces(&mut reader, t);
-            self.problem.om2[i] = om2;
-            self.problem.f[i] = f;
-            self.legs[i] = legs;
-            self.heights[i] = height;
-            if i < n {
-                self.problem.half[i] = self.forces(&mut reader, 0.5 * (t + self.problem.t[i + 1])).1;
-            }
+            (self.legs[i], self.heights[i]) = (legs, height);
+            let half = if i < last {
+                self.forces(&mut reader, 0.5 * (t + self.problem().t[i + 1])).1
+            } else {
+                [0.0; F]
+            };
+            let problem = self.method.solver_mut().problem_mut();
+            (problem.om2[i], problem.f[i], problem.half[i]) = (om2, f, half);
         }
-        self.problem.solve()
+        self.method.solver_mut().solve()
     }
 
     /// The problem that was solved last.
-    pub fn problem(&self) -> &Collocation {
-        &self.problem
+    fn problem(&self) -> &BoundaryProblem {
+        self.method.solver().problem()
+    }
+
+    /// Slopes at both ends of the problem that was solved last.
+    pub fn ends(&self) -> EndSlopes {
+        self.method.solver().ends()
+    }
+
+    /// Position and velocity of the body mass point where the problem that was solved last ends.
+    pub fn end(&self, ends: &EndConditions) -> PlanarState {
+        let [r, v, _] = self.method.solver().motion(self.problem().n - 1, ends);
+        PlanarState { r, v }
     }
 
     /// Appends the robot's centre of gravity to `com`: quintics through position, velocity and acceleration at knots.
     /// Returns what the ground must do meanwhile.
-    pub fn write<const N: usize>(&self, ends: &Ends, com: &mut Path<3, N>) -> Ground {
+    pub fn write<const N: usize>(&self, ends: &EndConditions, com: &mut Path<3, N>) -> GroundDemand {
         let mut last = self.com(0, ends);
-        let mut ground = Ground::UNTOUCHED.with(last.acceleration);
-        for i in 1..self.problem.n {
+        let mut ground = GroundDemand::UNTOUCHED.with(last.acceleration);
+        for i in 1..self.problem().n {
             let next = self.com(i, ends);
-            com.push(&last, &next, self.problem.t[i]);
-            let by_h = 1.0 / (self.problem.t[i] - self.problem.t[i - 1]);
+            com.push(&last, &next, self.problem().t[i]);
+            let by_h = 1.0 / (self.problem().t[i] - self.problem().t[i - 1]);
             // Half-way through a quintic, by Simpson's rule, which is exact for its acceleration.
             let half = std::array::from_fn(|d| {
                 1.5 * by_h * (next.velocity[d] - last.velocity[d])
@@ -240,8 +244,8 @@ impl ComSolver {
         ground
     }
 
-    fn com(&self, i: usize, ends: &Ends) -> Sample<3> {
-        let ([r, v, a], z, legs) = (self.problem.motion(i, ends), &self.heights[i], &self.legs[i]);
+    fn com(&self, i: usize, ends: &EndConditions) -> Sample<3> {
+        let ([r, v, a], z, legs) = (self.method.solver().motion(i, ends), &self.heights[i], &self.legs[i]);
         let of = |b: [f64; 2], z: [f64; 1], l: &[f64; 3]| {
             let b = [b[0], b[1], z[0]];
             std::array::from_fn(|d| self.body * b[d] + self.leg * l[d])
@@ -252,6 +256,26 @@ impl ComSolver {
             acceleration: of(a, z.acceleration, &legs.acceleration),
         }
     }
+}
+
+/// Knots on all `marks` \[s\], and between them no farther apart than `spacing`; `false` if there is no room.
+fn place_knots(problem: &mut BoundaryProblem, marks: &[f64], spacing: f64) -> bool {
+    let mut n = 0;
+    problem.t[0] = marks[0];
+    for pair in marks.windows(2) {
+        let pieces = pieces(pair[1] - pair[0], spacing);
+        if n + pieces >= MAX_KNOTS {
+            return false;
+        }
+        let step = (pair[1] - pair[0]) / pieces as f64;
+        for k in 1..pieces {
+            problem.t[n + k] = pair[0] + k as f64 * step;
+        }
+        n += pieces;
+        problem.t[n] = pair[1];
+    }
+    problem.n = n + 1;
+    true
 }
 
 /// Pieces no longer than `spacing` that an interval of length `h` is cut into.

@@ -1,15 +1,15 @@
 //! Walking commands to step parameters, refused with the limit when out of `gait.limits` (thesis 4.6.1).
 //!
-//! Every comparison is written so that a number that is not finite fails it.
+//! Every comparison is written so that NaN fails it.
 
-use crate::steps::Parameters;
+use crate::steps::StepParameters;
 use config::Gait;
 use messages::Reason;
 use messages::command::{StepCommand, VelocityCommand};
 
-/// What the operator wants.
+/// Intent of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wish {
+pub enum Intent {
     /// Stay as it is, or stop.
     Rest,
     /// Take the standing pose.
@@ -27,9 +27,9 @@ fn within(x: f64, field: u8, [low, high]: [f64; 2]) -> Result<f64, Reason> {
 ///
 /// # Errors
 /// The first one that the gait does not allow.
-pub fn from_step(c: &StepCommand, gait: &Gait) -> Result<Parameters, Reason> {
+pub fn from_step(c: &StepCommand, gait: &Gait) -> Result<StepParameters, Reason> {
     let l = &gait.limits;
-    Ok(Parameters {
+    Ok(StepParameters {
         length: within(c.length, 0, l.length)?,
         side: within(c.side, 1, l.side)?,
         turn: within(c.turn, 2, l.turn)?,
@@ -44,14 +44,14 @@ pub fn from_step(c: &StepCommand, gait: &Gait) -> Result<Parameters, Reason> {
 ///
 /// # Errors
 /// The component that the gait does not allow, with the velocities that it does.
-pub fn from_velocity(c: &VelocityCommand, gait: &Gait) -> Result<Option<Parameters>, Reason> {
+pub fn from_velocity(c: &VelocityCommand, gait: &Gait) -> Result<Option<StepParameters>, Reason> {
     let rates = [c.forward, c.left, c.turn];
     if rates == [0.0; 3] {
         return Ok(None);
     }
     let l = &gait.limits;
     let steps = [l.length, l.side, l.turn];
-    // What a step allows, at the shortest duration: no component is ever faster.
+    // The limits of a step at the shortest duration: no component is ever faster.
     let mut fastest = steps.map(|limit| limit.map(|x| x / l.duration[0]));
     let table = &gait.step.by_speed;
     let most = table.last().map_or(0.0, |row| row[0]);
@@ -59,6 +59,7 @@ pub fn from_velocity(c: &VelocityCommand, gait: &Gait) -> Result<Option<Paramete
     for (field, (rate, limit)) in rates.into_iter().zip(fastest).enumerate() {
         within(rate, field as u8, limit)?;
     }
+    // The duration of forward walking, shortened where side or turn would be too much for one step.
     let [_, mut duration] = by_speed(c.forward.abs(), table).ok_or(Reason::Limit {
         field: 0,
         low: fastest[0][0],
@@ -70,7 +71,7 @@ pub fn from_velocity(c: &VelocityCommand, gait: &Gait) -> Result<Option<Paramete
             duration = duration.min(limit / rate);
         }
     }
-    let p = Parameters {
+    let p = StepParameters {
         length: c.forward * duration,
         side: c.left * duration,
         turn: c.turn * duration,

@@ -78,6 +78,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     while d.wait(&waiter, "lowlevel", || sensors.refresh())? {
         header = sensors.held().map_or(header, |s| s.header);
         d.begin_woken(header);
+        // A walk whose operator is gone ends first; then the scene's commands, then live ones.
         let mut inbox = Inbox::default();
         if let Some(grant) = lease.lost(commands.lease(), clock::now()) {
             d.report(header, EventCode::LeaseLost, grant.into());
@@ -92,6 +93,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         let state = state.latest();
         d.log.uses(0, &CONTROLLER_STATE, state);
         let output = planner.step(header.tick, d.setup.scene.cycle, state, inbox.commands());
+        // Every command is answered, whatever became of it.
         for (live, &verdict) in inbox.live().iter().zip(output.answers) {
             lease.follow(live, verdict);
             commands.answer(live, verdict);
@@ -111,6 +113,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             planner.report_parameters(&mut parameters);
             set.write(&parameters);
         }
+        // The controller waits for this in lockstep, and takes it for the planner's heartbeat in real time.
         planner_tick.write(&Event { header, ..Event::default() });
         if d.mode == Mode::Lockstep {
             d.ring(bell);

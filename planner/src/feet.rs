@@ -3,10 +3,14 @@
 //! All of them are quintics from rest to rest; feet stay flat. Knots of both directions are merged, because a foot's
 //! path has common knots for its four components.
 
+use crate::foot_rollover::FootRollover;
+use crate::origin::PlanOrigin;
 use crate::pose::Pose;
-use crate::steps::Heights;
+use crate::steps::{Heights, Stride};
+use crate::walking_model::WalkingModel;
 use config::gait;
 use curves::{Path, Sample};
+use messages::Plan;
 
 /// Path of one foot: x, y, z \[m\] and heading \[rad\].
 pub type FootPath = Path<4, FOOT_PIECES>;
@@ -55,7 +59,7 @@ impl Swing {
         Self { depart: self.depart.max(self.lift + h), arrive: self.arrive.min(self.end - h), ..self }
     }
 
-    /// When the foot begins to come down.
+    /// \[s\] Instant at which the foot begins to come down.
     pub fn lowering(&self) -> f64 {
         self.lowering
     }
@@ -84,6 +88,35 @@ impl Swing {
             velocity: [ds * d[0], ds * d[1], dz * height, ds * d[2]],
             acceleration: [dds * d[0], dds * d[1], ddz * height, dds * d[2]],
         }
+    }
+}
+
+impl Stride {
+    /// The swing of the step. One that is lifted higher than usual moves to the front later: it rises first.
+    pub(crate) fn swing(&self, step: &gait::Step) -> Swing {
+        let swing = Swing::new(self.lift, self.end, step);
+        if self.is_high(step) { swing.upright() } else { swing }
+    }
+}
+
+/// Planner of the feet: footprints, pitch of the soles, toe joints.
+#[derive(Clone)]
+pub(crate) struct FootTrajectories {
+    pub(crate) rollover: FootRollover,
+}
+
+impl FootTrajectories {
+    /// Writes the motion of both feet over the steps `strides`.
+    pub(crate) fn lay(&self, model: &WalkingModel, from: &PlanOrigin, strides: &[Stride], plan: &mut Plan) {
+        for foot in 0..2 {
+            stand(&mut plan.feet[foot], 0.0, &from.feet[foot], from.heights[foot]);
+        }
+        for s in strides {
+            let path = &mut plan.feet[1 - s.stance];
+            swing(path, &s.swing(&model.step), &s.takeoff, &s.landing, &s.heights);
+        }
+        self.rollover.lay(from, strides, model.step.start_time, plan);
+        self.rollover.tilt(&model.step, strides, &mut plan.pitch);
     }
 }
 

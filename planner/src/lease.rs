@@ -1,12 +1,12 @@
 //! Lease of the walk: a walk that an operator commanded ends when he is gone; one of the scene's own timeline goes on.
 //!
-//! The broker tells who holds the command lease and until when. Here nothing is asked of the broker: when it is silent, the
-//! time that it told last runs out. Time is an argument; only what a lease admitted ever ends by it, so that a run without
+//! The broker reports who holds the command lease and until when. Here nothing is asked of the broker: when it is silent, the
+//! time that it reported last runs out. Time is an argument; only what a lease admitted ever ends by it, so that a run without
 //! live commands is the same, bit for bit, whatever the clock says.
 
 use messages::{Command, Lease, Live, Verdict};
 
-/// Under which grant the robot walks.
+/// Grant under which the robot walks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct WalkLease {
     /// 0: nobody's walk can be lost.
@@ -14,9 +14,9 @@ pub struct WalkLease {
 }
 
 impl WalkLease {
-    /// Grant of the walk, if its lease is over at `now_ns`; told once. The robot then has to stop.
-    pub fn lost(&mut self, heard: Lease, now_ns: u64) -> Option<u32> {
-        if self.grant == 0 || heard.covers(self.grant, now_ns) {
+    /// Grant of the walk, if its lease is over at `now_ns`; reported once. The robot then has to stop.
+    pub fn lost(&mut self, received: Lease, now_ns: u64) -> Option<u32> {
+        if self.grant == 0 || received.covers(self.grant, now_ns) {
             return None;
         }
         Some(std::mem::take(&mut self.grant))
@@ -43,7 +43,7 @@ mod tests {
     use messages::{Reason, Stamp};
 
     const WALK: Command = Command::Velocity(VelocityCommand { forward: 0.3, left: 0.0, turn: 0.0 });
-    const HEARD: Lease = Lease { grant: 7, until_ns: 500 };
+    const RECEIVED: Lease = Lease { grant: 7, until_ns: 500 };
 
     fn live(command: Command, grant: u32) -> Live {
         Live { command, stamp: Stamp { origin: 1, grant, ..Stamp::default() } }
@@ -52,18 +52,18 @@ mod tests {
     fn walking() -> WalkLease {
         let mut walk = WalkLease::default();
         walk.follow(&live(WALK, 7), Ok(()));
-        assert_eq!(walk.lost(HEARD, 500), None);
+        assert_eq!(walk.lost(RECEIVED, 500), None);
         walk
     }
 
     #[test]
     fn a_walk_ends_with_its_lease_and_once() {
         let mut walk = walking();
-        assert_eq!(walk.lost(HEARD, 501), Some(7), "the broker fell silent");
-        assert_eq!(walk.lost(HEARD, 502), None);
+        assert_eq!(walk.lost(RECEIVED, 501), Some(7), "the broker fell silent");
+        assert_eq!(walk.lost(RECEIVED, 502), None);
         assert_eq!(walking().lost(Lease::default(), 1), Some(7), "released");
         assert_eq!(walking().lost(Lease { grant: 8, until_ns: 900 }, 1), Some(7), "somebody else's");
-        assert_eq!(walking().lost(Lease { until_ns: 900, ..HEARD }, 899), None, "renewed, or taken over");
+        assert_eq!(walking().lost(Lease { until_ns: 900, ..RECEIVED }, 899), None, "renewed, or taken over");
     }
 
     #[test]

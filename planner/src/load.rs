@@ -1,15 +1,17 @@
-//! Load factors: how much each foot carries (thesis 4.8, (4.62); gap 15).
+//! Load factors: share of each foot in the contact forces (thesis 4.8, (4.62); gap 15).
 //!
 //! Linear over a double support, with corners smoothed by quintics, and moved with the zero-moment point where that
 //! leaves its straight way. By (4.64) both feet share what is left of the moment about the weighted middle of their
 //! sole frames, so the point `e = p - (1 - rho) r_0 - rho r_1` must lie in both soles, each seen in its own heading.
 //! Corners are as soft as that allows. Where feet are turned against each other and it cannot be, the stabilizer lets one
 //! foot take what the other one cannot carry; what both can carry together is `(1 - rho) S_0 + rho S_1`, a sum of
-//! rectangles, and a plan whose zero-moment point leaves that is none.
+//! rectangles, and a plan whose zero-moment point leaves that cannot be walked.
 
 use crate::pose::Pose;
+use crate::segment::{Horizon, standing_shape};
 use crate::sole::Sole;
-use curves::{Path, Sample};
+use curves::{Path, Polyline, Sample};
+use messages::LEFT;
 
 /// Load factor rho of the left foot over time.
 pub type LoadPath = Path<1, 40>;
@@ -63,6 +65,7 @@ impl DoubleSupport<'_> {
                 - shares[0] * self.feet[0].array()[d]
                 - shares[1] * self.feet[1].array()[d]
         });
+        // The point e in each sole, as far as the sole reaches.
         let along = |[c, s]: [f64; 2], v: [f64; 2]| [c * v[0] + s * v[1], c * v[1] - s * v[0]];
         let mut shared = f64::INFINITY;
         let mut off = e; // from the middle of what both can carry
@@ -132,6 +135,45 @@ impl DoubleSupport<'_> {
     }
 }
 
+/// Writes the load factors over the steps of a plan, with its zero-moment point `zmp` (thesis 4.8). Returns the least distance
+/// \[m\] of the zero-moment point from the edge of what both soles can carry.
+pub(crate) fn lay<const N: usize>(
+    soles: &[Sole; 2],
+    horizon: &Horizon<'_>,
+    zmp: &Polyline<2, N>,
+    path: &mut LoadPath,
+) -> f64 {
+    let mut load = horizon.from.load_left;
+    path.restart(0.0, [load]);
+    let mut least = f64::INFINITY;
+    let mut lay = |begin: f64, end: f64, until: f64, feet: [Pose; 2], to: f64| {
+        // Kinks of a modification in the double support, left out where there is none.
+        let times = standing_shape(begin, end).corners();
+        let kinks = times.map(|t| (t, zmp.sample(t).0));
+        let straight = [kinks[0], kinks[3]];
+        let leaves = |k: usize| {
+            let s = (kinks[k].0 - begin) / (end - begin);
+            (0..2).any(|d| (kinks[k].1[d] - (1.0 - s) * kinks[0].1[d] - s * kinks[3].1[d]).abs() > 1e-9)
+        };
+        let kinks = if leaves(1) || leaves(2) { &kinks[..] } else { &straight[..] };
+        let support = DoubleSupport { kinks, feet, soles, ends: [load, to] };
+        least = least.min(support.lay(path));
+        hold(path, to, until);
+        load = to;
+    };
+    // Each step begins with a double support, and the last one is followed by that in which the robot comes to rest.
+    for s in horizon.strides {
+        let mut feet = [s.foothold; 2];
+        feet[1 - s.stance] = s.takeoff;
+        lay(s.begin, s.lift, s.end, feet, if s.stance == LEFT { 1.0 } else { 0.0 });
+    }
+    let last = horizon.last();
+    let mut feet = [last.foothold; 2];
+    feet[1 - last.stance] = last.landing;
+    lay(last.end, horizon.end, horizon.end, feet, 0.5);
+    least
+}
+
 /// Lines through the corners, each corner replaced by a quintic that takes `share` of the shorter piece beside it.
 fn smooth(path: &mut LoadPath, corners: &[(f64, f64)], share: f64) {
     let n = corners.len();
@@ -144,6 +186,7 @@ fn smooth(path: &mut LoadPath, corners: &[(f64, f64)], share: f64) {
         let slope = (b.1 - a.1) / (b.0 - a.0);
         Sample { position: [a.1 + slope * (t - a.0)], velocity: [slope], acceleration: [0.0] }
     };
+    // A corner's quintic takes as much of the line before it as of the line after it.
     let mut last = Sample::rest([corners[0].1]);
     for k in 0..n - 1 {
         let radius = if k == 0 { 0.0 } else { half(k - 1).min(half(k)) };

@@ -8,13 +8,11 @@ pub(crate) struct Marks {
 }
 
 impl Marks {
-    pub(crate) fn new() -> Self {
-        Self { len: 0, times: [0.0; 64] }
-    }
-
-    pub(crate) fn clear(&mut self, begin: f64) {
-        self.times[0] = begin;
-        self.len = 1;
+    /// Marks from `begin` \[s\] on.
+    pub(crate) fn from(begin: f64) -> Self {
+        let mut times = [0.0; 64];
+        times[0] = begin;
+        Self { len: 1, times }
     }
 
     /// Inserts instants that are not there yet and not before the first one.

@@ -1,4 +1,4 @@
-//! Obstacles as unordered triangles, and what of them lies in the way of a foot (thesis 4.3.3).
+//! Obstacles as unordered triangles, and the part of them in the way of a foot (thesis 4.3.3).
 //!
 //! A triangle is cut with half spaces, one after the other; what is left is a convex polygon. Nothing left: it does not
 //! reach into their intersection. That is exact for a box, and needs no case for edges or corners.
@@ -12,13 +12,13 @@ const MAX_CORNERS: usize = 10;
 
 /// Everything that is known to lie on the ground.
 #[derive(Clone, Debug, Default)]
-pub struct Obstacles {
+pub struct KnownObstacles {
     /// Corners \[m\] @I_0 and the number of the obstacle.
     triangles: Vec<([Point; 3], usize)>,
     count: usize,
 }
 
-/// What of an obstacle lies in a strip along the x axis of a frame: its bounding box there.
+/// Bounding box, in a frame, of the part of an obstacle in a strip along the x axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// \[m\] Its least x.
@@ -32,7 +32,7 @@ pub struct Extent {
 /// A box that stands upright: a foot.
 #[derive(Clone, Copy, Debug)]
 pub struct Upright {
-    /// Where it is, in I_0.
+    /// Its pose in I_0.
     pub at: Pose,
     /// \[m\] Back, front, right, left, as [`crate::sole::Sole::new`] takes them.
     pub sides: [f64; 4],
@@ -40,7 +40,7 @@ pub struct Upright {
     pub height: [f64; 2],
 }
 
-impl Obstacles {
+impl KnownObstacles {
     /// Adds one obstacle, triangles \[m\] @I_0. Those with a number that is not finite are left out.
     pub fn add(&mut self, triangles: impl IntoIterator<Item = [Point; 3]>) {
         let finite = |t: &[Point; 3]| t.iter().flatten().all(|x| x.is_finite());
@@ -54,7 +54,7 @@ impl Obstacles {
         self.triangles.is_empty()
     }
 
-    /// What of each obstacle lies between y = `strip[0]` and `strip[1]` of the frame `at`.
+    /// Extent of the part of each obstacle between y = `strip[0]` and `strip[1]` of the frame `at`.
     pub fn extents(&self, at: Pose, strip: [f64; 2]) -> impl Iterator<Item = Extent> {
         (0..self.count).filter_map(move |k| {
             let own = self.triangles.iter().filter(move |(_, number)| *number == k);
@@ -144,10 +144,10 @@ mod tests {
     use super::*;
 
     /// A square of 1 m at the height 0.1 m, turned by 45 degrees: corners on the axes.
-    fn diamond() -> Obstacles {
+    fn diamond() -> KnownObstacles {
         let r = std::f64::consts::FRAC_1_SQRT_2;
         let (a, b, c, d) = ([r, 0.0, 0.1], [0.0, r, 0.1], [-r, 0.0, 0.1], [0.0, -r, 0.1]);
-        let mut obstacles = Obstacles::default();
+        let mut obstacles = KnownObstacles::default();
         obstacles.add([[a, b, c], [c, d, a]]);
         obstacles
     }
@@ -196,7 +196,7 @@ mod tests {
         let mut hits = 0;
         for _ in 0..500 {
             let t: [Point; 3] = std::array::from_fn(|_| std::array::from_fn(|_| random(-0.5, 0.5)));
-            let mut obstacles = Obstacles::default();
+            let mut obstacles = KnownObstacles::default();
             obstacles.add([t]);
             let at = Pose::new(random(-0.3, 0.3), random(-0.3, 0.3), random(-3.0, 3.0));
             let foot = Upright { at, sides: [-0.2, 0.1, -0.05, 0.1], height: [-0.1, 0.2] };

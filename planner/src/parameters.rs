@@ -12,7 +12,7 @@ impl Planner {
             return Err(Reason::Limit { field: 0, low: 0.0, high: PLANNER.len() as f64 - 1.0 });
         };
         let [low, high] = parameter.range;
-        if !parameter.set(&mut self.builder.step, change.value) {
+        if !parameter.set(&mut self.builder.model.step, change.value) {
             return Err(Reason::Limit { field: 1, low, high });
         }
         self.event(EventCode::ParameterSet, change.number.into());
@@ -23,7 +23,7 @@ impl Planner {
     pub fn report_parameters(&self, record: &mut Parameters) {
         record.count = PLANNER.len() as u64;
         for (value, p) in record.values.iter_mut().zip(PLANNER) {
-            *value = p.get(&self.builder.step);
+            *value = p.get(&self.builder.model.step);
         }
     }
 }

@@ -12,32 +12,24 @@
 //! keep agreeing. What swings is lifted over the bounding box of what lies in its way, and its path is then held against
 //! the triangles themselves.
 
-use crate::feet::Swing;
-use crate::obstacles::{Extent, Obstacles, Upright};
+use crate::obstacles::{Extent, KnownObstacles, Upright};
+use crate::origin::PlanOrigin;
 use crate::pose::Pose;
 use crate::sole::Sole;
-use crate::steps::{Parameters, Stride, nu};
-use crate::walk::{Builder, Origin};
+use crate::steps::{ROUNDING, StepParameters, Stride, nu};
+use crate::verdict::Blocked;
+use crate::walking_model::WalkingModel;
 use config::gait;
-use curves::{Path, Sample};
 use messages::EventCode;
 
 /// Footholds that are looked ahead.
 const LOOK: usize = 8;
-/// \[m\] Rounding of footholds.
-const ROUNDING: f64 = 1e-6;
-/// \[m\] How near a swinging foot may come to a triangle.
+/// \[m\] Least distance of a swinging foot from a triangle.
 const TOUCH: f64 = 0.01;
 /// \[m\] Height of a foot.
 const FOOT_HEIGHT: f64 = 0.08;
-/// Shares of a swing at which a foot that is lifted high has its toes down, and at which it is level again.
-const TILTED: f64 = 0.3;
-const LEVEL: f64 = 0.65;
 /// Instants of a swing that are held against the triangles.
 const INSTANTS: usize = 24;
-
-/// Why the way is not free: code and detail of the event.
-pub(crate) type Blocked = (EventCode, u64);
 
 /// The next step, with what is ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,15 +38,17 @@ pub(crate) struct Adapted {
     pub(crate) length: f64,
     /// An obstacle is near: steps take the time of those over obstacles.
     pub(crate) near: bool,
-    /// Why the step is shorter than it should be.
+    /// Obstacle for which the step is shorter than it should be.
     pub(crate) blocked: Option<Blocked>,
 }
 
 /// Obstacles, and how they are stepped over.
 #[derive(Clone)]
 pub(crate) struct Reactive {
-    pub(crate) known: Obstacles,
+    pub(crate) known: KnownObstacles,
     pub(crate) rules: gait::Obstacles,
+    /// \[m\] Longest step that is not over an obstacle.
+    pub(crate) longest: f64,
 }
 
 impl Reactive {
@@ -87,7 +81,7 @@ impl Reactive {
         }
     }
 
-    /// Why a step over `e` cannot be made from ground at the height `ground`; `span` is its length.
+    /// Reason why a step over `e` cannot be made from ground at the height `ground`; `span` is its length.
     fn refusal(&self, e: &Extent, ground: f64, span: f64) -> Option<Blocked> {
         let millimetres = |x: f64| (x * 1e3).round() as u64;
         if e.top - ground > self.rules.height {
@@ -113,6 +107,7 @@ impl Extent {
 /// Length of the first of steps that would end at S_1, S_2, ... (`ideal`), so that none ends between `a` and `b`;
 /// `None` if it need not be another one. `longest` is the longest step over the obstacle, `most` any other.
 fn fit(ideal: &[f64], a: f64, b: f64, longest: f64, most: f64) -> Option<f64> {
+    // The first foothold that would not lie before the obstacle; behind it, in reach, nothing need change.
     let j = ideal.iter().position(|&s| s > a + ROUNDING)?;
     let first = ideal[0];
     let last = if j == 0 { 0.0 } else { ideal[j - 1] };
@@ -122,63 +117,75 @@ fn fit(ideal: &[f64], a: f64, b: f64, longest: f64, most: f64) -> Option<f64> {
     // Steps 1 .. j-1 longer, or, with none of them left, the step over the obstacle now.
     let (stretched, can) =
         if j == 0 { (b, b <= longest + ROUNDING) } else { (first * a / last, first * a / last <= most) };
+    // Or steps 1 .. j shorter: one step more before the obstacle. The smaller change is made.
     let shrunk = first * a / ideal[j];
     let longer = stretched / first.max(1e-9);
     let shorter = first / shrunk.max(1e-9);
     Some(if can && longer <= shorter { stretched } else { shrunk.max(0.0) })
 }
 
-impl Builder {
+impl Reactive {
     /// The step `p` from the foot `stance` at `at` in I_0, its ground at the height `ground` there (lines 3 to 6).
     pub(crate) fn adapt(
         &self,
+        model: &WalkingModel,
         at: Pose,
         ground: f64,
         stance: usize,
-        p: &Parameters,
-        wish: &Parameters,
+        p: &StepParameters,
+        wish: &StepParameters,
     ) -> Adapted {
         let free = Adapted { length: p.length, near: false, blocked: None };
-        let Some(reactive) = self.reactive.as_ref().filter(|r| !r.known.is_empty() && p.length > ROUNDING)
-        else {
+        if self.known.is_empty() || !(p.length > ROUNDING) {
             return free;
-        };
-        let sole = &self.soles[stance];
-        let lane = sole.half[1] + reactive.rules.distance;
-        let lanes = [0.0, nu(stance) * self.step.width];
+        }
+        // The first obstacle in the lanes of both feet, and the footholds before and behind it.
+        let sole = &model.soles[stance];
+        let lane = sole.half[1] + self.rules.distance;
+        let lanes = [0.0, nu(stance) * model.step.width];
         let strip =
             [lanes[0].min(lanes[1]) + sole.center[1] - lane, lanes[0].max(lanes[1]) + sole.center[1] + lane];
-        let Some(e) = reactive.ahead(at, strip, sole) else { return free };
-        let (a, b) = (reactive.before(e.begin, sole), reactive.behind(e.end, sole));
+        let Some(e) = self.ahead(at, strip, sole) else { return free };
+        let (a, b) = (self.before(e.begin, sole), self.behind(e.end, sole));
+
+        // S_j: what the coming steps would be without it. One that lies beyond them does not matter yet.
         let mut ideal = [0.0; LOOK];
         let (mut next, mut s) = (*p, 0.0);
         for x in &mut ideal {
             s += next.length.max(0.0);
             *x = s;
-            next = next.towards(wish, &self.step, 1.0);
+            next = next.towards(wish, &model.step, 1.0);
         }
         if ideal[LOOK - 1] <= a + ROUNDING {
             return free;
         }
-        if let Some(why) = reactive.refusal(&e, ground, b - a) {
+        // An obstacle that cannot be stepped over is walked up to.
+        if let Some(why) = self.refusal(&e, ground, b - a) {
             let length = p.length.min(a.max(0.0));
             let blocked = (p.length > a + ROUNDING).then_some(why);
             return Adapted { length, near: true, blocked };
         }
-        let length = fit(&ideal, a, b, reactive.rules.length, self.longest).unwrap_or(p.length);
+        let length = fit(&ideal, a, b, self.rules.length, self.longest).unwrap_or(p.length);
         Adapted { length, near: true, blocked: None }
     }
 
-    /// Lifts swings over what lies in their way; what they would touch all the same.
-    pub(crate) fn lift_over(&self, from: &Origin, strides: &mut [Stride]) -> Option<Blocked> {
-        let reactive = self.reactive.as_ref().filter(|r| !r.known.is_empty())?;
+    /// Lifts swings over what lies in their way; the first obstacle that they would touch all the same.
+    pub(crate) fn lift_over(
+        &self,
+        model: &WalkingModel,
+        from: &PlanOrigin,
+        strides: &mut [Stride],
+    ) -> Option<Blocked> {
+        if self.known.is_empty() {
+            return None;
+        }
         let mut blocked = None;
         for s in strides {
-            let Some(top) = self.highest(reactive, from, s) else { continue };
+            let Some(top) = self.highest(model, from, s) else { continue };
             let ground = from.height + s.heights.takeoff.max(s.heights.landing);
-            s.heights.lift = s.heights.lift.max(top + reactive.rules.clearance - ground);
-            let too_high = top - ground > reactive.rules.height;
-            if too_high || self.touches(reactive, from, s) {
+            s.heights.lift = s.heights.lift.max(top + self.rules.clearance - ground);
+            let too_high = top - ground > self.rules.height;
+            if too_high || self.touches(model, from, s) {
                 let code = if too_high { EventCode::ObstacleTooHigh } else { EventCode::NoFoothold };
                 blocked = blocked.or(Some((code, ((top - ground) * 1e3).round() as u64)));
             }
@@ -186,28 +193,10 @@ impl Builder {
         blocked
     }
 
-    /// Toes down while a foot that is lifted high is still behind.
-    pub(crate) fn tilt(&self, strides: &[Stride], pitch: &mut [Path<1, 24>; 2]) {
-        let Some(reactive) = &self.reactive else { return };
-        let (level, down) = (Sample::rest([0.0]), Sample::rest([reactive.rules.tilt]));
-        for s in strides.iter().filter(|s| s.is_high(&self.step)) {
-            let path = &mut pitch[1 - s.stance];
-            let at = |share: f64| s.lift + share * (s.end - s.lift);
-            if path.end() > s.lift {
-                continue; // it rolls by itself
-            }
-            if s.lift > path.end() {
-                path.push(&level, &level, s.lift);
-            }
-            path.push(&level, &down, at(TILTED));
-            path.push(&down, &level, at(LEVEL));
-        }
-    }
-
     /// Top of the bounding box of what lies between take-off and landing of a swing.
-    fn highest(&self, reactive: &Reactive, from: &Origin, s: &Stride) -> Option<f64> {
-        let sole = &self.soles[1 - s.stance];
-        let margin = 0.5 * reactive.rules.distance;
+    fn highest(&self, model: &WalkingModel, from: &PlanOrigin, s: &Stride) -> Option<f64> {
+        let sole = &model.soles[1 - s.stance];
+        let margin = 0.5 * self.rules.distance;
         let ends = [s.takeoff, s.landing].map(|p| s.foothold.relative(&p));
         let range = |d: usize| {
             let of = |p: &Pose| [p.x, p.y][d] + sole.center[d];
@@ -218,15 +207,15 @@ impl Builder {
         let [back, front] = range(0);
         let at = from.frame.compose(&s.foothold);
         let inside = |e: &Extent| e.end > back && e.begin < front;
-        reactive.known.extents(at, range(1)).filter(inside).map(|e| e.top).reduce(f64::max)
+        self.known.extents(at, range(1)).filter(inside).map(|e| e.top).reduce(f64::max)
     }
 
     /// Does the foot touch a triangle on its way, or where it lands?
-    fn touches(&self, reactive: &Reactive, from: &Origin, s: &Stride) -> bool {
-        let sole = &self.soles[1 - s.stance];
+    fn touches(&self, model: &WalkingModel, from: &PlanOrigin, s: &Stride) -> bool {
+        let sole = &model.soles[1 - s.stance];
         let [x, y] = sole.center;
         let [a, b] = sole.half.map(|h| h + TOUCH);
-        let swing = s.swing(&self.step);
+        let swing = s.swing(&model.step);
         (1..=INSTANTS).any(|k| {
             let t = s.lift + (s.end - s.lift) * k as f64 / INSTANTS as f64;
             let p = swing.at(t, &s.takeoff, &s.landing, &s.heights).position;
@@ -236,26 +225,8 @@ impl Builder {
                 sides: [x - a, x + a, y - b, y + b],
                 height: [z, z + FOOT_HEIGHT],
             };
-            reactive.known.hit(&foot)
+            self.known.hit(&foot)
         })
-    }
-}
-
-impl Stride {
-    /// The swing of the step. One that is lifted higher than usual moves to the front later: it rises first.
-    pub(crate) fn swing(&self, step: &gait::Step) -> Swing {
-        let swing = Swing::new(self.lift, self.end, step);
-        if self.is_high(step) { swing.upright() } else { swing }
-    }
-
-    /// A step down?
-    pub(crate) fn descends(&self) -> bool {
-        self.heights.landing < self.heights.foothold - ROUNDING
-    }
-
-    fn is_high(&self, step: &gait::Step) -> bool {
-        let h = &self.heights;
-        h.lift > step.swing_height + ROUNDING || (h.landing - h.takeoff).abs() > ROUNDING
     }
 }
 

@@ -10,15 +10,16 @@
 //! | N | number of them | 1 |
 
 use crate::commands;
+use crate::origin::PlanOrigin;
 use crate::pose::Pose;
 use crate::sole::Sole;
-use crate::steps::{Parameters, Stride};
-use crate::walk::Origin;
+use crate::steps::{StepParameters, Stride};
+
 use config::Gait;
 use messages::EventCode;
 use messages::command::{DistanceCommand, PlatformCommand, VelocityCommand};
 
-/// \[m\] What is no way any more.
+/// \[m\] Remaining distance treated as zero.
 const NOTHING: f64 = 1e-6;
 /// Most steps that are prescribed: with them and the last one a plan has knots enough.
 const MOST: usize = 4;
@@ -63,51 +64,51 @@ impl Script {
     }
 }
 
-/// A way along the x axis of a place.
+/// Course of a skill: along the x axis of a pose, so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Way {
+pub struct SkillCourse {
     /// Between the feet where it begins, in I_0.
     begin: Pose,
-    /// \[m\] How far, forward or backward.
+    /// \[m\] Its length, negative backwards.
     length: f64,
-    /// What a step does at most.
-    cruise: Parameters,
+    /// Largest step.
+    cruise: StepParameters,
     /// \[m\] Change of length from step to step.
     change: f64,
 }
 
-/// What is being done.
+/// Skill: a task that is being done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Skill {
     /// Normal walking: nothing is modified.
     Walk,
     /// Fixed distance, from standing to standing.
-    Distance(Way),
+    Distance(SkillCourse),
     /// Onto a platform or off it: the way to its edge, how far behind the last foothold before it the next one lies
     /// \[m\], height in I_0 of the ground before it and behind it \[m\], the edge itself on the way \[m\].
     Platform {
         /// To the last foothold before the edge.
-        way: Way,
+        way: SkillCourse,
         /// \[m\] Length of the step over the edge.
         over: f64,
-        /// \[m\] Where the edge is on the way.
+        /// \[m\] Position of the edge on the way.
         edge: f64,
         /// \[m\] Heights in I_0 of the ground before and behind it.
         ground: [f64; 2],
     },
 }
 
-/// What is to be done next, from standing.
+/// Task to begin with from standing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Task {
+pub enum SkillTask {
     /// See [`Skill::Distance`].
     Distance(DistanceCommand),
     /// See [`Skill::Platform`].
     Platform(PlatformCommand),
 }
 
-impl Task {
-    /// Why the robot cannot do it: code and detail of an event.
+impl SkillTask {
+    /// Checks that the robot can do it; otherwise code and detail of an event.
     ///
     /// # Errors
     /// Out of the limits of the gait; a platform too high, too far for one step or too near.
@@ -136,7 +137,7 @@ impl Task {
     }
 
     /// The skill that does it, from where the robot stands; `None` if it cannot.
-    pub fn begin(&self, from: &Origin, gait: &Gait, sole: &Sole) -> Option<Skill> {
+    pub fn begin(&self, from: &PlanOrigin, gait: &Gait, sole: &Sole) -> Option<Skill> {
         self.check(gait, sole).ok()?;
         let [r, l] = from.feet;
         let middle = Pose::new(0.5 * (r.x + l.x), 0.5 * (r.y + l.y), 0.5 * (r.heading + l.heading));
@@ -145,15 +146,18 @@ impl Task {
             Self::Distance(d) => {
                 let cruise = cruise(d, gait)?;
                 let change = gait.step.change[0].min(d.acceleration * cruise.duration * cruise.duration);
-                Some(Skill::Distance(Way { begin, length: d.distance, cruise, change }))
+                Some(Skill::Distance(SkillCourse { begin, length: d.distance, cruise, change }))
             }
             Self::Platform(p) => {
+                // Its last foothold before the edge keeps the distance of one before an obstacle.
                 let rules = gait.obstacles.as_ref()?;
                 let length = p.distance - rules.distance - sole.center[0] - sole.half[0];
-                let cruise =
-                    Parameters { length: gait.step.first_length, ..Parameters::on_the_spot(rules.duration) };
+                let cruise = StepParameters {
+                    length: gait.step.first_length,
+                    ..StepParameters::on_the_spot(rules.duration)
+                };
                 Some(Skill::Platform {
-                    way: Way { begin, length, cruise, change: gait.step.change[0] },
+                    way: SkillCourse { begin, length, cruise, change: gait.step.change[0] },
                     over: 2.0 * (sole.half[0] + rules.distance),
                     edge: p.distance,
                     ground: [from.height, from.height + p.height],
@@ -168,8 +172,8 @@ impl Task {
 pub struct Tasks {
     /// The active one.
     pub active: Skill,
-    /// What begins when the robot stands.
-    pub next: Option<Task>,
+    /// Task that begins when the robot stands.
+    pub next: Option<SkillTask>,
     /// The active one is given up: the robot stops.
     pub aborted: bool,
 }
@@ -182,7 +186,7 @@ impl Default for Tasks {
 
 impl Tasks {
     /// The next skill begins, normal walking if there is none; `false` if it cannot.
-    pub fn begin(&mut self, from: &Origin, gait: &Gait, sole: &Sole) -> bool {
+    pub fn begin(&mut self, from: &PlanOrigin, gait: &Gait, sole: &Sole) -> bool {
         let next = self.next.take();
         let skill = next.map(|task| task.begin(from, gait, sole));
         (self.active, self.aborted) = (skill.flatten().unwrap_or(Skill::Walk), false);
@@ -204,7 +208,7 @@ impl Tasks {
     }
 
     /// [`Skill::before`] of the active one.
-    pub fn before(&self, from: &Origin, starting: bool, first: f64, wish: &mut Parameters) -> Script {
+    pub fn before(&self, from: &PlanOrigin, starting: bool, first: f64, wish: &mut StepParameters) -> Script {
         let mut as_commanded = *wish;
         let wish = if self.aborted { &mut as_commanded } else { wish };
         let script = self.active.before(from, starting, first, wish);
@@ -213,14 +217,14 @@ impl Tasks {
 }
 
 /// Steps with which the distance is walked.
-fn cruise(d: &DistanceCommand, gait: &Gait) -> Option<Parameters> {
+fn cruise(d: &DistanceCommand, gait: &Gait) -> Option<StepParameters> {
     let forward = d.speed.copysign(d.distance);
     commands::from_velocity(&VelocityCommand { forward, left: 0.0, turn: 0.0 }, gait).ok().flatten()
 }
 
-impl Way {
+impl SkillCourse {
     /// \[m\] r
-    fn left(&self, from: &Origin) -> f64 {
+    fn left(&self, from: &PlanOrigin) -> f64 {
         self.length - self.begin.relative(&from.frame).x
     }
 }
@@ -228,7 +232,7 @@ impl Way {
 impl Skill {
     /// Before the standard planner: what the steps shall be, and the lengths of the next ones. `first` \[m\] is the
     /// longest step out of standing and into it.
-    pub fn before(&self, from: &Origin, starting: bool, first: f64, wish: &mut Parameters) -> Script {
+    pub fn before(&self, from: &PlanOrigin, starting: bool, first: f64, wish: &mut StepParameters) -> Script {
         let (way, over) = match self {
             Self::Walk => return Script::NONE,
             Self::Distance(way) => (way, None),
@@ -254,7 +258,7 @@ impl Skill {
     }
 
     /// After the standard planner: heights of the footholds.
-    pub fn after(&self, from: &Origin, strides: &mut [Stride]) {
+    pub fn after(&self, from: &PlanOrigin, strides: &mut [Stride]) {
         let Self::Platform { way, edge, ground, .. } = self else { return };
         let mut before = None;
         for s in strides {
@@ -271,7 +275,7 @@ impl Skill {
 /// The fewest steps from `previous` \[m\] to the end of a way of `r` \[m\], each at most as long as it may be: no longer
 /// than those of the cruise, no more than a change away from the one before, and the last one short enough to stop.
 /// Scaled to end exactly there. Without an end in sight, those of the cruise. At most `most_steps` are prescribed.
-fn lengths(r: f64, previous: f64, way: &Way, (first, most_steps): (f64, usize), script: &mut Script) {
+fn lengths(r: f64, previous: f64, way: &SkillCourse, (first, most_steps): (f64, usize), script: &mut Script) {
     let most = way.cruise.length.abs();
     let step = |i: usize, n: usize| {
         let up = previous + i as f64 * way.change;
@@ -292,9 +296,9 @@ fn lengths(r: f64, previous: f64, way: &Way, (first, most_steps): (f64, usize), 
 mod tests {
     use super::*;
 
-    fn way(length: f64, most: f64, change: f64) -> Way {
-        let cruise = Parameters { length: most, ..Parameters::on_the_spot(1.0) };
-        Way { begin: Pose::default(), length, cruise, change }
+    fn way(length: f64, most: f64, change: f64) -> SkillCourse {
+        let cruise = StepParameters { length: most, ..StepParameters::on_the_spot(1.0) };
+        SkillCourse { begin: Pose::default(), length, cruise, change }
     }
 
     /// All the way, step by step, as the planner asks.

@@ -80,6 +80,7 @@ impl Hull {
                     (to, e) = (q, v);
                 }
             }
+            // Inward: to the left of an edge, counter-clockwise.
             let by = 1.0 / (e[0] * e[0] + e[1] * e[1]).sqrt();
             let normal = [-e[1] * by, e[0] * by];
             hull.edges[hull.count] = (normal, normal[0] * from[0] + normal[1] * from[1]);

@@ -17,9 +17,12 @@ use config::gait;
 /// Most steps a plan can hold: the plan's load factors have room for seven.
 pub const MAX_STEPS: usize = 7;
 
-/// What can be asked of a step (table 4.1).
+/// \[m\] Rounding of footholds.
+pub(crate) const ROUNDING: f64 = 1e-6;
+
+/// Parameters of a step (table 4.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameters {
+pub struct StepParameters {
     /// \[m\] L_x
     pub length: f64,
     /// \[m\] L_y
@@ -30,7 +33,7 @@ pub struct Parameters {
     pub duration: f64,
 }
 
-impl Parameters {
+impl StepParameters {
     /// Stepping on the spot.
     pub const fn on_the_spot(duration: f64) -> Self {
         Self { length: 0.0, side: 0.0, turn: 0.0, duration }
@@ -57,7 +60,7 @@ pub struct Heights {
     pub takeoff: f64,
     /// Of the ground the swing foot lands on.
     pub landing: f64,
-    /// How far the swing foot is lifted over the higher one of its footholds.
+    /// Lift of the swing foot over the higher one of its footholds.
     pub lift: f64,
 }
 
@@ -65,7 +68,7 @@ pub struct Heights {
 #[derive(Clone, Copy, Debug)]
 pub struct Stride {
     /// Parameters of the step; zero length for one that closes the feet.
-    pub parameters: Parameters,
+    pub parameters: StepParameters,
     /// Foot that carries the single support.
     pub stance: usize,
     /// \[m\] Width W_n with which the swing foot is placed.
@@ -78,11 +81,11 @@ pub struct Stride {
     pub end: f64,
     /// Landing, in cycles from the start of the plan.
     pub end_cycle: u64,
-    /// Where the stance foot stands.
+    /// Pose of the stance foot.
     pub foothold: Pose,
-    /// Where the swing foot comes from.
+    /// Pose that the swing foot comes from.
     pub takeoff: Pose,
-    /// Where the swing foot lands.
+    /// Pose in which the swing foot lands.
     pub landing: Pose,
     /// Heights of these three, and of the swing.
     pub heights: Heights,
@@ -91,7 +94,7 @@ pub struct Stride {
 impl Stride {
     /// No step.
     pub const NONE: Self = Self {
-        parameters: Parameters::on_the_spot(0.0),
+        parameters: StepParameters::on_the_spot(0.0),
         stance: 0,
         width: 0.0,
         begin: 0.0,
@@ -103,6 +106,17 @@ impl Stride {
         landing: Pose::new(0.0, 0.0, 0.0),
         heights: Heights { foothold: 0.0, takeoff: 0.0, landing: 0.0, lift: 0.0 },
     };
+
+    /// A step down?
+    pub(crate) fn descends(&self) -> bool {
+        self.heights.landing < self.heights.foothold - ROUNDING
+    }
+
+    /// Is the swing foot lifted higher than in a step on level ground?
+    pub(crate) fn is_high(&self, step: &gait::Step) -> bool {
+        let h = &self.heights;
+        h.lift > step.swing_height + ROUNDING || (h.landing - h.takeoff).abs() > ROUNDING
+    }
 }
 
 /// nu of a stance foot: +1 right, -1 left.
@@ -114,8 +128,8 @@ fn sinc(x: f64) -> f64 {
     if x.abs() < 1e-8 { 1.0 } else { x.sin() / x }
 }
 
-/// Where the middle of the next foot stands, seen from the middle of the stance foot (4.1).
-pub fn displacement(p: &Parameters, w_c: f64, w_n: f64, nu: f64) -> [f64; 2] {
+/// \[m\] Middle of the next foothold, seen from the middle of the stance foot (4.1).
+pub fn displacement(p: &StepParameters, w_c: f64, w_n: f64, nu: f64) -> [f64; 2] {
     let phi = p.turn;
     let b = p.side + nu * w_n / 2.0;
     [
@@ -125,7 +139,7 @@ pub fn displacement(p: &Parameters, w_c: f64, w_n: f64, nu: f64) -> [f64; 2] {
 }
 
 /// Pose of the next foothold in the frame of the stance foot, turning about the middle of the foot (4.1), (4.3).
-pub fn next_foothold(p: &Parameters, w_c: f64, w_n: f64, nu: f64, sole: &Sole) -> Pose {
+pub fn next_foothold(p: &StepParameters, w_c: f64, w_n: f64, nu: f64, sole: &Sole) -> Pose {
     let [x, y] = displacement(p, w_c, w_n, nu);
     let c = sole.center;
     let rc = rotate(p.turn, c);
@@ -142,7 +156,7 @@ pub fn required_distance(turn: f64, width_min: f64, sole: &Sole) -> f64 {
 ///
 /// The foot left behind becomes the swing foot: seen from the new one it must not stand in its own way either, which
 /// (4.4) does not look at. It turns while it passes, so it needs as much room as at its foothold.
-pub fn next_width(p: &Parameters, w_c: f64, nu: f64, step: &gait::Step, sole: &Sole) -> f64 {
+pub fn next_width(p: &StepParameters, w_c: f64, nu: f64, step: &gait::Step, sole: &Sole) -> f64 {
     let (s, c) = p.turn.sin_cos();
     let need = required_distance(p.turn, step.width_min, sole);
     let bound = |w_c: f64| 2.0 * (need - nu * displacement(p, w_c, 0.0, nu)[1]) / c; // (4.4)

@@ -1,8 +1,13 @@
-//! What is wrong with a plan, if anything: every solver says it, the planner acts on it.
+//! Verdict on a plan: every solver gives it, the planner acts on it.
 
-/// The first thing that is wrong.
+use messages::EventCode;
+
+/// Obstacle in the way: code and detail of the event.
+pub(crate) type Blocked = (EventCode, u64);
+
+/// First fault of a plan, if any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum PlanVerdict {
     /// Solved, and it can be walked.
     Sound,
     /// The zero-moment point leaves the support polygon.
@@ -13,6 +18,8 @@ pub enum Verdict {
     Falling,
     /// More friction is needed than there is.
     Slips,
+    /// The closed form (4.44) is for one mass at constant height, and this motion has more, or climbs.
+    NotOneMass,
     /// A support polygon is empty.
     NoSupport,
     /// Phases do not follow one another: no length, wrong order, or too long for the distance of the knots.
@@ -21,11 +28,11 @@ pub enum Verdict {
     TooLong,
     /// Sweeps ran out before the optimum.
     Unsettled,
-    /// An input is not a number, or something overflowed.
+    /// An input is NaN or infinite, or something overflowed.
     NotFinite,
 }
 
-impl Verdict {
+impl PlanVerdict {
     /// This, unless it is sound; then `next`.
     pub fn and(self, next: Self) -> Self {
         if self == Self::Sound { next } else { self }

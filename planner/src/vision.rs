@@ -1,4 +1,4 @@
-//! What the vision system of the thesis would send: the triangles of the objects that a scene calls known, in I_0.
+//! Stand-in for the vision system of the thesis: the triangles of the objects that a scene calls known, in I_0.
 
 use std::error::Error;
 
@@ -8,14 +8,14 @@ use environment::{Mesh, Pose};
 use multibody::{Data, Model};
 use nalgebra::Vector3;
 
-use crate::obstacles::Obstacles;
+use crate::obstacles::KnownObstacles;
 
 /// The known objects of a scene.
 ///
 /// # Errors
 /// A mesh cannot be read, or the robot's data do not fit together.
-pub fn known(setup: &Setup) -> Result<Obstacles, Box<dyn Error>> {
-    let mut obstacles = Obstacles::default();
+pub fn known(setup: &Setup) -> Result<KnownObstacles, Box<dyn Error>> {
+    let mut obstacles = KnownObstacles::default();
     let begin = middle_of_soles(&setup.robot, &setup.robot.poses[&setup.scene.start_pose])?;
     for object in setup.scene.objects.iter().filter(|o| o.known) {
         let mesh = match &object.shape {
@@ -29,7 +29,7 @@ pub fn known(setup: &Setup) -> Result<Obstacles, Box<dyn Error>> {
     Ok(obstacles)
 }
 
-/// Where I_0 begins: on the ground, in the middle between the soles of a robot whose torso stands over the origin.
+/// Origin of I_0: on the ground, in the middle between the soles of a robot whose torso stands over the origin.
 fn middle_of_soles(robot: &Robot, pose: &[f64]) -> Result<Vector3<f64>, Box<dyn Error>> {
     let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
     let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?;

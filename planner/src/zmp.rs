@@ -1,5 +1,5 @@
-//! ZMP reference: the slowest way of the zero-moment point through the support polygons (4.41)-(4.43), and the shapes
-//! by which it may be modified (4.49).
+//! Minimum-velocity reference of the zero-moment point through the support polygons (4.41)-(4.43), and the shapes by which
+//! it may be modified (4.49).
 //!
 //! ```text
 //! Variables    p_k   zero-moment point at the k-th phase boundary            [m]  I
@@ -8,24 +8,24 @@
 //! ```
 //! At a phase boundary the polygons of both phases hold; their intersection is the single-support one (errata 2.10).
 //! Solved directly (`active_set`). Projected Gauss-Seidel is what the thesis does, the reserve if the direct way should
-//! not settle, and solves the periodic chain: both components together, because the Hessian block is isotropic and the
+//! not settle, and solves the periodic problem: both components together, because the Hessian block is isotropic and the
 //! Euclidean projection finds the optimum.
 
 use crate::pose::Pose;
 use crate::sole::Sole;
-use crate::verdict::Verdict;
+use crate::verdict::PlanVerdict;
 
-/// Most phase boundaries of one chain.
+/// Most phase boundaries of one problem.
 pub const MAX_NODES: usize = 48;
 /// Most sweeps.
 pub const SWEEPS: usize = 2000;
 const TOLERANCE: f64 = 1e-9;
-/// Over-relaxation of chains of more than this many boundaries (errata 2.10).
+/// Over-relaxation of problems of more than this many boundaries (errata 2.10).
 const RELAXATION: (usize, f64) = (12, 1.6);
 
 /// A rectangle that holds a point: a shrunk sole on the ground.
 #[derive(Clone, Copy, Debug)]
-pub struct Hold {
+pub struct ZmpHold {
     /// \[m\] Middle.
     pub center: [f64; 2],
     /// Its longitudinal axis.
@@ -34,7 +34,7 @@ pub struct Hold {
     pub half: [f64; 2],
 }
 
-impl Hold {
+impl ZmpHold {
     /// The rectangle of `sole` at the pose `at`.
     pub fn new(sole: &Sole, at: &Pose) -> Self {
         let (s, c) = at.heading.sin_cos();
@@ -52,7 +52,7 @@ impl Hold {
         [c * v[0] + s * v[1], c * v[1] - s * v[0]]
     }
 
-    /// The inverse of [`Hold::local`].
+    /// The inverse of [`ZmpHold::local`].
     pub fn point(&self, q: [f64; 2]) -> [f64; 2] {
         let [c, s] = self.axis;
         [self.center[0] + c * q[0] - s * q[1], self.center[1] + s * q[0] + c * q[1]]
@@ -74,33 +74,33 @@ impl Hold {
 
 /// One phase boundary.
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
+pub struct ZmpNode {
     /// \[s\]
     pub time: f64,
     /// \[m\]
     pub p: [f64; 2],
-    /// What holds the point; none: the point is given.
-    pub hold: Option<Hold>,
+    /// Rectangle that holds the point; none: the point is given.
+    pub hold: Option<ZmpHold>,
 }
 
 /// Phase boundaries in the order of time.
 #[derive(Clone, Copy, Debug)]
-pub struct Chain {
+pub struct ZmpProblem {
     len: usize,
     full: bool,
-    nodes: [Node; MAX_NODES],
+    nodes: [ZmpNode; MAX_NODES],
 }
 
-impl Default for Chain {
+impl Default for ZmpProblem {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Chain {
+impl ZmpProblem {
     /// No boundaries yet.
     pub const fn new() -> Self {
-        Self { len: 0, full: false, nodes: [Node { time: 0.0, p: [0.0; 2], hold: None }; MAX_NODES] }
+        Self { len: 0, full: false, nodes: [ZmpNode { time: 0.0, p: [0.0; 2], hold: None }; MAX_NODES] }
     }
 
     /// Removes all boundaries.
@@ -110,16 +110,16 @@ impl Chain {
 
     /// Appends a given point.
     pub fn fix(&mut self, time: f64, p: [f64; 2]) {
-        self.push(Node { time, p, hold: None });
+        self.push(ZmpNode { time, p, hold: None });
     }
 
     /// Appends a point that a sole holds.
     pub fn hold(&mut self, time: f64, sole: &Sole, at: &Pose) {
-        let hold = Hold::new(sole, at);
-        self.push(Node { time, p: hold.center, hold: Some(hold) });
+        let hold = ZmpHold::new(sole, at);
+        self.push(ZmpNode { time, p: hold.center, hold: Some(hold) });
     }
 
-    fn push(&mut self, node: Node) {
+    fn push(&mut self, node: ZmpNode) {
         self.full |= self.len == MAX_NODES;
         if !self.full {
             self.nodes[self.len] = node;
@@ -128,55 +128,55 @@ impl Chain {
     }
 
     /// The boundaries.
-    pub fn nodes(&self) -> &[Node] {
+    pub fn nodes(&self) -> &[ZmpNode] {
         &self.nodes[..self.len]
     }
 
-    pub(crate) fn nodes_mut(&mut self) -> &mut [Node] {
+    pub(crate) fn nodes_mut(&mut self) -> &mut [ZmpNode] {
         &mut self.nodes[..self.len]
     }
 
-    /// What is wrong with the problem before it is solved.
-    fn posed(&self) -> Verdict {
+    /// Verdict on the problem before it is solved.
+    fn posed(&self) -> PlanVerdict {
         let nodes = self.nodes();
         if self.full {
-            return Verdict::TooLong;
+            return PlanVerdict::TooLong;
         }
         for (k, n) in nodes.iter().enumerate() {
             let numbers = [n.time, n.p[0], n.p[1]];
             if !numbers.iter().chain(n.hold.iter().flat_map(|h| &h.half)).all(|x| x.is_finite()) {
-                return Verdict::NotFinite;
+                return PlanVerdict::NotFinite;
             }
             if n.hold.is_some_and(|h| h.half[0] < 0.0 || h.half[1] < 0.0) {
-                return Verdict::NoSupport;
+                return PlanVerdict::NoSupport;
             }
             if k > 0 && n.time <= nodes[k - 1].time {
-                return Verdict::Degenerate;
+                return PlanVerdict::Degenerate;
             }
         }
-        if nodes.len() < 2 { Verdict::Degenerate } else { Verdict::Sound }
+        if nodes.len() < 2 { PlanVerdict::Degenerate } else { PlanVerdict::Sound }
     }
 
     /// Solves (4.42) between given ends.
-    pub fn solve(&mut self) -> Verdict {
+    pub fn solve(&mut self) -> PlanVerdict {
         match self.posed() {
-            Verdict::Sound if self.solve_directly() => Verdict::Sound,
-            Verdict::Sound => self.relax(SWEEPS),
+            PlanVerdict::Sound if self.solve_directly() => PlanVerdict::Sound,
+            PlanVerdict::Sound => self.relax(SWEEPS),
             wrong => wrong,
         }
     }
 
     /// Solves (4.42) by at most so many sweeps of projected Gauss-Seidel.
-    pub fn relax(&mut self, sweeps: usize) -> Verdict {
+    pub fn relax(&mut self, sweeps: usize) -> PlanVerdict {
         let wrong = self.posed();
         let omega = if self.len > RELAXATION.0 { RELAXATION.1 } else { 1.0 };
-        if wrong != Verdict::Sound || (0..sweeps).any(|_| self.sweep(omega) <= TOLERANCE) {
+        if wrong != PlanVerdict::Sound || (0..sweeps).any(|_| self.sweep(omega) <= TOLERANCE) {
             return wrong;
         }
-        Verdict::Unsettled
+        PlanVerdict::Unsettled
     }
 
-    /// One sweep of [`Chain::relax`]; how far \[m\] a point moved at most.
+    /// One sweep of [`ZmpProblem::relax`]; how far \[m\] a point moved at most.
     pub fn sweep(&mut self, omega: f64) -> f64 {
         let mut change = 0.0f64;
         for k in 1..self.len.saturating_sub(1) {
@@ -186,17 +186,18 @@ impl Chain {
         change
     }
 
-    /// Solves (4.42) for a chain whose last point is the first one moved by the rigid motion that takes the pose
+    /// Solves (4.42) for a problem whose last point is the first one moved by the rigid motion that takes the pose
     /// `from` to `to` (gap 12).
-    pub fn solve_periodic(&mut self, from: &Pose, to: &Pose) -> Verdict {
+    pub fn solve_periodic(&mut self, from: &Pose, to: &Pose) -> PlanVerdict {
         let wrong = self.posed();
         let n = self.len;
-        if wrong != Verdict::Sound || n < 3 {
-            return wrong.and(Verdict::Degenerate);
+        if wrong != PlanVerdict::Sound || n < 3 {
+            return wrong.and(PlanVerdict::Degenerate);
         }
-        let (there, back) = (Motion::new(from, to), Motion::new(to, from));
+        let (there, back) = (RigidMotion::new(from, to), RigidMotion::new(to, from));
         let period = self.nodes[n - 1].time - self.nodes[0].time;
         for _ in 0..SWEEPS {
+            // The first point lies between the second one and the last but one, taken back by a period.
             let last = self.nodes[n - 2];
             let before = (last.time - period, back.of(last.p));
             let after = self.nodes[1];
@@ -204,10 +205,10 @@ impl Chain {
             self.nodes[n - 1].p = there.of(self.nodes[0].p);
             change = change.max(self.sweep(1.0));
             if change <= TOLERANCE {
-                return Verdict::Sound;
+                return PlanVerdict::Sound;
             }
         }
-        Verdict::Unsettled
+        PlanVerdict::Unsettled
     }
 
     /// The reference at `t`: linear between boundaries.
@@ -230,7 +231,7 @@ impl Chain {
     }
 }
 
-impl Node {
+impl ZmpNode {
     /// One Gauss-Seidel update; returns how far the point moved.
     fn relax(&mut self, before: (f64, [f64; 2]), after: (f64, [f64; 2]), omega: f64) -> f64 {
         let Some(hold) = &self.hold else { return 0.0 };
@@ -248,12 +249,12 @@ impl Node {
 }
 
 /// The rigid motion that takes one pose to another.
-struct Motion {
+struct RigidMotion {
     turn: [f64; 2],
     shift: [f64; 2],
 }
 
-impl Motion {
+impl RigidMotion {
     fn new(from: &Pose, to: &Pose) -> Self {
         let (s, c) = (to.heading - from.heading).sin_cos();
         let still = Self { turn: [c, s], shift: [0.0; 2] };
@@ -269,14 +270,14 @@ impl Motion {
 
 /// A trapezoid of unit height (4.49): zero until `rise.0` and after `fall.1`.
 #[derive(Clone, Copy, Debug)]
-pub struct Shape {
+pub struct Trapezoid {
     /// \[s\] Begin and end of the rise.
     pub rise: (f64, f64),
     /// \[s\] Begin and end of the fall.
     pub fall: (f64, f64),
 }
 
-impl Shape {
+impl Trapezoid {
     /// Value at `t`.
     pub fn at(&self, t: f64) -> f64 {
         if t <= self.rise.0 || t >= self.fall.1 {

@@ -5,7 +5,7 @@ mod robot;
 use config::Gait;
 use messages::command::{DistanceCommand, PlatformCommand, VelocityCommand};
 use messages::{Command, EventCode, GaitState, Plan};
-use planner::obstacles::Obstacles;
+use planner::obstacles::KnownObstacles;
 use robot::checks::*;
 use robot::{Robot, SUPPORT};
 
@@ -14,8 +14,8 @@ type Bar = [f64; 3];
 
 const SLOW: Command = Command::Velocity(VelocityCommand { forward: 1.0 / 3.6, left: 0.0, turn: 0.0 });
 
-fn see(bars: &[Bar]) -> Obstacles {
-    let mut obstacles = Obstacles::default();
+fn see(bars: &[Bar]) -> KnownObstacles {
+    let mut obstacles = KnownObstacles::default();
     for [begin, end, top] in bars {
         let (a, b) = ([*begin, -1.0], [*end, 1.0]);
         let corner = |i: usize, z: f64| {

@@ -113,7 +113,7 @@ fn random_commands_are_walked() {
     assert!(tally.plans > 10 * 200);
 }
 
-/// Ten thousand sequences find no plan that cannot be walked, none that jumps, and no number that is none. Cycles are
+/// Ten thousand sequences find no plan that cannot be walked, none that jumps, and no NaN. Cycles are
 /// long, because nothing happens in most of them.
 #[test]
 fn ten_thousand_sequences_are_walked() {

@@ -1,10 +1,12 @@
 //! Vectors of errata 2 and orders of convergence.
 
-use planner::collocation::{Collocation, State};
+use planner::boundary::PlanarState;
+use planner::cog_method::BoundarySolver;
+use planner::collocation::Collocation;
 use planner::pose::Pose;
 use planner::sole::Sole;
-use planner::steps::{Parameters, displacement, next_foothold, nu, required_distance};
-use planner::zmp::{Chain, Shape};
+use planner::steps::{StepParameters, displacement, next_foothold, nu, required_distance};
+use planner::zmp::{Trapezoid, ZmpProblem};
 
 const G: f64 = 9.81;
 
@@ -12,8 +14,8 @@ fn close(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance, "{a} instead of {b}");
 }
 
-fn parameters(length: f64, side: f64, turn: f64) -> Parameters {
-    Parameters { length, side, turn, duration: 0.8 }
+fn parameters(length: f64, side: f64, turn: f64) -> StepParameters {
+    StepParameters { length, side, turn, duration: 0.8 }
 }
 
 #[test]
@@ -64,7 +66,7 @@ struct Ramps<Z: Fn(f64) -> (f64, f64)> {
 }
 
 impl<Z: Fn(f64) -> (f64, f64)> Ramps<Z> {
-    fn forces(&self, t: f64, shapes: &[Shape; 2]) -> (f64, [f64; 4]) {
+    fn forces(&self, t: f64, shapes: &[Trapezoid; 2]) -> (f64, [f64; 4]) {
         let (z, zdd) = (self.z)(t);
         let k = self.points.iter().position(|p| t < p.0).unwrap_or(self.points.len() - 1).max(1);
         let (a, b) = (self.points[k - 1], self.points[k]);
@@ -73,14 +75,14 @@ impl<Z: Fn(f64) -> (f64, f64)> Ramps<Z> {
         (om2, [0.0, -om2 * p, -G / z * shapes[0].at(t), -G / z * shapes[1].at(t)])
     }
 
-    fn solve(&self, knots: &[f64], shapes: &[Shape; 2]) -> Collocation {
+    fn solve(&self, knots: &[f64], shapes: &[Trapezoid; 2]) -> Collocation {
         let mut c = Collocation::new();
-        c.n = knots.len();
+        c.problem.n = knots.len();
         for (i, &t) in knots.iter().enumerate() {
-            c.t[i] = t;
-            (c.om2[i], c.f[i]) = self.forces(t, shapes);
+            c.problem.t[i] = t;
+            (c.problem.om2[i], c.problem.f[i]) = self.forces(t, shapes);
             if let Some(next) = knots.get(i + 1) {
-                c.half[i] = self.forces(0.5 * (t + next), shapes).1;
+                c.problem.half[i] = self.forces(0.5 * (t + next), shapes).1;
             }
         }
         c.solve();
@@ -101,12 +103,13 @@ const MARKS: [f64; 7] = [0.0, 0.16, 0.64, 0.8, 0.96, 1.44, 1.6];
 
 /// gamma_0, gamma_1 and y at 0.16, 0.8, 1.44 of the problem of errata 2.8.
 fn two_steps(z: impl Fn(f64) -> (f64, f64), spacing: f64) -> [f64; 5] {
-    let shapes = [0.0, 0.8].map(|t| Shape { rise: (t, t + 0.16), fall: (t + 0.64, t + 0.8) });
+    let shapes = [0.0, 0.8].map(|t| Trapezoid { rise: (t, t + 0.16), fall: (t + 0.64, t + 0.8) });
     let ramps = Ramps { z, points: vec![(0.0, 0.02), (0.16, 0.1), (0.8, 0.1), (0.96, -0.1), (1.6, -0.1)] };
     let knots = cut(&MARKS, spacing);
     let c = ramps.solve(&knots, &shapes);
-    let (a, b) = (State { r: [0.0, 0.02], v: [0.0, -0.15] }, State { r: [0.0, -0.03], v: [0.0, 0.1] });
-    let gamma = c.amplitudes(&a, &b);
+    let (a, b) =
+        (PlanarState { r: [0.0, 0.02], v: [0.0, -0.15] }, PlanarState { r: [0.0, -0.03], v: [0.0, 0.1] });
+    let gamma = c.ends().amplitudes(&a, &b);
     let y = |t: f64| {
         let i = knots.iter().position(|k| (k - t).abs() < 1e-9).expect("a knot");
         let u = &c.u[i];
@@ -179,17 +182,17 @@ fn periodic_state_of_errata_2_9() {
     let forces = |t: f64| [-om2 * zmp(t, 0), -om2 * zmp(t, 1), 0.0, 0.0];
     let mut c = Collocation::new();
     let knots = cut(&[0.0, 0.16, 0.8, 0.96, 1.6], 0.02);
-    c.n = knots.len();
+    c.problem.n = knots.len();
     for (i, &t) in knots.iter().enumerate() {
-        c.t[i] = t;
-        c.om2[i] = om2;
-        c.f[i] = forces(t);
+        c.problem.t[i] = t;
+        c.problem.om2[i] = om2;
+        c.problem.f[i] = forces(t);
         if i + 1 < knots.len() {
-            c.half[i] = forces(0.5 * (t + knots[i + 1]));
+            c.problem.half[i] = forces(0.5 * (t + knots[i + 1]));
         }
     }
     c.solve();
-    let s = c.periodic_state(&feet[2], &feet[4]);
+    let s = c.ends().periodic_state(&feet[2], &feet[4]);
     for (x, e) in
         s.r.into_iter().chain(s.v).zip([0.866784146361, 0.432197428799, 0.387029515907, 0.555664498672])
     {
@@ -207,7 +210,7 @@ fn zmp_reference_is_optimal() {
         (seed >> 11) as f64 / (1u64 << 53) as f64
     };
     for _ in 0..200 {
-        let mut chain = Chain::new();
+        let mut chain = ZmpProblem::new();
         let (mut t, mut x) = (0.0, 0.0);
         chain.fix(t, [random() * 0.1, random() * 0.1]);
         for _ in 0..4 {

@@ -5,7 +5,7 @@ mod robot;
 use config::gait::{Limits, Step};
 use planner::pose::Pose;
 use planner::sole::Sole;
-use planner::steps::{Parameters, next_foothold, next_width, nu};
+use planner::steps::{StepParameters, next_foothold, next_width, nu};
 use robot::Random;
 
 /// Lateral gap \[m\], seen from the stance foot, between its sole and the one at `landing`.
@@ -16,7 +16,7 @@ fn gap(sole: &Sole, landing: &Pose, nu: f64) -> f64 {
 }
 
 /// Least gap over random steps, each with the width that `width` says.
-fn least(width: impl Fn(&Parameters, f64, f64, &Step, &Sole) -> f64) -> f64 {
+fn least(width: impl Fn(&StepParameters, f64, f64, &Step, &Sole) -> f64) -> f64 {
     let gait = robot::gait();
     let (step, sole) = (&gait.step, &Sole::new(robot::SUPPORT[0]));
     let Limits { length, side, turn, .. } = gait.limits;
@@ -25,7 +25,7 @@ fn least(width: impl Fn(&Parameters, f64, f64, &Step, &Sole) -> f64) -> f64 {
     let mut least = f64::INFINITY;
     for k in 0..20_000 {
         let nu = nu(k % 2);
-        let p = Parameters {
+        let p = StepParameters {
             length: random.range(length),
             side: random.range(side),
             turn: random.range(turn),

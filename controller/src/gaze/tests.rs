@@ -101,7 +101,7 @@ fn targets_move_as_the_torso_makes_them() {
         velocity: Rotation3::new(omega * t).transpose() * velocity,
         omega,
     };
-    let now = [State::default(); AXES];
+    let now = [AxisState::default(); AXES];
     let (t, h) = (0.2, 1e-5);
     let target = gaze.targets(&at(t), &point, &now, h);
     let angles = |gaze: &Gaze, t: f64| gaze.angles(&gaze.seen(&at(t), &point).0).unwrap();

@@ -1,95 +1,90 @@
-//! The position half of figure 5.8: task velocities with their modification, and the joints without a task.
+//! Fourth stage of figure 5.8: task velocities with their modification (5.33), (5.35), and how modifications move the soles
+//! (5.30).
 
-use curves::Sample;
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 
-use super::Controller;
-use crate::approach::Approach;
-use crate::following::Desired;
-use crate::inverse_kinematics::{JointVector, TaskVector};
+use super::cycle::ControlCycle;
+use crate::force_control::Modification;
+use crate::inverse_kinematics::{TASK, TaskVector};
+use crate::plan_follower::Desired;
 use crate::torso;
 
-/// How joints without a task go to their comfortable angles.
-const SETTLE: Approach = Approach { rate: 2.0, speed: 0.5, acceleration: 5.0 };
-
-/// \[rad\] Toes are not held against the ground further than this from where they are.
-const YIELD: f64 = 0.05;
-
-impl Controller {
-    /// Axes of the planned foot (heading x, y, normal of the sole) in torso axes.
-    pub(super) fn foot_axes(&self, torso: &Matrix3<f64>, at: &Desired, foot: usize) -> Matrix3<f64> {
-        let heading = Rotation3::from_axis_angle(&Vector3::z_axis(), at.feet[foot].position[3]);
-        torso.transpose() * (heading * pitched(at.pitch[foot].position[0])).matrix()
+/// One unit of each component of the modification, (z, roll, pitch) right, then left, as task velocities.
+pub(super) fn unit_modifications(cycle: &ControlCycle<'_>) -> SMatrix<f64, TASK, 6> {
+    let mut unit = SMatrix::<f64, TASK, 6>::zeros();
+    for foot in 0..2 {
+        let axes = cycle.foot_axes(foot);
+        unit.fixed_view_mut::<3, 1>(6 * foot, 3 * foot).copy_from(&axes.column(2));
+        unit.fixed_view_mut::<3, 1>(6 * foot + 3, 3 * foot + 1).copy_from(&axes.column(0));
+        unit.fixed_view_mut::<3, 1>(6 * foot + 3, 3 * foot + 2).copy_from(&axes.column(1));
     }
-
-    /// x'_d1 with drift compensation K_x (x_d1 - x), torso axes (5.33), (5.35).
-    pub(super) fn task_velocity(&self, torso: &Matrix3<f64>, end: &Desired) -> TaskVector {
-        let back = torso.transpose();
-        let omega = back * torso_omega(torso, end);
-        let com = Vector3::from(end.com.position);
-        let com_velocity = Vector3::from(end.com.velocity);
-        let mut x = TaskVector::zeros();
-        for foot in 0..2 {
-            let s = &end.feet[foot];
-            let axes = self.foot_axes(torso, end, foot);
-            let [deformation, deforming] = self.deformation(foot);
-            let m = self.modification.value.fixed_rows::<3>(3 * foot) + deformation;
-            let m_rate = self.modification.rate.fixed_rows::<3>(3 * foot) + deforming;
-            let vertical = back.column(2);
-
-            let position =
-                back * (Vector3::new(s.position[0], s.position[1], s.position[2]) - com) + vertical * m[0];
-            let velocity = back * (Vector3::new(s.velocity[0], s.velocity[1], s.velocity[2]) - com_velocity)
-                + vertical * m_rate[0]
-                - omega.cross(&position);
-            let tilt = Rotation3::from_axis_angle(&Vector3::y_axis(), m[2])
-                * Rotation3::from_axis_angle(&Vector3::x_axis(), m[1]);
-            let rotation = axes * tilt.matrix();
-            let pitching = end.pitch[foot].velocity[0];
-            let turning =
-                axes * Vector3::new(m_rate[1], m_rate[2] + pitching, 0.0) + vertical * s.velocity[3] - omega;
-
-            let is = self.desired.sole(foot);
-            let position_error = position - (is.position - self.desired.com());
-            let rotation_error = rotation_vector(&(rotation * is.rotation.transpose()));
-            let k = self.drift();
-            x.fixed_rows_mut::<3>(6 * foot).copy_from(&(velocity + position_error * k));
-            x.fixed_rows_mut::<3>(6 * foot + 3).copy_from(&(turning + rotation_error * k));
-        }
-        x
-    }
-
-    /// As planned; a toe that is to lie flat and is bent by more than [`YIELD`], as on the edge of a board, gives way.
-    /// One that moves as planned lags behind as far, and must not.
-    fn toe_speed(&self, plan: &Sample<1>, toe: usize) -> f64 {
-        let bent = self.state.tracking_error[toe]; // q_d - q
-        let over = bent - bent.clamp(-YIELD, YIELD);
-        let back = (plan.position[0] - self.angle[toe]) * self.drift();
-        let moving = plan.velocity[0] != 0.0 || plan.acceleration[0] != 0.0;
-        if over == 0.0 || moving {
-            plan.velocity[0] + back.clamp(-SETTLE.speed, SETTLE.speed)
-        } else {
-            -over * self.drift()
-        }
-    }
-
-    /// Speeds of the joints that no foot needs: toes as planned, the others to their comfortable angles.
-    pub(super) fn given_speeds(&self, end: &Desired) -> JointVector {
-        let mut speeds = JointVector::zeros();
-        let settle = SETTLE.eased(self.share());
-        for (j, joint) in self.robot.joints.iter().enumerate().filter(|(j, _)| !self.free[*j]) {
-            speeds[j] = settle.next(joint.comfort - self.angle[j], self.speed[j], self.dt);
-        }
-        for (foot, toe) in self.robot.feet.iter().enumerate().filter_map(|(i, f)| Some((i, f.toe?))) {
-            speeds[toe] = self.toe_speed(&end.toes[foot], toe);
-        }
-        speeds
-    }
+    unit
 }
 
-/// Rotation of a sole about its own y axis \[rad\].
-pub(super) fn pitched(angle: f64) -> Rotation3<f64> {
-    Rotation3::from_axis_angle(&Vector3::y_axis(), angle)
+/// N: lift, roll and pitch of both soles against the torso per unit of modification, from the `speeds` of the joints that
+/// realise it (5.30); `free` marks the joints that take part.
+pub(super) fn sole_motion<const JOINTS: usize>(
+    cycle: &ControlCycle<'_>,
+    speeds: &SMatrix<f64, JOINTS, 6>,
+    free: &[bool],
+) -> Matrix6<f64> {
+    let mut motion = Matrix6::zeros();
+    for foot in 0..2 {
+        let rows = cycle.foot_axes(foot).transpose();
+        let mut of_foot = SMatrix::<f64, 3, 6>::zeros();
+        let columns = cycle.kinematics.sole_jacobian(foot).column_iter().enumerate();
+        for (j, twist) in columns.filter(|(j, _)| free[*j]) {
+            let (linear, turn) = (rows * twist.fixed_rows::<3>(0), rows * twist.fixed_rows::<3>(3));
+            of_foot += Vector3::new(linear.z, turn.x, turn.y) * speeds.row(j);
+        }
+        motion.fixed_rows_mut::<3>(3 * foot).copy_from(&of_foot);
+    }
+    motion
+}
+
+/// x'_d1 with drift compensation K_x (x_d1 - x), torso axes (5.33), (5.35); `drift` is K_x \[1/s\], `deformation` that of
+/// each sole and its rate.
+pub(super) fn task_velocity(
+    cycle: &ControlCycle<'_>,
+    modification: &Modification,
+    deformation: &[[Vector3<f64>; 2]; 2],
+    drift: f64,
+) -> TaskVector {
+    let (end, torso) = (cycle.end, &cycle.torso);
+    let back = torso.transpose();
+    let omega = back * torso_omega(torso, end);
+    let com = Vector3::from(end.com.position);
+    let com_velocity = Vector3::from(end.com.velocity);
+    let mut x = TaskVector::zeros();
+    for foot in 0..2 {
+        let s = &end.feet[foot];
+        let axes = cycle.foot_axes(foot);
+        let [deformed, deforming] = deformation[foot];
+        let m = modification.value.fixed_rows::<3>(3 * foot) + deformed;
+        let m_rate = modification.rate.fixed_rows::<3>(3 * foot) + deforming;
+        let vertical = back.column(2);
+
+        // Sole against the centre of gravity, seen from the torso, which turns itself.
+        let position =
+            back * (Vector3::new(s.position[0], s.position[1], s.position[2]) - com) + vertical * m[0];
+        let velocity = back * (Vector3::new(s.velocity[0], s.velocity[1], s.velocity[2]) - com_velocity)
+            + vertical * m_rate[0]
+            - omega.cross(&position);
+        let tilt = Rotation3::from_axis_angle(&Vector3::y_axis(), m[2])
+            * Rotation3::from_axis_angle(&Vector3::x_axis(), m[1]);
+        let rotation = axes * tilt.matrix();
+        let pitching = end.pitch[foot].velocity[0];
+        let turning =
+            axes * Vector3::new(m_rate[1], m_rate[2] + pitching, 0.0) + vertical * s.velocity[3] - omega;
+
+        // Integrated speeds drift: what is left between target and kinematics is taken back.
+        let is = cycle.kinematics.sole(foot);
+        let position_error = position - (is.position - cycle.kinematics.com());
+        let rotation_error = rotation_vector(&(rotation * is.rotation.transpose()));
+        x.fixed_rows_mut::<3>(6 * foot).copy_from(&(velocity + position_error * drift));
+        x.fixed_rows_mut::<3>(6 * foot + 3).copy_from(&(turning + rotation_error * drift));
+    }
+    x
 }
 
 /// \[rad/s\] @I Planned angular velocity of the torso.

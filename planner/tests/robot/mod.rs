@@ -4,7 +4,7 @@
 pub mod checks;
 pub mod feasible;
 
-use config::gait::{Control, Gait, Limits, Model, Obstacles, Step};
+use config::gait::{CogMethod, Control, Gait, Limits, Model, Obstacles, Step};
 use messages::{Command, ControllerState, EventCode, Plan, Record};
 use planner::Planner;
 use realtime::clock;
@@ -44,6 +44,7 @@ pub fn gait() -> Gait {
             leg_mass: 0.082,
             leg_height: 0.10,
             zmp_margin: 0.02,
+            cog_method: CogMethod::Collocation,
             spacing: 0.08,
             stand_time: 2.0,
             friction: 0.5,

@@ -1,7 +1,9 @@
 //! Boundary value problem of the centre of gravity: cubic splines (4.50) and the fourth-order weights that plans use, with
 //! knots on the phases and without (errata 2.7, 2.8).
 
-use planner::collocation::{Collocation, U};
+use planner::boundary::U;
+use planner::cog_method::BoundarySolver;
+use planner::collocation::Collocation;
 
 use super::{Chart, Cost, Point, cost};
 
@@ -38,12 +40,12 @@ fn knots(spacing: f64, aligned: bool) -> Vec<f64> {
 
 fn problem(knots: &[f64], wave: f64) -> Box<Collocation> {
     let mut c = Box::new(Collocation::new());
-    c.n = knots.len();
+    c.problem.n = knots.len();
     for (i, &t) in knots.iter().enumerate() {
         let (om2, f) = forces(t, wave);
-        (c.t[i], c.om2[i], c.f[i][0]) = (t, om2, f);
+        (c.problem.t[i], c.problem.om2[i], c.problem.f[i][0]) = (t, om2, f);
         if let Some(next) = knots.get(i + 1) {
-            c.half[i][0] = forces(0.5 * (t + next), wave).1;
+            c.problem.half[i][0] = forces(0.5 * (t + next), wave).1;
         }
     }
     c
@@ -51,18 +53,18 @@ fn problem(knots: &[f64], wave: f64) -> Box<Collocation> {
 
 /// Cubic collocation at knots, all columns in one tridiagonal system (errata 2.7).
 fn cubic(c: &mut Collocation, upper: &mut [f64]) {
-    let n = c.n;
+    let n = c.problem.n;
     (c.u[0], c.u[n - 1]) = ([0.0; U], [0.0; U]);
     (c.u[0][4], c.u[n - 1][5]) = (1.0, 1.0);
     upper[0] = 0.0;
     for i in 1..n - 1 {
-        let (a, h) = (c.t[i] - c.t[i - 1], c.t[i + 1] - c.t[i]);
-        let lower = a / 6.0 * c.om2[i - 1] - 1.0 / a;
-        let diagonal = (a + h) / 3.0 * c.om2[i] + 1.0 / a + 1.0 / h;
+        let (a, h) = (c.problem.t[i] - c.problem.t[i - 1], c.problem.t[i + 1] - c.problem.t[i]);
+        let lower = a / 6.0 * c.problem.om2[i - 1] - 1.0 / a;
+        let diagonal = (a + h) / 3.0 * c.problem.om2[i] + 1.0 / a + 1.0 / h;
         let pivot = 1.0 / (diagonal - lower * upper[i - 1]);
-        upper[i] = (h / 6.0 * c.om2[i + 1] - 1.0 / h) * pivot;
+        upper[i] = (h / 6.0 * c.problem.om2[i + 1] - 1.0 / h) * pivot;
         for k in 0..U {
-            let load = |j: usize| if k < 4 { c.f[j][k] } else { 0.0 };
+            let load = |j: usize| if k < 4 { c.problem.f[j][k] } else { 0.0 };
             let load = a / 6.0 * load(i - 1) + (a + h) / 3.0 * load(i) + h / 6.0 * load(i + 1);
             c.u[i][k] = (-load - lower * c.u[i - 1][k]) * pivot;
         }
@@ -82,12 +84,12 @@ fn value(c: &Collocation, i: usize) -> f64 {
 /// Largest error at knots, against knots 10 ms apart and the fourth order.
 fn error(c: &Collocation, fine: &Collocation) -> f64 {
     let of = |i: usize| {
-        let t = c.t[i];
-        let k = fine.t[..fine.n].partition_point(|x| *x < t - 1e-9);
-        let hit = k < fine.n && (fine.t[k] - t).abs() < 1e-9;
+        let t = c.problem.t[i];
+        let k = fine.problem.t[..fine.problem.n].partition_point(|x| *x < t - 1e-9);
+        let hit = k < fine.problem.n && (fine.problem.t[k] - t).abs() < 1e-9;
         hit.then(|| (value(c, i) - value(fine, k)).abs())
     };
-    (1..c.n - 1).filter_map(of).fold(0.0, f64::max)
+    (1..c.problem.n - 1).filter_map(of).fold(0.0, f64::max)
 }
 
 /// The chart.
@@ -106,12 +108,12 @@ pub(super) fn chart() -> Chart {
                 let at = if aligned { "on the phases" } else { "equally spaced" };
                 let knots = knots(if aligned { spacing } else { 1.1 * spacing }, aligned);
                 let mut c = problem(&knots, wave);
-                let mut upper = [0.0; planner::collocation::MAX_KNOTS];
+                let mut upper = [0.0; planner::boundary::MAX_KNOTS];
                 let mut add = |name: &str, c: &Collocation, seconds: f64, error: f64| {
                     chart.add(Point {
                         scene: scene.into(),
                         method: format!("{name}, knots {at}"),
-                        solver: Some(format!("{} knots", c.n)),
+                        solver: Some(format!("{} knots", c.problem.n)),
                         cpu_us: Some(1e6 * seconds / CALLS as f64),
                         error,
                         ..Point::default()
@@ -139,7 +141,7 @@ mod tests {
             fine.solve();
             let errors = [0.08, 0.04].map(|spacing| {
                 let mut c = problem(&knots(spacing, true), wave);
-                let mut upper = [0.0; planner::collocation::MAX_KNOTS];
+                let mut upper = [0.0; planner::boundary::MAX_KNOTS];
                 cubic(&mut c, &mut upper);
                 let second = error(&c, &fine);
                 c.solve();

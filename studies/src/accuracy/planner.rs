@@ -6,7 +6,7 @@ use config::Setup;
 use messages::RIGHT;
 use planner::pose::Pose;
 use planner::sole::Sole;
-use planner::zmp::Chain;
+use planner::zmp::ZmpProblem;
 
 use super::{Chart, Cost, Given, Point, boundary, cost};
 use crate::speed::{Recording, plan_times};
@@ -99,7 +99,7 @@ fn zmp(setup: &Setup) -> Chart {
     chart
 }
 
-fn add(chart: &mut Chart, method: &str, solver: String, seconds: f64, [found, reference]: [&Chain; 2]) {
+fn add(chart: &mut Chart, method: &str, solver: String, seconds: f64, [found, reference]: [&ZmpProblem; 2]) {
     let pairs = found.nodes().iter().zip(reference.nodes());
     let error = pairs.map(|(a, b)| (a.p[0] - b.p[0]).hypot(a.p[1] - b.p[1])).fold(0.0, f64::max);
     chart.add(Point {
@@ -113,8 +113,8 @@ fn add(chart: &mut Chart, method: &str, solver: String, seconds: f64, [found, re
 }
 
 /// Steps straight on: each foot holds the point for two boundaries.
-fn chain(sole: &Sole, nodes: usize) -> Chain {
-    let mut chain = Chain::new();
+fn chain(sole: &Sole, nodes: usize) -> ZmpProblem {
+    let mut chain = ZmpProblem::new();
     let foot = |k: usize| {
         let step = k.div_ceil(2);
         Pose::new(0.35 * step as f64, if step.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0)

@@ -2,6 +2,7 @@
 //!
 //! u'' = w^2 u + f with f such that u = sin 3t, the linear inverted pendulum of height 0.9 m.
 
+use planner::cog_method::BoundarySolver;
 use planner::collocation::Collocation;
 
 use super::{Bench, Finding, Findings, Rule, slope, stepper};
@@ -23,18 +24,18 @@ fn load(t: f64) -> f64 {
 /// Largest error of the collocation over `halves` half periods with `n` knots, and the slope it begins with.
 fn collocate(n: usize, halves: f64) -> (f64, f64) {
     let end = halves * std::f64::consts::PI / OMEGA;
-    let mut problem = Box::new(Collocation::new());
-    problem.n = n;
+    let mut bvp = Box::new(Collocation::new());
+    bvp.problem.n = n;
     let at = |k: f64| end * k / (n - 1) as f64;
     for k in 0..n {
-        problem.t[k] = at(k as f64);
-        problem.om2[k] = growth();
-        problem.f[k][0] = load(at(k as f64));
-        problem.half[k][0] = load(at(k as f64 + 0.5));
+        bvp.problem.t[k] = at(k as f64);
+        bvp.problem.om2[k] = growth();
+        bvp.problem.f[k][0] = load(at(k as f64));
+        bvp.problem.half[k][0] = load(at(k as f64 + 0.5));
     }
-    problem.solve();
-    let error = |k: usize| (problem.u[k][0] - (OMEGA * problem.t[k]).sin()).abs();
-    ((0..n).map(error).fold(0.0, f64::max), problem.slope(0)[0])
+    bvp.solve();
+    let error = |k: usize| (bvp.u[k][0] - (OMEGA * bvp.problem.t[k]).sin()).abs();
+    ((0..n).map(error).fold(0.0, f64::max), bvp.slope(0)[0])
 }
 
 /// Error at `t` of integrating forward from the slope that the boundary value problem begins with.

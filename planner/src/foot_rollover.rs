@@ -1,4 +1,4 @@
-//! How a foot rolls: toe joints and pitch of the soles (thesis 4.5, (4.29), (4.30)).
+//! Foot rollover: toe joints and pitch of the soles (thesis 4.5, (4.29), (4.30)).
 //!
 //! A foot path is the path of its *footprint*, flat. A positive pitch turns the foot about the front edge of that
 //! footprint, a negative one about its rear edge, so an edge that touches the ground stays where it is: the rolling
@@ -11,15 +11,15 @@
 //!
 //! Values and slopes in between are those of least acceleration (4.30).
 
+use crate::origin::PlanOrigin;
 use crate::pose::Pose;
 use crate::steps::Stride;
-use crate::walk::Origin;
-use config::{Gait, gait::Bend};
+use config::{Gait, gait, gait::Bend};
 use curves::{Path, Sample, least_acceleration};
 use messages::Plan;
 
 /// A toe joint or the pitch of a sole over time.
-pub type RollPath<const N: usize> = Path<1, N>;
+pub type AnglePath<const N: usize> = Path<1, N>;
 
 /// Share of a swing after which the heel is highest: the middle of the initial swing, its first third.
 const PEAK: f64 = 1.0 / 6.0;
@@ -27,24 +27,27 @@ const PEAK: f64 = 1.0 / 6.0;
 const LEVEL: (f64, f64) = (0.6, 0.6);
 /// Share of the double support after which a foot that landed on its heel lies flat.
 const LOADING: f64 = 0.7;
+/// Shares of a swing at which a foot that is lifted high has its toes down, and at which it is level again.
+const TILTED: (f64, f64) = (0.3, 0.65);
 /// Share of a swing after which the heel of the other foot is raised, in a step down.
 const TIPTOE: f64 = 0.8;
 /// \[rad\] Distance that a toe joint keeps from the end of its range.
 const RESERVE: f64 = 0.02;
 
-/// How the feet of one robot roll.
+/// Rollover of the feet of one robot.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Roll {
+pub struct FootRollover {
     toes: Option<Bend>,
     forefoot: Option<Bend>,
     heel: Option<Bend>,
-    /// \[rad\] Toe joint of the foot from which the other one steps down.
-    tiptoe: f64,
+    /// \[rad\] Pitch, toes down, of a foot that is lifted high, and toe joint of the foot from which the other one steps
+    /// down; none: the robot stays on level ground.
+    tilt: Option<f64>,
     /// \[rad\] Toe joints' angles at which the heel is highest, with their sign.
     range: [f64; 2],
 }
 
-impl Roll {
+impl FootRollover {
     /// `ranges` \[rad\] of the toe joints, right and left; a joint bends towards the farther end of its range.
     pub fn new(gait: &Gait, ranges: [Option<[f64; 2]>; 2]) -> Self {
         let farther = |[low, high]: [f64; 2]| if -low > high { low + RESERVE } else { high - RESERVE };
@@ -52,13 +55,13 @@ impl Roll {
             toes: gait.toes,
             forefoot: gait.forefoot_roll,
             heel: gait.heel_strike,
-            tiptoe: gait.obstacles.map_or(0.0, |o| o.tilt),
+            tilt: gait.obstacles.map(|o| o.tilt),
             range: ranges.map(|r| r.map_or(0.0, farther)),
         }
     }
 
     /// Appends to the plan what both feet do in `strides`; after the last one the robot needs `settle` \[s\] to rest.
-    pub fn lay(&self, from: &Origin, strides: &[Stride], settle: f64, plan: &mut Plan) {
+    pub fn lay(&self, from: &PlanOrigin, strides: &[Stride], settle: f64, plan: &mut Plan) {
         let flat = |k: usize, landing: f64| {
             landing + LOADING * strides.get(k).map_or(settle, |next| next.lift - next.begin)
         };
@@ -71,6 +74,7 @@ impl Roll {
                 pitch = rest;
             }
             for (k, s) in strides.iter().enumerate().filter(|(_, s)| s.stance != foot) {
+                // In a step down it stood on its toes while the other foot reached for the ground.
                 if let Some(down) = k.checked_sub(1).map(|before| &strides[before]).filter(|s| s.descends()) {
                     toe = self.tiptoe(&mut plan.toes[foot], foot, down);
                 }
@@ -81,10 +85,28 @@ impl Roll {
         }
     }
 
+    /// Toes down while a foot that is lifted high is still behind.
+    pub fn tilt<const N: usize>(&self, step: &gait::Step, strides: &[Stride], pitch: &mut [AnglePath<N>; 2]) {
+        let Some(tilt) = self.tilt else { return };
+        let (level, down) = (Sample::rest([0.0]), Sample::rest([tilt]));
+        for s in strides.iter().filter(|s| s.is_high(step)) {
+            let path = &mut pitch[1 - s.stance];
+            let at = |share: f64| s.lift + share * (s.end - s.lift);
+            if path.end() > s.lift {
+                continue; // it rolls by itself
+            }
+            if s.lift > path.end() {
+                path.push(&level, &level, s.lift);
+            }
+            path.push(&level, &down, at(TILTED.0));
+            path.push(&down, &level, at(TILTED.1));
+        }
+    }
+
     /// Raises the heel of the foot that carries while the other one reaches down; how it is left.
-    fn tiptoe<const N: usize>(&self, path: &mut RollPath<N>, foot: usize, s: &Stride) -> Sample<1> {
+    fn tiptoe<const N: usize>(&self, path: &mut AnglePath<N>, foot: usize, s: &Stride) -> Sample<1> {
         let range = self.range[foot];
-        let up = Sample::rest([range.signum() * self.tiptoe.min(range.abs())]);
+        let up = Sample::rest([range.signum() * self.tilt.unwrap_or(0.0).min(range.abs())]);
         let begin = s.lift + TIPTOE * (s.end - s.lift);
         let rest = Sample::rest([0.0]);
         if self.toes.is_none() || up.position[0] == 0.0 || path.end() > begin {
@@ -96,7 +118,7 @@ impl Roll {
     }
 
     /// Appends the toe motion of the foot that swings in `s`.
-    fn bend_toe<const N: usize>(&self, path: &mut RollPath<N>, from: &Sample<1>, s: &Stride) {
+    fn bend_toe<const N: usize>(&self, path: &mut AnglePath<N>, from: &Sample<1>, s: &Stride) {
         let swing = 1 - s.stance;
         let range = self.range[swing];
         let peak = self.toes.map_or(0.0, |b| b.at(advance(&s.takeoff, &s.foothold))).min(range.abs());
@@ -104,7 +126,7 @@ impl Roll {
     }
 
     /// Appends the pitch of the foot that swings in `s`; `flat` \[s\] is when its sole lies flat again.
-    fn pitch<const N: usize>(&self, path: &mut RollPath<N>, from: &Sample<1>, s: &Stride, flat: f64) {
+    fn pitch<const N: usize>(&self, path: &mut AnglePath<N>, from: &Sample<1>, s: &Stride, flat: f64) {
         let peak = self.forefoot.map_or(0.0, |b| b.at(advance(&s.takeoff, &s.foothold)));
         let heel = self.heel.map_or(0.0, |b| b.at(advance(&s.foothold, &s.landing)));
         let swing = |share: f64| s.lift + share * (s.end - s.lift);
@@ -118,12 +140,12 @@ impl Roll {
     }
 }
 
-/// Whether a joint is straight, or a sole level, and stays so.
+/// A joint is straight, or a sole level, and stays so.
 fn rests(s: &Sample<1>) -> bool {
     [s.position[0], s.velocity[0], s.acceleration[0]].iter().all(|x| x.abs() < 1e-12)
 }
 
-/// \[m\] How far `to` lies ahead of `from`.
+/// \[m\] Way that `to` lies ahead of `from`.
 fn advance(from: &Pose, to: &Pose) -> f64 {
     from.relative(to).x
 }
@@ -131,7 +153,7 @@ fn advance(from: &Pose, to: &Pose) -> f64 {
 /// From `from` at the begin of the double support to the peak and back to zero at `end`; beyond `most` a peak is
 /// lowered, because a path of least acceleration goes on rising after it.
 fn up_and_down<const N: usize>(
-    path: &mut RollPath<N>,
+    path: &mut AnglePath<N>,
     from: &Sample<1>,
     s: &Stride,
     (peak, most): (f64, f64),
@@ -155,7 +177,7 @@ fn up_and_down<const N: usize>(
 }
 
 /// Appends a rest until the first knot and the pieces of least acceleration through all knots.
-fn append<const N: usize>(path: &mut RollPath<N>, times: &[f64; 3], given: &[[Option<f64>; 3]; 3]) {
+fn append<const N: usize>(path: &mut AnglePath<N>, times: &[f64; 3], given: &[[Option<f64>; 3]; 3]) {
     let Some(knots) = least_acceleration(times, given) else { return };
     if times[0] > path.end() {
         path.push(&knots[0], &knots[0], times[0]);

@@ -1,4 +1,4 @@
-//! Which plan is being executed, and where it wants everything at a given time.
+//! Plan follower: the active plan, the one that is due next, and the desired task space at a given time.
 
 use curves::Sample;
 use messages::record::{Field, Visit};
@@ -13,6 +13,8 @@ pub struct PlanFollower {
     void: Option<u64>,
     /// \[m\] Rear and front edge of each sole in its frame.
     edges: [[f64; 2]; 2],
+    /// \[m\] @I_0 Planned heights of the soles at the end of the last cycle.
+    sole_height: [f64; 2],
 }
 
 /// Desired task space at one instant, in the planning frame of the active plan (thesis table 4.2).
@@ -37,7 +39,7 @@ pub struct Desired {
 impl PlanFollower {
     /// No plan yet; `edges` \[m\] are the rear and the front edge of each sole in its frame.
     pub fn new(edges: [[f64; 2]; 2]) -> Self {
-        Self { active: Plan::default(), next: Plan::default(), void: None, edges }
+        Self { active: Plan::default(), next: Plan::default(), void: None, edges, sole_height: [0.0; 2] }
     }
 
     /// Id of the plan being executed; 0 before the first one.
@@ -79,12 +81,24 @@ impl PlanFollower {
         event
     }
 
+    /// \[m\] Steps in the planned heights of the soles where the plan has changed since the one that was reported last:
+    /// a plan that goes on from a sensed contact has its foot where the ground is, not where the plan before wanted it.
+    pub(crate) fn height_steps(&mut self, reported: u64, now: &Desired, end: &Desired) -> [Option<f64>; 2] {
+        let height = self.active.height;
+        let switched = reported > 0 && reported != self.active.id;
+        [0, 1].map(|foot| {
+            let step = self.sole_height[foot] - (height + now.feet[foot].position[2]);
+            self.sole_height[foot] = height + end.feet[foot].position[2];
+            (switched && step.abs() > 1e-4).then_some(step)
+        })
+    }
+
     /// Time since the start of the active plan \[s\].
     pub fn time(&self, tick: u64, dt: f64) -> f64 {
         tick.saturating_sub(self.active.start_tick) as f64 * dt
     }
 
-    /// What the gait is doing at plan time `t` \[s\].
+    /// Gait state at plan time `t` \[s\].
     pub fn gait(&self, t: f64) -> GaitState {
         match GaitState::from(self.active.state) {
             GaitState::Idle => GaitState::Idle,
@@ -126,10 +140,12 @@ fn rolled(flat: &Sample<4>, pitch: &Sample<1>, [rear, front]: [f64; 2]) -> Sampl
         return *flat;
     }
     let edge = if angle < 0.0 { rear } else { front };
+    // Way of the sole's origin while it turns about the edge, with both derivatives.
     let (s, c) = angle.sin_cos();
     // From the edge, forward and up: edge (1 - cos, sin).
     let forward = [edge * (1.0 - c), edge * s * rate, edge * (c * rate * rate + s * second)];
     let up = [edge * s, edge * c * rate, edge * (c * second - s * rate * rate)];
+    // The same along the axes of the planning frame, in which the foot's heading may turn meanwhile.
     let (sin, cos) = flat.position[3].sin_cos();
     let (turn, turning) = (flat.velocity[3], flat.acceleration[3]);
     let mut sole = *flat;
@@ -145,7 +161,7 @@ fn rolled(flat: &Sample<4>, pitch: &Sample<1>, [rear, front]: [f64; 2]) -> Sampl
     sole
 }
 
-/// Whether every number of a plan is finite.
+/// `true` if every number of a plan is finite.
 fn is_finite(plan: &Plan) -> bool {
     struct Finite(bool);
     impl Visit for Finite {
