@@ -7,8 +7,8 @@
 use nalgebra::Vector3;
 
 use crate::bounds::Bounds;
-use crate::mesh::Triangle;
 use crate::point_triangle::{self, Feature};
+use crate::triangle::Triangle;
 
 /// Triangles below which a node is not divided further (measured: `benches/queries.rs`).
 const LEAF: usize = 4;

@@ -12,8 +12,9 @@
 
 use nalgebra::{Matrix6, Vector6};
 
+use crate::body::Body;
 use crate::data::{Articulated, Data, Local, with_turn};
-use crate::model::{Body, G, Model};
+use crate::model::{G, Model};
 use crate::space::{Mat3, Sym3, V3, ZERO, v3};
 use crate::turn::Turn;
 

@@ -2,10 +2,11 @@
 
 use nalgebra::{IsometryMatrix3, Rotation3, Unit, Vector3};
 
+use crate::body::{Body, Kind, Link};
 use crate::error::ModelError;
 use crate::inertia::Inertia;
-use crate::model::{Body, Kind, Link, Model};
-use crate::space::{Mat3, Sym3, V3};
+use crate::model::Model;
+use crate::space::{Sym3, V3};
 
 /// How a child link moves against its parent. The axis is given in the child's frame, of any length above zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,9 +155,4 @@ pub(crate) fn rotation_from_rpy(rpy: [f64; 3]) -> Rotation3<f64> {
     let exact = |a: f64| if a.abs() < 4e-16 { 0.0 } else { a };
     let m = *Rotation3::from_euler_angles(rpy[0], rpy[1], rpy[2]).matrix();
     Rotation3::from_matrix_unchecked(m.map(exact))
-}
-
-/// Internal rotation of a frame as the kernels want it.
-pub(crate) fn kernel_rotation(pose: &IsometryMatrix3<f64>) -> Mat3 {
-    pose.rotation.into()
 }

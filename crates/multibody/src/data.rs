@@ -2,8 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use crate::model::{Body, Kind, Model};
-use crate::rotor::Spin;
+use crate::body::{Body, Composite, Kind};
+use crate::gyro::Spin;
+use crate::model::Model;
 use crate::space::{Mat3, Sym3, Twin, V3, ZERO, v3};
 use crate::trigonometry::sin_cos;
 
@@ -81,13 +82,6 @@ pub(crate) struct Local {
     pub a: V3,
     pub f: V3,
     pub n: V3,
-}
-
-/// First moment and moments of inertia about the body's origin of the body and all it carries.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Composite {
-    pub mc: V3,
-    pub i: Sym3,
 }
 
 /// Articulated inertia about the body's origin and what the elimination of the joint leaves for the second sweep.
@@ -191,7 +185,7 @@ impl Articulated {
 /// Runs an expression with the joint's [`crate::turn::Turn`]; the kernel is compiled for each kind.
 macro_rules! with_turn {
     ($body:expr, $joint:expr, $oblique:expr, $t:ident => $run:expr) => {{
-        use $crate::model::Kind;
+        use $crate::body::Kind;
         use $crate::turn::{About, AboutX, AboutY, AboutZ, Along};
         match $body.kind {
             Kind::X => {

@@ -13,8 +13,9 @@
 
 use nalgebra::Vector3;
 
+use crate::body::Body;
 use crate::data::{Data, Local, with_turn};
-use crate::model::{Body, Frame, G, Model};
+use crate::model::{Frame, G, Model};
 use crate::space::{Mat3, V3, ZERO, v3};
 use crate::turn::Turn;
 

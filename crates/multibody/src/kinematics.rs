@@ -13,8 +13,9 @@
 
 use nalgebra::{IsometryMatrix3, Vector3};
 
+use crate::body::Kind;
 use crate::data::{Data, Motion, Place, with_turn};
-use crate::model::{Frame, Kind, Model};
+use crate::model::{Frame, Model};
 use crate::space::{Mat3, V3, ZERO};
 use crate::turn::Turn;
 

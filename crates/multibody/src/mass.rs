@@ -9,7 +9,8 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use crate::data::{Composite, Data, with_turn};
+use crate::body::Composite;
+use crate::data::{Data, with_turn};
 use crate::inverse::choose;
 use crate::model::Model;
 use crate::space::{Twin, V3};

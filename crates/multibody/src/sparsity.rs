@@ -1,6 +1,6 @@
 //! Where the mass matrix has entries: the joints of different limbs do not meet.
 
-use crate::model::Body;
+use crate::body::Body;
 
 /// For every degree of freedom the degrees of freedom from the base to it, itself last.
 ///
