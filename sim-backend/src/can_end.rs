@@ -1,6 +1,6 @@
-//! The far end of the CAN lines: a cycle is whole when every line has been told to synchronize.
+//! Far end of the CAN lines: a cycle is whole when every line has been synchronized.
 //!
-//! A line that lets a cycle pass is broken and is not waited for until it speaks again: what it was told stays missing.
+//! A line that lets a cycle pass is broken and is not waited for until it sends again: its frames stay missing.
 
 use std::error::Error;
 use std::time::Duration;
@@ -42,7 +42,7 @@ struct Gathering {
     tick: u64,
 }
 
-/// What a frame brought.
+/// Result of a frame.
 #[derive(Debug, PartialEq, Eq)]
 enum Step {
     More,

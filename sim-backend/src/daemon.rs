@@ -4,7 +4,7 @@
 //! joint loop.
 
 use crate::far_end::FarEnd;
-use crate::{SimBackend, far_end};
+use crate::{SimBackend, bus};
 use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Writer};
@@ -26,7 +26,7 @@ const PATIENCE: u64 = 2;
 pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut d = Daemon::new(Process::SimBackend, dir)?;
     let mut ports = Ports {
-        bus: far_end::open(&mut d)?,
+        bus: bus::open(&mut d)?,
         power: d.space.reader(&POWER)?,
         state: d.space.writer(&SIM_STATE)?,
         commands: connect(&d.space)?,

@@ -17,6 +17,8 @@ use environment::{Environment, Hit, Surface};
 use multibody::{Data, Frame, Model};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
 
+use crate::depth::ContactModel;
+
 /// Contact elements of both feet.
 #[derive(Clone)]
 pub struct Feet {
@@ -73,7 +75,13 @@ impl Feet {
     ///
     /// # Errors
     /// A link does not exist, or the pads cannot be built.
-    pub fn new(robot: &Robot, model: &Model, pads: bool, objects: usize) -> Result<Self, Box<dyn Error>> {
+    pub fn new(
+        robot: &Robot,
+        model: &Model,
+        contact: ContactModel,
+        objects: usize,
+    ) -> Result<Self, Box<dyn Error>> {
+        let pads = contact == ContactModel::Pads;
         let layer = if pads { Some(layer(robot)?) } else { None };
         let mut segments: Vec<Segment> = Vec::new();
         let mut names: Vec<&str> = Vec::new();

@@ -4,7 +4,8 @@
 use config::scene::Integrator;
 
 use crate::drive::Drive;
-use crate::plant::{Outside, Plant};
+use crate::inputs::PlantInputs;
+use crate::plant::Plant;
 use crate::stiff::{GaveUp, Limits, Stiff};
 
 /// Tolerance of the adaptive method, unless it is told another one.
@@ -50,18 +51,18 @@ impl Stepper {
         h: f64,
         state: &mut [f64],
         drives: &[Drive],
-        outside: &Outside,
+        inputs: &PlantInputs,
     ) {
-        let mut rate = |t: f64, x: &[f64], dx: &mut [f64]| plant.rate(t, x, drives, outside, dx);
+        let mut rate = |t: f64, x: &[f64], dx: &mut [f64]| plant.rate(t, x, drives, inputs, dx);
         match self.integrator {
             Integrator::Euler => self.euler(t, h, state, rate),
             Integrator::RungeKutta4 => self.runge_kutta_4(t, h, state, rate),
-            Integrator::SemiImplicit => plant.implicit_step(t, h, state, drives, outside),
+            Integrator::SemiImplicit => plant.implicit_step(t, h, state, drives, inputs),
             Integrator::Bdf => {
                 if let Err(gave_up) = self.stiff.advance(t, h, state, &mut rate) {
                     let at = gave_up.time;
                     self.gave_up = Some(gave_up);
-                    plant.implicit_step(at, t + h - at, state, drives, outside);
+                    plant.implicit_step(at, t + h - at, state, drives, inputs);
                 }
             }
         }
