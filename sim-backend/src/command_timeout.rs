@@ -72,7 +72,7 @@ impl CommandTimeout {
         }
     }
 
-    /// Whether the local controller of a joint has received nothing for too long.
+    /// True if the local controller of a joint has received nothing for too long.
     pub fn is_timed_out(&self, joint: usize) -> bool {
         self.silent[self.node_of[joint]] > TIMEOUT_CYCLES
     }

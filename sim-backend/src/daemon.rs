@@ -92,6 +92,7 @@ struct Ports {
 fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
     let taken = p.bus.held().map_or(Header::default(), |frames| frames.header);
     let tick = taken.tick;
+    // Commands first: those of the scene, which come by tick, then live ones.
     while let Some(live) = p.timeline.due(tick).map(Live::of_scene).or_else(|| p.commands.next()) {
         let mut verdict = Ok(());
         match live.command {
@@ -107,6 +108,7 @@ fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
         d.log.took(taken, &live, &verdict);
     }
     d.log.left_out(taken, p.commands.as_mut());
+    // A cycle that was missed while the process was stopped leaves the relay alone: the supply's record is of now.
     let frames = p.bus.held();
     let (frames, state) = match p.bus.is_late() {
         true => sim.step_late(frames),

@@ -68,11 +68,13 @@ pub(crate) struct DriveElectronics {
 impl DriveElectronics {
     /// The drives of a scene, whose joints begin at `pose` \[rad\]; self-tests passed.
     pub(crate) fn new(robot: &Robot, scene: &Scene, pose: &[f64]) -> Self {
+        // Self-tests take one cycle, and are over.
         let start = scene.drives.as_ref();
         let mut drives = vec![cia402::Drive::default(); robot.joints.len()];
         for drive in &mut drives {
             drive.step(&Inputs::default());
         }
+        // A joint without absolute encoder counts from where it is, and knows on which side of its switch that is.
         let search = |(switch, angle): (&Option<HomeSwitch>, &f64)| {
             let switch = switch.filter(|_| start.is_some_and(|start| start.homing))?;
             let began_closed = *angle >= switch.angle;
@@ -145,7 +147,7 @@ impl DriveElectronics {
         self.off_for[j]
     }
 
-    /// Whether a joint knows its angle.
+    /// True if a joint knows its angle.
     fn knows(&self, j: usize) -> bool {
         self.searches[j].is_none_or(|search| search.homing == Homing::Found)
     }

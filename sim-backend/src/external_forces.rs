@@ -1,4 +1,4 @@
-//! External forces on the torso: pushes and the crane's rope; the ground is in [`crate::ground`].
+//! External forces on the torso: pushes and the crane's rope; the ground is in `ground.rs`.
 
 use multibody::Model;
 use nalgebra::{Vector3, Vector6};

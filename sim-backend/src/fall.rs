@@ -11,7 +11,7 @@ const LYING: f64 = 0.25;
 
 /// Fall of one robot.
 #[derive(Clone, Copy)]
-pub(crate) struct Fall {
+pub(crate) struct FallWatch {
     /// \[m\]
     initial_height: f64,
     fallen: bool,
@@ -19,18 +19,18 @@ pub(crate) struct Fall {
     lies: bool,
 }
 
-impl Fall {
+impl FallWatch {
     /// Of a robot that stands or hangs with its torso at `height` \[m\].
     pub(crate) fn new(height: f64) -> Self {
         Self { initial_height: height, fallen: false, lies: false }
     }
 
-    /// Whether it has fallen.
+    /// True if it has fallen.
     pub(crate) fn has_fallen(&self) -> bool {
         self.fallen
     }
 
-    /// Whether it lies.
+    /// True if it lies.
     pub(crate) fn lies(&self) -> bool {
         self.lies
     }
@@ -50,7 +50,7 @@ impl Fall {
         begins
     }
 
-    /// Whether a fallen robot has just come to the ground.
+    /// True if a fallen robot has just come to the ground.
     pub(crate) fn lands(&self, state: &[f64]) -> bool {
         self.fallen && !self.lies && state[2] < LYING * self.initial_height
     }

@@ -14,7 +14,7 @@ pub(crate) trait FarEnd {
     /// The frames of the last one; their header says of which tick they are.
     fn held(&self) -> Option<&BusFrames>;
 
-    /// Whether these are of a cycle that was missed, and more of them wait.
+    /// True if these are of a cycle that was missed, and more of them wait.
     fn is_late(&self) -> bool {
         false
     }

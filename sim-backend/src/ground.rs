@@ -11,7 +11,7 @@ use crate::feet::Feet;
 
 /// Ground under a robot, with the scratch of its contact forces.
 #[derive(Clone)]
-pub(crate) struct Ground {
+pub(crate) struct GroundContact {
     environment: Environment,
     pub(crate) feet: Feet,
     /// Bodies between the torso and the contact elements.
@@ -23,7 +23,7 @@ pub(crate) struct Ground {
     seen: Vec<f64>,
 }
 
-impl Ground {
+impl GroundContact {
     /// The contact elements of a robot on `environment`.
     ///
     /// # Errors

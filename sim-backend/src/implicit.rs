@@ -16,7 +16,7 @@
 use drives::{Cascade, Elasticity, Law, NoLoadTorque, Side, Sliding};
 use multibody::{Data, Model};
 
-use crate::local_control::{LocalController, Output};
+use crate::local_control::{ControllerOutput, LocalController};
 use crate::shaft::{Shaft, TrainInputs};
 
 /// \[1\] Resistance of a sticking shaft, in its inertia per step.
@@ -32,7 +32,7 @@ struct TorqueLine {
 
 /// State of dry friction during a step.
 #[derive(Clone, Copy, Default, PartialEq)]
-enum Slip {
+enum ShaftFriction {
     /// The shaft sticks.
     #[default]
     Sticks,
@@ -55,7 +55,7 @@ pub(crate) struct ShaftStep {
     dry: f64,
     coulomb: f64,
     viscous: f64,
-    slip: Slip,
+    slip: ShaftFriction,
     /// w+ and v \[rad/s\].
     end: f64,
     link: f64,
@@ -92,8 +92,8 @@ impl ShaftStep {
     fn shaft_line(&self, h: f64, shaft: &Shaft) -> TorqueLine {
         let Self { motor: TorqueLine { t, b, link }, coulomb, viscous, slip, .. } = *self;
         match slip {
-            Slip::Turns(s) => TorqueLine { t: t - s * coulomb, b: b + viscous, link },
-            Slip::Sticks => TorqueLine { t, b: b + STICKING * shaft.inertia / h, link },
+            ShaftFriction::Turns(s) => TorqueLine { t: t - s * coulomb, b: b + viscous, link },
+            ShaftFriction::Sticks => TorqueLine { t, b: b + STICKING * shaft.inertia / h, link },
         }
     }
 
@@ -150,25 +150,25 @@ impl ShaftStep {
         };
     }
 
-    /// Whether friction does what it was taken to do.
+    /// True if friction does what it was taken to do.
     pub(crate) fn is_settled(&self, h: f64, shaft: &Shaft) -> bool {
         match self.slip {
-            Slip::Turns(s) => s * self.end >= 0.0,
-            Slip::Sticks => STICKING * shaft.inertia / h * self.end.abs() <= self.coulomb,
+            ShaftFriction::Turns(s) => s * self.end >= 0.0,
+            ShaftFriction::Sticks => STICKING * shaft.inertia / h * self.end.abs() <= self.coulomb,
         }
     }
 
     /// The other state of friction.
     pub(crate) fn change(&mut self) {
         self.slip = match self.slip {
-            Slip::Turns(_) => Slip::Sticks,
-            Slip::Sticks => Slip::Turns(self.end.signum()),
+            ShaftFriction::Turns(_) => ShaftFriction::Sticks,
+            ShaftFriction::Sticks => ShaftFriction::Turns(self.end.signum()),
         };
     }
 
-    /// Whether friction holds the shaft at the end of the step.
+    /// True if friction holds the shaft at the end of the step.
     pub(crate) fn sticks(&self) -> bool {
-        self.slip == Slip::Sticks
+        self.slip == ShaftFriction::Sticks
     }
 
     /// Gives the model the torque on a free rotor that the step before found.
@@ -212,7 +212,7 @@ fn motor_line(h: f64, shaft: &Shaft, controller: &LocalController, current: f64)
     }
     // The current loop closes within the step: the current goes from what it was to what is asked for.
     let a = 1.0 / (1.0 + h * (cascade.current_bandwidth + 1.0 / motor.time_constant()));
-    let held = controller.output() != Output::Continuous;
+    let held = controller.output() != ControllerOutput::Continuous;
     // Held by the sampler, or at its limit: what is asked for does not depend on the speed.
     if held || (controller.speed_gain * controller.lag).abs() >= shaft.drive.current_limit {
         let t = constant * (a * current + (1.0 - a) * controller.wanted_current(shaft));

@@ -33,17 +33,17 @@ impl PlantInputs {
 }
 
 impl DriveSwitches {
-    /// Whether a drive's power stage is on.
+    /// True if a drive's power stage is on.
     pub(crate) fn has_torque(&self, drive: usize) -> bool {
         self.powered && self.off >> drive & 1 == 0
     }
 
-    /// Whether a drive's brake is closed.
+    /// True if a drive's brake is closed.
     pub(crate) fn is_braked(&self, drive: usize) -> bool {
         self.braked >> drive & 1 == 1
     }
 
-    /// Whether a drive's joints are held from outside.
+    /// True if a drive's joints are held from outside.
     pub(crate) fn is_held(&self, drive: usize) -> bool {
         self.held >> drive & 1 == 1
     }

@@ -8,7 +8,7 @@ use crate::inputs::PlantInputs;
 use crate::plant::Plant;
 use crate::stiff::{GaveUp, Limits, Stiff};
 
-/// Tolerance of the adaptive method, unless it is told another one.
+/// Tolerance of the adaptive method, unless it is given another one.
 const TOLERANCE: f64 = 1e-6;
 
 /// A method, and room for one step of a state of fixed length.
@@ -38,7 +38,7 @@ impl Stepper {
         Self { stiff: Stiff::new(Limits::of_tolerance(tolerance)), ..self }
     }
 
-    /// Where the adaptive method last gave up since the last call; a semi-implicit step went on from there.
+    /// The last time the adaptive method gave up since the last call; a semi-implicit step went on from there.
     pub fn take_gave_up(&mut self) -> Option<GaveUp> {
         self.gave_up.take()
     }

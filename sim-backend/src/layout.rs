@@ -91,6 +91,7 @@ impl Layout {
             (self.pose(), ["position", "orientation", "angle of joint"]),
             (self.speed(), ["velocity", "angular velocity", "speed of joint"]),
         ];
+        // Pose and speed begin with the torso's six, its quaternion one more; joints follow.
         for (range, [first, second, joint]) in parts {
             let k = state.wrapping_sub(range.start);
             match k {

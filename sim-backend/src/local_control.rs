@@ -25,7 +25,7 @@ use crate::resolution::{Angles, Coarse};
 use crate::shaft::{Shaft, TrainInputs};
 
 /// Readings of a shaft in units of its motor, on the link's side and on the motor's.
-struct Readings {
+struct ShaftReadings {
     /// c q'_d \[rad/s\].
     wanted: f64,
     /// c (q_d - q) \[rad\].
@@ -36,7 +36,7 @@ struct Readings {
 
 /// Output of a controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Output {
+pub(crate) enum ControllerOutput {
     /// That of its law at each instant.
     Continuous,
     /// A current I_d \[A\].
@@ -48,9 +48,9 @@ pub(crate) enum Output {
 /// Memory of a sampled controller.
 #[derive(Clone, Copy, Debug)]
 struct Sampler {
-    output: Output,
+    output: ControllerOutput,
     /// Computed, and not yet put out.
-    next: Output,
+    next: ControllerOutput,
     /// \[rad\] Angles of the joints at the last sample, by side.
     last: Option<[[f64; 3]; 2]>,
 }
@@ -73,9 +73,9 @@ impl Sampler {
     /// Of a controller that has measured nothing: no current, terminals shorted.
     fn new(control: &JointControl) -> Self {
         let output = match (control.sampling, control.law) {
-            (Sampling::Continuous, _) => Output::Continuous,
-            (Sampling::Cycle(_), Law::Cascade(_)) => Output::Current(0.0),
-            (Sampling::Cycle(_), Law::Voltage(_)) => Output::Voltage(0.0),
+            (Sampling::Continuous, _) => ControllerOutput::Continuous,
+            (Sampling::Cycle(_), Law::Cascade(_)) => ControllerOutput::Current(0.0),
+            (Sampling::Cycle(_), Law::Voltage(_)) => ControllerOutput::Voltage(0.0),
         };
         Self { output, next: output, last: None }
     }
@@ -91,8 +91,8 @@ impl LocalController {
         Ok(Self { speed_gain: 0.0, wanted: 0.0, lag: 0.0, sampler: Sampler::new(&drive.control), coarse })
     }
 
-    /// Output that is held now; [`Output::Continuous`]: none is held.
-    pub(crate) fn output(&self) -> Output {
+    /// Output that is held now; [`ControllerOutput::Continuous`]: none is held.
+    pub(crate) fn output(&self) -> ControllerOutput {
         self.sampler.output
     }
 
@@ -135,11 +135,16 @@ impl LocalController {
             Law::Cascade(cascade) => {
                 let feedback = cascade.feedback;
                 let wanted = cascade.speed_wanted(seen.error[feedback.position() as usize], seen.wanted);
-                Output::Current(self.speed_gain * (wanted - seen.speed[feedback.speed() as usize]))
+                ControllerOutput::Current(self.speed_gain * (wanted - seen.speed[feedback.speed() as usize]))
             }
             Law::Voltage(law) => {
                 let motor_seen = (seen.error[motor], seen.speed[motor]);
-                Output::Voltage(law.voltage(&shaft.drive.motor, motor_seen.0, seen.wanted, motor_seen.1))
+                ControllerOutput::Voltage(law.voltage(
+                    &shaft.drive.motor,
+                    motor_seen.0,
+                    seen.wanted,
+                    motor_seen.1,
+                ))
             }
         };
         // A controller that needs the whole cycle for computing puts out what it found in the last one.
@@ -154,7 +159,7 @@ impl LocalController {
         cycle: f64,
         inputs: &TrainInputs<'_>,
         sampled: Sampled,
-    ) -> Readings {
+    ) -> ShaftReadings {
         let mut seen = self.read(shaft, inputs);
         let angles = [Side::Link, Side::Motor].map(|side| {
             let place = |i: usize| if i < shaft.coupled { shaft.at(side, i, inputs).0 } else { 0.0 };
@@ -176,8 +181,8 @@ impl LocalController {
     }
 
     /// Readings at an instant.
-    fn read(&self, shaft: &Shaft, inputs: &TrainInputs<'_>) -> Readings {
-        let mut seen = Readings { wanted: 0.0, error: [0.0; 2], speed: [0.0; 2] };
+    fn read(&self, shaft: &Shaft, inputs: &TrainInputs<'_>) -> ShaftReadings {
+        let mut seen = ShaftReadings { wanted: 0.0, error: [0.0; 2], speed: [0.0; 2] };
         for i in 0..shaft.coupled {
             let (c, reference) = (shaft.gear.ratio[i], &inputs.reference[shaft.joints[i]]);
             seen.wanted += c * reference.speed;
@@ -199,7 +204,7 @@ impl LocalController {
     pub(crate) fn wanted_current(&self, shaft: &Shaft) -> f64 {
         let limit = shaft.drive.current_limit;
         let wanted = match self.sampler.output {
-            Output::Current(held) => held,
+            ControllerOutput::Current(held) => held,
             _ => self.speed_gain * self.lag,
         };
         wanted.clamp(-limit, limit)
@@ -208,7 +213,7 @@ impl LocalController {
     /// Voltage that the controller sets \[V\].
     pub(crate) fn voltage(&self, shaft: &Shaft, current: f64) -> f64 {
         let voltage = match (self.sampler.output, shaft.drive.control.law) {
-            (Output::Voltage(held), _) => held,
+            (ControllerOutput::Voltage(held), _) => held,
             (_, Law::Cascade(c)) => {
                 c.voltage(&shaft.drive.motor, self.wanted_current(shaft), current, shaft.speed)
             }

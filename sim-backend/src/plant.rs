@@ -1,6 +1,6 @@
 //! The equations of motion of one robot: bodies, drives and contact layer put together as deep as a scene asks.
 //!
-//! How deep: [`crate::depth`]; the states: [`crate::layout`]; the drives: [`crate::train`]; the contact: [`crate::feet`].
+//! Depth: [`crate::depth`]; states: [`crate::layout`]; drives: [`crate::train`]; contact: [`crate::feet`].
 
 use std::error::Error;
 
@@ -13,7 +13,7 @@ use nalgebra::{Vector3, Vector6};
 use crate::depth::{Depth, JointModel};
 use crate::drive::{Drive, Motion};
 use crate::external_forces::at_base;
-use crate::ground::Ground;
+use crate::ground::GroundContact;
 use crate::implicit::ShaftStep;
 pub use crate::inputs::PlantInputs;
 pub use crate::layout::orientation;
@@ -32,7 +32,7 @@ pub struct Plant {
     data: Data,
     depth: Depth,
     layout: Layout,
-    ground: Ground,
+    ground: GroundContact,
     joints: Joints,
     /// \[s\] Length of the implicit steps by which the state moves; none if it moves by [`Plant::rate`].
     implicit: Option<f64>,
@@ -104,7 +104,7 @@ impl Plant {
         let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
         let model =
             Model::from_urdf(&robot.urdf, &robot.torso, &order)?.with_rotors(&rotors(robot, depth.gears))?;
-        let ground = Ground::new(robot, &model, environment, depth.contact)?;
+        let ground = GroundContact::new(robot, &model, environment, depth.contact)?;
         let described = !robot.drives.is_empty();
         let train = described.then(|| Train::new(robot, &model, depth.gears, pose)).transpose()?;
         let mut data = Data::new(&model);
@@ -125,12 +125,12 @@ impl Plant {
         Ok(Self { model, data, depth, layout, ground, joints, implicit, scratch })
     }
 
-    /// How deep the model is.
+    /// Modelling depth.
     pub fn depth(&self) -> Depth {
         self.depth
     }
 
-    /// Where each state is.
+    /// Places of the states.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -153,7 +153,7 @@ impl Plant {
         self.scratch.q[7..].copy_from_slice(joints);
         self.model.forward_kinematics(&mut self.data, &self.scratch.q);
         self.ground.forget();
-        let Self { ground: Ground { feet, .. }, .. } = self;
+        let Self { ground: GroundContact { feet, .. }, .. } = self;
         let depth = match height {
             None => feet.deflection(self.model.mass() * -multibody::GRAVITY.z),
             Some(height) => -height,
@@ -259,7 +259,7 @@ impl Plant {
         }
     }
 
-    /// What the state looks like from outside.
+    /// Forces and accelerations in a state, as sensors and logs need them.
     pub fn snapshot(&mut self, tau: f64, x: &[f64], drives: &[Drive], inputs: &PlantInputs) -> Snapshot {
         // By the same equations as the steps: implicit ones have no rate at an instant.
         match self.implicit {
@@ -277,7 +277,7 @@ impl Plant {
             Vector3::from_column_slice(&change[..3]) + omega.cross(&Vector3::from_column_slice(&speed[..3]));
         let angular_acceleration = Vector3::from_column_slice(&change[3..6]);
         // Of the feet, with the kinematics of all bodies: an evaluation needs only those of the limbs.
-        let Self { model, data, ground: Ground { feet, soles, .. }, .. } = self;
+        let Self { model, data, ground: GroundContact { feet, soles, .. }, .. } = self;
         model.forward_kinematics_here(data);
         let mut foot_wrench = [Wrench { force: [0.0; 3], moment: [0.0; 3] }; 2];
         for (foot, wrench) in foot_wrench.iter_mut().enumerate() {
@@ -299,7 +299,7 @@ impl Plant {
         }
     }
 
-    /// What carries and moves the bodies below each force sensor; after [`Plant::snapshot`], whose acceleration it takes.
+    /// Wrenches that carry and move the bodies below each force sensor; after [`Plant::snapshot`], whose acceleration it takes.
     pub fn carried(&mut self, sensors: &[Frame; 2]) -> [Wrench; 2] {
         let Self { model, data, scratch, .. } = self;
         model.inverse_dynamics_here(data, &scratch.v, &scratch.acceleration, &mut scratch.bias);
@@ -445,7 +445,7 @@ impl Scratch {
 fn external_force(
     model: &Model,
     data: &Data,
-    ground: &Ground,
+    ground: &GroundContact,
     inputs: &PlantInputs,
     (x, speed): (&[f64], &[f64]),
     force: &mut [f64],

@@ -15,7 +15,7 @@ use messages::command::{LowerCommand, PushCommand};
 use messages::{BusFrames, EventCode, Power, SimState};
 
 use crate::body::SimulatedBody;
-use crate::fall::Fall;
+use crate::fall::FallWatch;
 use crate::inputs::DriveSwitches;
 use crate::instruments::Instruments;
 use crate::joints::SimulatedJoints;
@@ -37,7 +37,7 @@ pub struct SimBackend {
     joints: SimulatedJoints,
     loads: Loads,
     body: SimulatedBody,
-    fall: Fall,
+    fall: FallWatch,
     instruments: Instruments,
     cycles: u64,
     event: Option<(EventCode, u64)>,
@@ -54,6 +54,7 @@ impl SimBackend {
                 format!("scene `{}`: no model has been chosen for depth = \"auto\" yet", scene.name).into()
             );
         }
+        // The body first: the crane hooks in where its centre of gravity is, and the sensors know what hangs on them.
         let mut body = SimulatedBody::new(robot, scene)?;
         let joints = SimulatedJoints::new(robot, scene);
         let (plant, state) = body.parts();
@@ -62,7 +63,7 @@ impl SimBackend {
         let mut sim = Self {
             power: PowerLine::falling_after(1),
             injector: Injector::new(&scene.bus_faults, &robot.layout, scene.cycle, scene.seed)?,
-            fall: Fall::new(body.height()),
+            fall: FallWatch::new(body.height()),
             robot: robot.clone(),
             scene: scene.clone(),
             joints,
@@ -72,6 +73,7 @@ impl SimBackend {
             cycles: 0,
             event: None,
         };
+        // The first cycle looks at readings of the robot at rest.
         sim.measure(0.0, &PlantInputs::default(), false);
         Ok(sim)
     }

@@ -56,7 +56,7 @@ impl Shaft {
         }
     }
 
-    /// Whether the ratio changes with the joints.
+    /// True if the ratio changes with the joints.
     pub(crate) fn is_linkage(&self) -> bool {
         !matches!(self.drive.transmission, Transmission::Harmonic { .. })
     }

@@ -109,7 +109,7 @@ impl Train {
         }
     }
 
-    /// Whether a controller is sampled.
+    /// True if a controller is sampled.
     pub fn is_sampled(&self) -> bool {
         self.drives.iter().any(|d| d.shaft.drive.control.sampling != Sampling::Continuous)
     }

@@ -4,7 +4,7 @@
 
 use crate::{Ankle, Gear, Knee, OutOfDomain};
 
-/// How one motor is coupled to its joints.
+/// Coupling of one motor to its joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transmission {
     /// Harmonic drive on one joint.

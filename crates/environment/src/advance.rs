@@ -22,6 +22,7 @@ impl Environment {
                 object.clock = clock;
                 continue;
             }
+            // Neither torn away from under a foot, nor put around one.
             let held = object.present && touched.get(i).copied().unwrap_or(false);
             if held || (present && !object.moved_clear_of(nodes, pose)) {
                 if !object.refused {
@@ -30,6 +31,7 @@ impl Environment {
                 object.refused = true;
                 continue;
             }
+            // Nothing is in the way any more.
             if std::mem::take(&mut object.refused) {
                 self.events.push(Event::Resumed(i));
             }

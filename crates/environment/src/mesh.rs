@@ -50,7 +50,7 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    /// What was put right.
+    /// Repairs while it was built.
     pub fn repairs(&self) -> MeshRepairs {
         self.repairs
     }

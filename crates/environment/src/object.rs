@@ -73,7 +73,7 @@ impl Object {
         &self.mesh
     }
 
-    /// Where it is.
+    /// Its pose.
     pub fn pose(&self) -> &Pose {
         &self.pose
     }

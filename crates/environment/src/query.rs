@@ -13,7 +13,7 @@ use crate::object::Object;
 /// is enough, because nothing touches.
 pub const REACH: f64 = 0.01;
 
-/// What was hit.
+/// Surface that was hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
     /// Nothing within reach: the gap is a lower bound, the normal points up.

@@ -14,7 +14,7 @@ pub(crate) const MOST_TRIANGLES: usize = 2_000_000;
 /// \[m\] Larger coordinates are a file in other units than it was taken for.
 const LARGEST: f64 = 1e4;
 
-/// What was put right while the mesh was built.
+/// Repairs of a mesh while it was built.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeshRepairs {
     /// Triangles without area that were left out.
@@ -78,11 +78,11 @@ fn join(vertices: &[[f64; 3]]) -> Vec<u32> {
 }
 
 /// The triangle left of each directed edge.
-type Edges = HashMap<(u32, u32), u32>;
+type SolidEdges = HashMap<(u32, u32), u32>;
 
 /// Every edge must belong to two triangles that pass it in opposite directions.
-fn closed(numbers: &[[u32; 3]], at: &impl Fn(u32) -> Vector3<f64>) -> Result<Edges, MeshError> {
-    let mut edges = Edges::with_capacity(3 * numbers.len());
+fn closed(numbers: &[[u32; 3]], at: &impl Fn(u32) -> Vector3<f64>) -> Result<SolidEdges, MeshError> {
+    let mut edges = SolidEdges::with_capacity(3 * numbers.len());
     let ends = |a, b| (at(a).into(), at(b).into());
     for (i, t) in numbers.iter().enumerate() {
         for k in 0..3 {
@@ -108,7 +108,7 @@ fn closed(numbers: &[[u32; 3]], at: &impl Fn(u32) -> Vector3<f64>) -> Result<Edg
 fn normals(
     numbers: &[[u32; 3]],
     at: &impl Fn(u32) -> Vector3<f64>,
-    edges: &Edges,
+    edges: &SolidEdges,
     sign: f64,
 ) -> Vec<Triangle> {
     let face = |t: &[u32; 3]| {

@@ -8,7 +8,7 @@ use crate::inertia::Inertia;
 use crate::model::Model;
 use crate::space::{Sym3, V3};
 
-/// How a child link moves against its parent. The axis is given in the child's frame, of any length above zero.
+/// Motion of a child link against its parent. The axis is given in the child's frame, of any length above zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointKind {
     /// Not at all: the child becomes part of its parent's body.
@@ -66,6 +66,7 @@ impl ModelBuilder {
         if let Some(fault) = inertia.fault() {
             return Err(ModelError::Inertia(child.into(), fault));
         }
+        // A fixed link is part of the body that carries its parent.
         let in_parent = parent.pose * placement;
         let carrier = parent.body;
         let (axis, slides) = match kind {
@@ -82,6 +83,7 @@ impl ModelBuilder {
         }
         let axis = Unit::try_new(in_parent.rotation * axis, 1e-9)
             .ok_or_else(|| ModelError::Geometry(name.into()))?;
+        // Frames of the bodies are parallel to the base at zero coordinates, whatever the links' axes are.
         let pose = IsometryMatrix3::from_parts(Vector3::zeros().into(), in_parent.rotation);
         let body = self.inertias.len();
         self.joints.push(NewJoint {

@@ -19,7 +19,7 @@ pub(crate) struct Gyro {
     pub entries: Vec<[usize; 3]>,
 }
 
-/// What a rotor does at present.
+/// Present motion of a rotor.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Spin {
     pub ratio: [f64; MOST_JOINTS],
@@ -37,7 +37,7 @@ impl Gyro {
         Sym3 { xx: x * x, yy: y * y, zz: z * z, xy: x * y, xz: x * z, yz: y * z } * self.j
     }
 
-    /// What the transmission makes of the joints' speeds or accelerations, given by body.
+    /// Speed or acceleration of the rotor by the transmission, from those of the joints, given by body.
     #[inline(always)]
     pub(crate) fn through(&self, spin: &Spin, joint: impl Fn(usize) -> f64) -> f64 {
         self.geared.iter().zip(spin.ratio).map(|(&k, c)| c * joint(k)).sum()

@@ -62,6 +62,7 @@ impl Model {
                 return Err(ModelError::Duplicate(rotor.name.clone()));
             }
             let gyro = self.gyro(rotor).map_err(fault)?;
+            // A free rotor does not turn along about its axis: the stator's inertia loses that part.
             if gyro.geared.is_empty() {
                 let stator = &mut self.bodies[gyro.body];
                 stator.i += gyro.inertia() * -1.0;
@@ -113,6 +114,7 @@ impl Model {
         if let Some(j) = rotor.joints.iter().find(|&&j| j >= self.n()) {
             return Err(format!("joint {j} does not exist; name one below {}", self.n()));
         }
+        // Its joints hang on the stator: a rotor turns what lies beyond it.
         let geared: Vec<usize> = rotor.joints.iter().map(|j| j + 1).collect();
         if let Some(&k) = geared.iter().find(|&&k| k == link.body || !self.carries(link.body, k)) {
             return Err(format!(
@@ -184,7 +186,7 @@ impl Model {
         }
     }
 
-    /// What the rotors ask of their stators, between the sweeps of the inverse dynamics.
+    /// Adds the rotors' demands on their stators, between the sweeps of the inverse dynamics.
     #[inline(always)]
     pub(crate) fn load_stators(
         &self,
