@@ -132,7 +132,7 @@ impl Chain {
 
     /// What the drives were told in the last cycle.
     pub fn told(&self) -> &BusFrames {
-        self.joint_loop.told()
+        self.joint_loop.commanded()
     }
 
     /// What they answered; before the first cycle: where the joints are.
@@ -191,7 +191,7 @@ impl Chain {
         } else {
             self.skipped += 1;
         }
-        let told = runs(Process::Lowlevel).then(|| *self.joint_loop.told());
+        let told = runs(Process::Lowlevel).then(|| *self.joint_loop.commanded());
         self.bus.push_back(told);
         if runs(Process::SimBackend) {
             self.simulate();

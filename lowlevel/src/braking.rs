@@ -1,15 +1,15 @@
 //! Bringing a joint to rest: the controlled stop.
 
-use crate::limits::Motion;
+use crate::limits::Setpoint;
 use config::robot::Joint;
 
 /// One cycle of `dt` \[s\] of braking at the joint's rate; the angle stays in the joint's range.
-pub fn brake(joint: &Joint, now: Motion, dt: f64) -> Motion {
+pub fn brake(joint: &Joint, now: Setpoint, dt: f64) -> Setpoint {
     let less = joint.braking * dt;
     let speed = if now.speed.abs() <= less { 0.0 } else { now.speed - less * now.speed.signum() };
     let wanted = now.angle + 0.5 * (now.speed + speed) * dt;
     let angle = wanted.clamp(joint.range[0].min(now.angle), joint.range[1].max(now.angle));
-    Motion { angle, speed: if angle == wanted { speed } else { 0.0 } }
+    Setpoint { angle, speed: if angle == wanted { speed } else { 0.0 } }
 }
 
 #[cfg(test)]
@@ -27,7 +27,7 @@ mod tests {
             comfort: 0.0,
             weight: 1.0,
         };
-        let mut m = Motion { angle: 0.0, speed: 4.0 };
+        let mut m = Setpoint { angle: 0.0, speed: 4.0 };
         let mut cycles = 0;
         while m.speed != 0.0 {
             m = brake(&joint, m, 1.0 / 1024.0);
@@ -36,8 +36,8 @@ mod tests {
         assert_eq!(cycles, 64); // 4 / 64 s, and every number here is exact in binary
         assert!((m.angle - 4.0 * 4.0 / (2.0 * 64.0)).abs() < 1e-12);
         assert_eq!(
-            brake(&joint, Motion { angle: 0.999, speed: 4.0 }, 1e-3),
-            Motion { angle: 1.0, speed: 0.0 }
+            brake(&joint, Setpoint { angle: 0.999, speed: 4.0 }, 1e-3),
+            Setpoint { angle: 1.0, speed: 0.0 }
         );
     }
 }

@@ -1,17 +1,14 @@
-//! The near end of the CAN lines.
+//! Near end of the CAN lines.
 
 use std::error::Error;
 use std::time::Duration;
 
-use codec::frames::{self, DriveCommand, Received, encode_targets};
-use codec::layout::Layout;
-use daemon::Daemon;
 use fieldbus::{End, Lines};
-use ipc::{Mode, Waiter};
+use codec::frames::{self, DriveCommand, Received, encode_targets};
 use messages::{BusFrames, MAX_FRAMES};
 use realtime::clock;
 
-use crate::Fieldbus;
+use crate::fieldbus::{BusSettings, Fieldbus, RunControl};
 
 /// In lockstep: between two looks whether to end.
 const LOOK: Duration = Duration::from_millis(20);
@@ -23,40 +20,38 @@ const ASK: u64 = clock::SECOND / 4;
 /// CAN lines whose far end is a robot, a simulated one, or a recording.
 pub(crate) struct CanBus {
     lines: Lines,
-    layout: Layout,
-    /// What has come since the last cycle.
+    settings: BusSettings,
+    /// Frames since the last cycle.
     rx: BusFrames,
     /// Cycle that is to be answered.
     asked: u64,
-    /// \[ns\] How long the first answer is waited for in lockstep.
-    patience: u64,
-    lockstep: bool,
     /// In lockstep: nodes (bits) that are waited for.
     alive: u32,
 }
 
 impl CanBus {
     /// Opens all lines.
-    pub(crate) fn new(d: &Daemon, fd: bool, interfaces: &[String]) -> Result<Self, Box<dyn Error>> {
-        let layout = d.setup.robot.layout.clone();
-        let lines = Lines::open(interfaces, &layout, fd, End::Near)?;
-        let patience = d.patience().as_nanos() as u64;
-        let lockstep = d.mode == Mode::Lockstep;
-        let alive = ((1u64 << layout.nodes.len()) - 1) as u32;
-        Ok(Self { lines, layout, rx: BusFrames::default(), asked: 0, patience, lockstep, alive })
+    pub(crate) fn new(
+        settings: BusSettings,
+        fd: bool,
+        interfaces: &[String],
+    ) -> Result<Self, Box<dyn Error>> {
+        let lines = Lines::open(interfaces, &settings.layout, fd, End::Near)?;
+        let alive = ((1u64 << settings.layout.nodes.len()) - 1) as u32;
+        Ok(Self { lines, settings, rx: BusFrames::default(), asked: 0, alive })
     }
 
-    /// Asks the drives for where they are: no targets, no torque.
+    /// Asks the drives for their positions: no targets, no torque.
     fn ask(&mut self) {
         let mut nothing = BusFrames::default();
-        encode_targets(&self.layout, &DriveCommand::default(), &mut nothing);
+        encode_targets(&self.settings.layout, &DriveCommand::default(), &mut nothing);
         self.lines.send(&nothing);
     }
 
-    /// Whether the cycle is answered as far as it will be, after so many nanoseconds without a frame. A node that let one
+    /// True if the cycle is answered as far as it will be, after so many nanoseconds without a frame. A node that let one
     /// pass is not waited for until it speaks again.
     fn answered(&mut self, received: &Received, quiet_ns: u64) -> bool {
-        let nodes = (0..self.layout.nodes.len()).filter(|&node| received.complete(node));
+        let nodes = (0..self.settings.layout.nodes.len()).filter(|&node| received.complete(node));
         let complete = nodes.fold(0u32, |bits, node| bits | 1 << node);
         let all = complete & self.alive == self.alive;
         if all {
@@ -76,20 +71,21 @@ impl Fieldbus for CanBus {
     }
 
     fn receive(&mut self) -> Option<&BusFrames> {
-        if !self.lockstep {
+        if !self.settings.lockstep {
             self.lines.receive(&mut self.rx);
         }
         self.rx.header.tick = self.asked;
         (self.asked > 0 || self.rx.count > 0).then_some(&self.rx)
     }
 
-    fn wait(&mut self, d: &Daemon, _: &Waiter, tick: u64) -> Result<bool, Box<dyn Error>> {
+    fn wait(&mut self, run: &dyn RunControl, tick: u64) -> Result<bool, Box<dyn Error>> {
         let begun = clock::now();
         let (mut asked, mut last) = (None, begun);
         self.rx.header.tick = tick;
-        let mut received = frames::look(&self.layout, false, &self.rx);
-        while !d.stop.asked() {
+        let mut received = frames::look(&self.settings.layout, false, &self.rx);
+        while !run.is_ending() {
             let now = clock::now();
+            // Before the first cycle nothing was sent that the drives could answer.
             if tick == 0 && asked.is_none_or(|at| now - at > ASK) {
                 asked = Some(now);
                 self.ask();
@@ -98,26 +94,26 @@ impl Fieldbus for CanBus {
             let came = self.lines.receive_missing(&received.missing, &mut self.rx) > 0;
             if came {
                 last = now;
-                received = frames::look(&self.layout, false, &self.rx);
+                received = frames::look(&self.settings.layout, false, &self.rx);
             }
             if self.answered(&received, now - last) {
                 return Ok(true);
             }
-            if now - begun > self.patience && d.robot {
+            if now - begun > self.settings.patience_ns && self.settings.simulated_robot {
                 let down = self.lines.take_trouble().down;
                 let why = if down == 0 { "" } else { "; an interface is down, see `ip link`" };
-                let seconds = self.patience as f64 * 1e-9;
+                let seconds = self.settings.patience_ns as f64 * 1e-9;
                 return Err(
                     format!("lowlevel: nobody answers on the CAN lines within {seconds} s{why}").into()
                 );
             }
             if self.rx.as_slice().len() == MAX_FRAMES {
-                frames::keep_current(&self.layout, false, &mut self.rx); // else there is no room for the rest
+                frames::keep_current(&self.settings.layout, false, &mut self.rx); // else there is no room for the rest
             }
             if !came {
                 // Lines are answered in their order: the last one that is missing is worth waking up for.
                 let missing = |&node: &usize| self.alive >> node & 1 == 1 && !received.complete(node);
-                self.lines.wait((0..self.layout.nodes.len()).rfind(missing), LOOK);
+                self.lines.wait((0..self.settings.layout.nodes.len()).rfind(missing), LOOK);
             }
         }
         Ok(false)

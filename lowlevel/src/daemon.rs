@@ -1,7 +1,8 @@
 //! The process around the joint loop: `gangwerk lowlevel --run DIR`. It is the clock of all others.
 
-use crate::joint_loop::State;
-use crate::{Fieldbus, JointLoop, fieldbus};
+use crate::bus::{self, WaitingDaemon};
+use crate::joint_loop::LoopState;
+use crate::{Fieldbus, JointLoop};
 use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Waiter, Writer};
@@ -27,11 +28,11 @@ const ANSWER: (u64, u64) = (7, 10);
 pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut d = Daemon::new(Process::Lowlevel, dir)?;
     let mut ports = Ports {
-        bus: fieldbus::open(&d)?,
+        bus: bus::open(&d)?,
         sensors: d.space.writer(&SENSORS)?,
         frames_in: d.space.writer(&FRAMES_IN)?,
         frames_out: d.space.writer(&FRAMES_OUT)?,
-        heard: 0,
+        received: 0,
         reset: d.space.writer(&WATCHDOG_RESET)?,
         targets: d.space.reader(&JOINT_TARGETS)?,
         power: d.space.reader(&POWER)?,
@@ -49,7 +50,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let scene = &d.setup.scene;
     let last = (scene.duration / scene.cycle).round() as u64;
     let mut joints = JointLoop::new(&d.setup.robot, &d.setup.system, scene.cycle);
-    if !ports.bus.start(&d)? {
+    if !ports.bus.start(&WaitingDaemon { daemon: &d, waiter: &ports.waiter })? {
         return Ok(());
     }
     d.report(Header::default(), EventCode::Started, 0);
@@ -71,7 +72,7 @@ struct Ports {
     frames_in: Writer<BusFrames>,
     frames_out: Writer<BusFrames>,
     /// Cycles so far in which frames came.
-    heard: u64,
+    received: u64,
     reset: Writer<WatchdogReset>,
     targets: Reader<JointTargets>,
     power: Reader<Power>,
@@ -104,8 +105,8 @@ fn receive(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, tick: u64, sta
     if let Some(frames) = frames {
         p.frames_in.write(frames);
         d.log.keep(&FRAMES_IN, frames);
-        p.heard += 1;
-        d.log.now().used[1] = Used { epoch: p.frames_in.epoch(), tick: p.heard };
+        p.received += 1;
+        d.log.now().used[1] = Used { epoch: p.frames_in.epoch(), tick: p.received };
     }
     sensors.header
 }
@@ -120,7 +121,7 @@ fn lockstep(
 ) -> Result<Header, Box<dyn Error>> {
     // The far end speaks first: its answer to no cycle is what the first one sees.
     let mut header = Header::default();
-    if !p.bus.wait(d, &p.waiter, 0)? {
+    if !p.bus.wait(&WaitingDaemon { daemon: d, waiter: &p.waiter }, 0)? {
         return Ok(header);
     }
     let mut next = clock::now();
@@ -137,7 +138,7 @@ fn lockstep(
             break;
         }
         take_commands(d, p, joints, header);
-        let off = joints.state() == State::Off;
+        let off = joints.state() == LoopState::Off;
         d.log.uses(0, &JOINT_TARGETS, p.targets.held());
         let (frames, reset) = joints.send(p.targets.held(), None);
         p.reset.write(reset);
@@ -152,7 +153,7 @@ fn lockstep(
         d.log.keep(&FRAMES_OUT, frames);
         d.log.keep(&WATCHDOG_RESET, reset);
         d.ring(p.bell_bus);
-        if !p.bus.wait(d, &p.waiter, tick)? || !wait_for_log(d, p, tick)? {
+        if !p.bus.wait(&WaitingDaemon { daemon: d, waiter: &p.waiter }, tick)? || !wait_for_log(d, p, tick)? {
             break;
         }
         report(d, p.bus.as_mut(), joints, header);
@@ -186,7 +187,7 @@ fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -
         header = receive(d, p, joints, tick, clock::now());
         wait_for_targets(p, tick, period.planned() + answer_ns);
         take_commands(d, p, joints, header);
-        let off = joints.state() == State::Off;
+        let off = joints.state() == LoopState::Off;
         cause = cause.filter(|_| !off); // a stop is latched until the supply was off
         let targets = p.targets.latest();
         d.log.uses(0, &JOINT_TARGETS, targets);
@@ -212,7 +213,7 @@ fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -
     header
 }
 
-/// The last sign of life says that it is the last one: the log tells an orderly end from a joint loop that fell silent.
+/// The last heartbeat says that it is the last one: the log tells an orderly end from a joint loop that fell silent.
 fn say_goodbye(d: &Daemon, p: &mut Ports, last: Header) {
     let header = Header { tick: last.tick + 1, ..last };
     p.reset.write(&WatchdogReset { header, trip: EventCode::Ended as u64, supply: 0 });

@@ -1,15 +1,9 @@
-//! The far end of the bus.
+//! Near end of a field bus, as the joint loop needs it.
 
 use std::error::Error;
 
-use config::BusAddress;
-use daemon::Daemon;
-use ipc::Waiter;
+use codec::layout::Layout;
 use messages::{BusFrames, EventCode};
-
-use crate::can_bus::CanBus;
-use crate::sercos_bus::SercosBus;
-use crate::simulated_bus::SimulatedBus;
 
 /// A field bus that exchanges the frames of one cycle. Implementations neither allocate nor block in [`Fieldbus::send`] and
 /// [`Fieldbus::receive`].
@@ -18,7 +12,7 @@ pub trait Fieldbus {
     ///
     /// # Errors
     /// Somebody on the bus is missing, or not what the configuration says.
-    fn start(&mut self, _: &Daemon) -> Result<bool, Box<dyn Error>> {
+    fn start(&mut self, _: &dyn RunControl) -> Result<bool, Box<dyn Error>> {
         Ok(true)
     }
 
@@ -27,7 +21,7 @@ pub trait Fieldbus {
         None
     }
 
-    /// Whether the motor supply is off in this cycle: then nothing depends on the bus, and who left it may be taken back.
+    /// True if the motor supply is off in this cycle: then nothing depends on the bus, and who left it may be taken back.
     fn set_idle(&mut self, _: bool) {}
 
     /// Sends the frames of this cycle to the drives.
@@ -41,14 +35,34 @@ pub trait Fieldbus {
     ///
     /// # Errors
     /// Nobody answers.
-    fn wait(&mut self, d: &Daemon, waiter: &Waiter, tick: u64) -> Result<bool, Box<dyn Error>>;
+    fn wait(&mut self, run: &dyn RunControl, tick: u64) -> Result<bool, Box<dyn Error>>;
 }
 
-/// The bus of a run.
-pub(crate) fn open(d: &Daemon) -> Result<Box<dyn Fieldbus>, Box<dyn Error>> {
-    match &d.bus {
-        BusAddress::Shared => Ok(Box::new(SimulatedBus::new(d)?)),
-        BusAddress::Can { fd, interfaces } => Ok(Box::new(CanBus::new(d, *fd, interfaces)?)),
-        BusAddress::Sercos(place) => Ok(Box::new(SercosBus::new(d, place)?)),
-    }
+/// The run around a bus, while the bus waits for somebody.
+pub trait RunControl {
+    /// True if the process was asked to end.
+    fn is_ending(&self) -> bool;
+
+    /// Waits until the process `peer` has made `ready` true. `Ok(false)`: asked to end.
+    ///
+    /// # Errors
+    /// The peer fell silent.
+    fn wait_for(&self, peer: &str, ready: &mut dyn FnMut() -> bool) -> Result<bool, Box<dyn Error>>;
+}
+
+/// Settings of a bus that has interfaces of its own.
+#[derive(Clone, Debug)]
+pub struct BusSettings {
+    /// Frames of the robot.
+    pub layout: Layout,
+    /// \[ns\] Bus cycle.
+    pub period_ns: u64,
+    /// Simulated time: every answer is waited for.
+    pub lockstep: bool,
+    /// \[ns\] Patience with an answer in lockstep.
+    pub patience_ns: u64,
+    /// Cycles in a row that may be lost.
+    pub losses: u16,
+    /// Somebody of this run is at the far end, whose silence is an error; else the robot may be switched on any time.
+    pub simulated_robot: bool,
 }

@@ -1,4 +1,9 @@
 //! One cycle of the joint loop. Pure: no clock, no bus, no shared memory.
+//!
+//! ```text
+//! receive   frames ──► what is missing: line guard ──► force sensors: start-up ──► sensor data
+//! send      targets ──► state ──► setpoints: follow, brake or track ──► checks ──► frames, watchdog reset
+//! ```
 
 use codec::frames::{DriveCommand, Received, decode_sensors, encode_targets};
 use config::{Robot, System};
@@ -7,23 +12,21 @@ use messages::{
     WatchdogReset,
 };
 
-use crate::braking::brake;
-use crate::limits::{Motion, admit, following_limit};
+use crate::limits::following_limit;
 use crate::line_guard::LineGuard;
-use crate::rejoin::Rejoin;
+use crate::reports::{Reports, drive_fault};
+use crate::setpoints::Setpoints;
 use crate::start_up::{StartUpSequence, is_enabled};
-use drives::cia402::{self, Wanted, controlword};
+use crate::target_age::TargetAge;
+use drives::cia402::{Wanted, controlword};
 
 /// \[m/s^2\]
 const GRAVITY: f64 = 9.81;
 
-/// \[s\] A joint that is held back is told of again after so long without it.
-const QUIET: f64 = 1.0;
-
-/// What the joint loop is doing with the joints.
+/// State of the joint loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
-    /// Motor supply off: targets follow the measured angles.
+pub enum LoopState {
+    /// Motor supply off: setpoints follow the measured angles.
     Off,
     /// Supply on, nobody commands: joints stay.
     Hold,
@@ -39,29 +42,23 @@ pub struct JointLoop {
     robot: Robot,
     system: System,
     dt: f64,
-    state: State,
-    /// What the drives were told last.
-    last: [Motion; messages::MAX_JOINTS],
-    /// Tick of the newest targets that were used.
-    used: u64,
-    /// Cycles since targets were new, now and in the cycle before.
-    stale: u32,
-    stale_before: u32,
-    /// Whether targets were followed in the cycle before.
-    tracked: bool,
-    rejoin: [Rejoin; messages::MAX_JOINTS],
-    /// Tick at which each joint was held back last.
-    limited: [Option<u64>; messages::MAX_JOINTS],
-    /// Drives with a fault that was told.
-    named: [bool; messages::MAX_JOINTS],
+    state: LoopState,
+    age: TargetAge,
+    setpoints: Setpoints,
     guard: LineGuard,
     start_up: StartUpSequence,
+    reports: Reports,
     sensors: Sensors,
-    command: DriveCommand,
     received: Received,
+    output: LoopOutput,
+}
+
+/// Records that leave the joint loop.
+#[derive(Clone, Default)]
+struct LoopOutput {
+    command: DriveCommand,
     frames: BusFrames,
     reset: WatchdogReset,
-    event: Option<(EventCode, u64)>,
 }
 
 impl JointLoop {
@@ -71,39 +68,31 @@ impl JointLoop {
             robot: robot.clone(),
             system: system.clone(),
             dt,
-            state: State::Off,
-            last: [Motion { angle: 0.0, speed: 0.0 }; messages::MAX_JOINTS],
-            used: 0,
-            stale: 0,
-            stale_before: 0,
-            tracked: false,
-            rejoin: [Rejoin::default(); messages::MAX_JOINTS],
-            limited: [None; messages::MAX_JOINTS],
-            named: [false; messages::MAX_JOINTS],
+            state: LoopState::Off,
+            age: TargetAge::new(system.targets_missed),
+            setpoints: Setpoints::new(),
             guard: LineGuard::new(robot, system, dt),
             start_up: StartUpSequence::new(robot.joints.len(), robot.total_mass * GRAVITY),
+            reports: Reports::new(),
             sensors: Sensors::default(),
-            command: DriveCommand::default(),
             received: Received::default(),
-            frames: BusFrames::default(),
-            reset: WatchdogReset::default(),
-            event: None,
+            output: LoopOutput::default(),
         }
     }
 
-    /// What the loop is doing.
-    pub fn state(&self) -> State {
+    /// The state.
+    pub fn state(&self) -> LoopState {
         self.state
     }
 
-    /// What the drives were told in the last cycle.
-    pub fn told(&self) -> &BusFrames {
-        &self.frames
+    /// Frames of the last cycle for the drives.
+    pub fn commanded(&self) -> &BusFrames {
+        &self.output.frames
     }
 
     /// Something worth a line in the log, since the last call.
     pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        self.event.take().or_else(|| self.guard.take_event()).or_else(|| self.start_up.take_event())
+        self.reports.take().or_else(|| self.guard.take_event()).or_else(|| self.start_up.take_event())
     }
 
     /// Takes a command of the domains system and joint, between [`JointLoop::receive`] and [`JointLoop::send`].
@@ -114,23 +103,31 @@ impl JointLoop {
         self.start_up.command(command, &self.sensors)
     }
 
-    /// What went wrong on the bus so far.
+    /// Faults of the bus so far.
     pub fn bus_counters(&self) -> BusCounters {
         self.guard.counters()
     }
 
-    /// First half of the cycle: what the bus brought, stamped.
+    /// First half of the cycle: sensor data from the frames of the bus, stamped.
+    ///
+    /// The order matters. Frames overwrite, reading by reading, what stands in the sensor data; what is missing stays. So
+    /// the data must hold raw readings when they come, and the guard must have copied what it expects.
     pub fn receive(&mut self, tick: u64, stamp_ns: u64, frames: Option<&BusFrames>) -> &Sensors {
+        // Cycles that the joint loop itself slept through: readings may have moved that much further.
         let elapsed = stamp_ns.saturating_sub(self.sensors.header.stamp_ns) as f64 * 1e-9;
         let skipped = if tick > 1 { ((elapsed / self.dt).round() - 1.0).max(0.0) as u32 } else { 0 };
         self.sensors.header = Header { tick, stamp_ns, epoch: 0 };
+        // Forces without the offsets that the cycle before took away: a missing one would lose them twice.
         self.start_up.restore(&mut self.sensors);
+        // Last readings carried on, which stand for those that do not come and bound those that do.
         self.guard.expect(&mut self.sensors);
         if let Some(frames) = frames {
             self.received = decode_sensors(&self.robot.layout, frames, &mut self.sensors);
         }
+        // What cannot be goes back to what was expected, before anybody uses it.
         self.guard.judge(frames, &self.received, skipped, &mut self.sensors);
         self.sensors.frames_missed = self.guard.counters().lost;
+        // Offsets last: of forces that are believed.
         self.start_up.receive(&mut self.sensors);
         &self.sensors
     }
@@ -143,109 +140,85 @@ impl JointLoop {
         targets: Option<&JointTargets>,
         cause: Option<EventCode>,
     ) -> (&BusFrames, &WatchdogReset) {
-        self.reset.trip = 0;
-        if self.state == State::Off {
+        self.output.reset.trip = 0;
+        if self.state == LoopState::Off {
             self.follow_measured(); // whatever comes next begins where the joints are
         }
-        self.choose_state(targets, cause);
-        let stopped = matches!(self.state, State::Stop(_));
+        // State of the loop, then that of the start-up, which a stop holds.
+        self.age.step(targets);
+        self.state = self.next_state(targets, cause);
+        let stopped = matches!(self.state, LoopState::Stop(_));
         self.start_up.step(&self.sensors, stopped, |j| self.guard.spares(j));
         match self.state {
-            State::Off => self.follow_measured(),
-            State::Hold => self.brake_all(),
-            State::Stop(_) => self.brake_all(),
-            State::Track => self.track(targets),
+            LoopState::Off => self.follow_measured(),
+            LoopState::Hold | LoopState::Stop(_) => self.setpoints.brake_all(&self.robot, self.dt),
+            LoopState::Track => self.track(targets),
         }
-        self.tracked = self.state == State::Track;
-        if !self.tracked {
-            self.rejoin.iter_mut().for_each(Rejoin::forget);
-        }
+        self.setpoints.end_cycle(self.state == LoopState::Track);
         self.follow_the_unable();
+        // Checks of what will be sent; those that cut the power come before the frames, which then say so.
         self.check_following();
         self.check_lines();
-        self.name_faults();
+        let stands = self.start_up.state() == StartUp::Standing;
+        self.reports.drive_faults(&self.robot, &self.sensors, |j| stands && self.guard.spares(j));
         self.write_frames();
-        (&self.frames, &self.reset)
+        (&self.output.frames, &self.output.reset)
     }
 
     /// The transition table.
-    fn choose_state(&mut self, targets: Option<&JointTargets>, cause: Option<EventCode>) {
+    fn next_state(&mut self, targets: Option<&JointTargets>, cause: Option<EventCode>) -> LoopState {
+        use LoopState::{Hold, Off, Stop, Track};
         let powered = self.sensors.power == 1;
         let mode = targets.map_or(JointMode::Off, |t| JointMode::from(t.mode));
-        self.stale_before = self.stale;
-        if targets.is_some_and(|t| t.header.tick > self.used) {
-            self.used = targets.map_or(0, |t| t.header.tick);
-            self.stale = 0;
-        } else {
-            self.stale = self.stale.saturating_add(1);
-        }
-        let late = self.stale > self.system.targets_missed;
+        let late = self.age.is_late();
         let needed = (0..self.robot.joints.len()).filter(|&j| !self.spares(j));
-        let tripped = needed.clone().find_map(|j| fault(&self.sensors, j));
+        let tripped = needed.clone().find_map(|j| drive_fault(&self.sensors, j));
         let off = needed.clone().find(|&j| !is_enabled(&self.sensors, j));
         let mute = self.guard.cause();
-        self.state = match self.state {
-            _ if !powered => State::Off,
-            State::Stop(why) => State::Stop(why),
-            State::Off | State::Hold | State::Track if mute.is_some() => self.unheard(mute),
-            State::Hold | State::Track if tripped.is_some() => {
-                self.stop(EventCode::DriveTripped, tripped.unwrap_or(0))
-            }
-            State::Off => State::Hold,
-            State::Hold if mode == JointMode::Track && !late && self.start_up.ready() => State::Track,
-            State::Hold => State::Hold,
-            State::Track if cause.is_some() => self.stop(cause.unwrap_or(EventCode::SafeStop), 0),
-            State::Track if off.is_some() => self.stop(EventCode::DriveNotEnabled, off.unwrap_or(0) as u64),
-            State::Track if late => self.stop(EventCode::TargetsStale, self.stale.into()),
-            State::Track if mode == JointMode::Stop => self.stop(EventCode::SafeStop, 0),
-            State::Track if mode == JointMode::Track => State::Track,
-            State::Track => State::Hold,
-        };
+        match self.state {
+            _ if !powered => Off,
+            Stop(why) => Stop(why),
+            // Who cannot be reached is no longer asked for anything else.
+            Off | Hold | Track if mute.is_some() => self.stop_by_bus(mute),
+            Hold | Track if tripped.is_some() => self.stop(EventCode::DriveTripped, tripped.unwrap_or(0)),
+            Off => Hold,
+            Hold if mode == JointMode::Track && !late && self.start_up.ready() => Track,
+            Hold => Hold,
+            Track if cause.is_some() => self.stop(cause.unwrap_or(EventCode::SafeStop), 0),
+            Track if off.is_some() => self.stop(EventCode::DriveNotEnabled, off.unwrap_or(0) as u64),
+            Track if late => self.stop(EventCode::TargetsStale, self.age.cycles().into()),
+            Track if mode == JointMode::Stop => self.stop(EventCode::SafeStop, 0),
+            Track if mode == JointMode::Track => Track,
+            Track => Hold,
+        }
     }
 
     /// A stop because of the bus.
-    fn unheard(&mut self, cause: Option<(EventCode, u64)>) -> State {
+    fn stop_by_bus(&mut self, cause: Option<(EventCode, u64)>) -> LoopState {
         match cause {
-            Some((EventCode::BusOff, _)) | None => State::Stop(EventCode::BusOff), // told when it happened
+            // Reported when it happened.
+            Some((EventCode::BusOff, _)) | None => LoopState::Stop(EventCode::BusOff),
             Some((why, detail)) => self.stop(why, detail),
         }
     }
 
-    fn stop(&mut self, why: EventCode, detail: u64) -> State {
-        self.event = Some((why, detail));
-        State::Stop(why)
+    fn stop(&mut self, why: EventCode, detail: u64) -> LoopState {
+        self.reports.set(why, detail);
+        LoopState::Stop(why)
     }
 
-    /// Whether the robot stands, and can do so without the local controller of joint `j`.
+    /// True if the robot stands, and can do so without the local controller of joint `j`.
     fn spares(&self, j: usize) -> bool {
         self.start_up.state() == StartUp::Standing && self.guard.spares(j)
     }
 
-    /// Tells of drives with a fault, each once, one in a cycle: those that stop nobody, and those whose frames come back
-    /// after the stop.
-    fn name_faults(&mut self) {
-        for j in 0..self.robot.joints.len() {
-            let Some(detail) = fault(&self.sensors, j) else {
-                self.named[j] = false;
-                continue;
-            };
-            let held = if self.spares(j) { EventCode::DriveHeld } else { EventCode::DriveTripped };
-            let tells = !self.named[j] && self.event.is_none();
-            if tells {
-                self.event = Some((held, detail));
-            }
-            // The one that stopped the joints was told in this cycle.
-            self.named[j] |= tells || self.event == Some((EventCode::DriveTripped, detail));
-        }
-    }
-
     fn follow_measured(&mut self) {
         for j in 0..self.robot.joints.len() {
-            self.last[j] = Motion { angle: self.sensors.joint_angle[j], speed: 0.0 };
+            self.setpoints.follow_measured(j, &self.sensors);
         }
     }
 
-    /// Whether targets move joint `j`.
+    /// True if targets move joint `j`.
     fn leads(&self, j: usize) -> bool {
         !self.start_up.begins() && is_enabled(&self.sensors, j)
     }
@@ -254,87 +227,33 @@ impl JointLoop {
     fn follow_the_unable(&mut self) {
         for j in 0..self.robot.joints.len() {
             if !self.leads(j) {
-                self.last[j] = Motion { angle: self.sensors.joint_angle[j], speed: 0.0 };
+                self.setpoints.follow_measured(j, &self.sensors);
             }
         }
     }
 
-    fn brake_all(&mut self) {
-        for (j, joint) in self.robot.joints.iter().enumerate() {
-            self.last[j] = brake(joint, self.last[j], self.dt);
-        }
-    }
-
-    /// New targets if they are new and finite, otherwise the last ones carried on at their speed. At first and after a pause
-    /// the joints come to them gently.
+    /// Follows new targets if they are finite: one that is not makes the whole set worth nothing.
     fn track(&mut self, targets: Option<&JointTargets>) {
-        let fresh = targets.filter(|_| self.stale == 0);
+        let fresh = targets.filter(|_| self.age.is_fresh());
         if let Some(bad) = fresh.and_then(|t| self.first_not_finite(t)) {
             self.sensors.targets_limited += 1;
             self.state = self.stop(EventCode::TargetNotFinite, bad as u64);
-            return self.brake_all();
+            return self.setpoints.brake_all(&self.robot, self.dt);
         }
-        let mut held = 0u64;
-        for (j, joint) in self.robot.joints.iter().enumerate() {
-            if !self.leads(j) {
-                self.rejoin[j].forget();
-                continue; // it has no torque
-            }
-            let last = self.last[j];
-            // Neither what is carried on nor what is left of an offset leads out of the joint's range.
-            let inside = |m: Motion| Motion {
-                angle: m.angle.clamp(joint.range[0].min(last.angle), joint.range[1].max(last.angle)),
-                ..m
-            };
-            let carried = inside(Motion { angle: last.angle + last.speed * self.dt, speed: last.speed });
-            let wanted = match fresh {
-                Some(t) => {
-                    let target = Motion { angle: t.angle[j], speed: t.speed[j] };
-                    if self.stale_before > 0 || !self.tracked {
-                        self.rejoin[j].begin(carried, target);
-                        carried
-                    } else if self.rejoin[j].is_over() {
-                        target
-                    } else {
-                        inside(self.rejoin[j].step(target, self.dt))
-                    }
-                }
-                None => carried,
-            };
-            let possible = || self.robot.acceleration(j, &self.sensors.joint_angle);
-            if let Ok((motion, limited)) = admit(joint, possible, last, wanted, self.dt) {
-                self.last[j] = motion;
-                if limited {
-                    self.sensors.targets_limited += 1;
-                    held |= 1 << j;
-                }
-            }
-        }
-        (0..self.robot.joints.len()).filter(|j| held >> j & 1 == 1).for_each(|j| self.tell_limited(j));
-    }
-
-    /// Tells that joint `j` is held back: once, until it was not for [`QUIET`]; in the next cycle if something else is told in
-    /// this one.
-    fn tell_limited(&mut self, j: usize) {
-        let tick = self.sensors.header.tick;
-        let quiet = |last: u64| tick.saturating_sub(last) as f64 * self.dt > QUIET;
-        let begins = self.limited[j].is_none_or(quiet);
-        if begins && self.event.is_some() {
-            return;
-        }
-        if begins {
-            self.event = Some((EventCode::TargetLimited, j as u64));
-        }
-        self.limited[j] = Some(tick);
+        let Self { robot, setpoints, sensors, start_up, .. } = self;
+        let leads = |j: usize| !start_up.begins() && is_enabled(sensors, j);
+        let held = setpoints.track(robot, sensors, fresh, self.age.was_stale(), leads, self.dt);
+        self.sensors.targets_limited += u64::from(held.count_ones());
+        self.reports.limits(held, self.sensors.header.tick, self.dt);
     }
 
     fn first_not_finite(&self, t: &JointTargets) -> Option<usize> {
         (0..self.robot.joints.len()).find(|&j| !(t.angle[j].is_finite() && t.speed[j].is_finite()))
     }
 
-    /// A joint that is not where it was told to be is broken, blocked or not ours: power off.
+    /// A joint that is not where it was commanded to be is broken, blocked or not ours: power off.
     fn check_following(&mut self) {
-        if self.state == State::Off {
+        if self.state == LoopState::Off {
             return;
         }
         // A joint that was not read is where it is believed to be.
@@ -342,50 +261,46 @@ impl JointLoop {
             if !(self.guard.reads(j) && self.leads(j)) {
                 continue;
             }
-            let error = (self.last[j].angle - self.sensors.joint_angle[j]).abs();
+            let setpoint = self.setpoints.of(j);
+            let error = (setpoint.angle - self.sensors.joint_angle[j]).abs();
             let limit =
-                following_limit(self.system.following_error, self.system.following_time, self.last[j].speed);
+                following_limit(self.system.following_error, self.system.following_time, setpoint.speed);
             if error > limit {
-                self.reset.trip = EventCode::FollowingError as u64;
-                self.event = Some((EventCode::FollowingError, j as u64));
+                self.output.reset.trip = EventCode::FollowingError as u64;
+                self.reports.set(EventCode::FollowingError, j as u64);
             }
         }
     }
 
     /// Joints that nobody reaches must not be driven: power off.
     fn check_lines(&mut self) {
-        if self.state != State::Off && self.guard.off().is_some() {
-            self.reset.trip = EventCode::BusOff as u64;
+        if self.state != LoopState::Off && self.guard.off().is_some() {
+            self.output.reset.trip = EventCode::BusOff as u64;
         }
     }
 
     fn write_frames(&mut self) {
+        let LoopOutput { command, frames, reset } = &mut self.output;
         let header = Header { epoch: 0, ..self.sensors.header };
-        self.reset.header = header;
-        self.reset.supply = self.sensors.power;
-        self.command.targets.header = header;
-        self.command.targets.mode = match self.state {
-            State::Off => JointMode::Off,
+        reset.header = header;
+        reset.supply = self.sensors.power;
+        command.targets.header = header;
+        command.targets.mode = match self.state {
+            LoopState::Off => JointMode::Off,
             _ if self.start_up.state() == StartUp::Homing => JointMode::Home,
-            State::Hold | State::Stop(_) => JointMode::Hold,
-            State::Track => JointMode::Track,
+            LoopState::Hold | LoopState::Stop(_) => JointMode::Hold,
+            LoopState::Track => JointMode::Track,
         } as u64;
+        // A controlword answers the statusword of the same drive: one step of CiA 402 in a cycle.
         for j in 0..self.robot.joints.len() {
-            self.command.targets.angle[j] = self.last[j].angle;
-            self.command.targets.speed[j] = self.last[j].speed;
-            let wanted = match self.state {
-                _ if self.reset.trip != 0 => Wanted::Stop,
-                _ => self.start_up.wanted(j, &self.sensors),
+            let setpoint = self.setpoints.of(j);
+            (command.targets.angle[j], command.targets.speed[j]) = (setpoint.angle, setpoint.speed);
+            let wanted = match reset.trip {
+                0 => self.start_up.wanted(j, &self.sensors),
+                _ => Wanted::Stop,
             };
-            self.command.control[j] = controlword(self.sensors.drive_status[j] as u16, wanted).into();
+            command.control[j] = controlword(self.sensors.drive_status[j] as u16, wanted).into();
         }
-        encode_targets(&self.robot.layout, &self.command, &mut self.frames);
+        encode_targets(&self.robot.layout, command, frames);
     }
-}
-
-/// Fault of the drive of joint `j`: joint and error code, as in [`EventCode::DriveTripped`].
-fn fault(sensors: &Sensors, j: usize) -> Option<u64> {
-    let state = cia402::state_of(sensors.drive_status[j] as u16);
-    let broken = matches!(state, Some(cia402::State::Fault | cia402::State::FaultReaction));
-    broken.then(|| j as u64 + (u64::from(sensors.drive_error[j]) << 16))
 }

@@ -3,17 +3,21 @@
 //! | stage | where |
 //! |---|---|
 //! | frames of the bus → sensor data, time stamp | [`JointLoop::receive`] |
-//! | bus heard? readings that can be? | `line_guard.rs`, `reading.rs` |
-//! | finite? fresh? in range? slow enough? following? | [`JointLoop::send`], [`limits`] |
+//! | frames missing? readings that can be? | `line_guard.rs`, `reading.rs` |
+//! | age of the targets, state of the loop | `target_age.rs`, [`JointLoop::send`] |
+//! | finite? in range? slow enough? | `setpoints.rs`, [`limits`] |
 //! | targets that come again after a pause | `rejoin.rs` |
 //! | controlled stop when targets stay away | [`braking`] |
+//! | following? lines? | [`JointLoop::send`] |
+//! | events | `reports.rs` |
 //! | targets → frames of the bus; watchdog reset | [`JointLoop::send`] |
 //! | power, references, drives, force sensors: until the robot stands | [`start_up`] |
 //!
-//! What is at the far end of the bus is behind the trait [`Fieldbus`]: shared memory or CAN lines to a simulated
-//! robot, or a robot.
+//! What is at the far end of the bus is behind the trait [`Fieldbus`]: shared memory, CAN lines or a Sercos ring to a
+//! simulated robot, or a robot. Which one a run uses: `bus.rs`.
 
 pub mod braking;
+mod bus;
 mod can_bus;
 pub mod daemon;
 pub mod fieldbus;
@@ -22,9 +26,12 @@ pub mod limits;
 mod line_guard;
 mod reading;
 mod rejoin;
+mod reports;
 mod sercos_bus;
+mod setpoints;
 mod simulated_bus;
 pub mod start_up;
+mod target_age;
 
-pub use fieldbus::Fieldbus;
+pub use fieldbus::{BusSettings, Fieldbus, RunControl};
 pub use joint_loop::JointLoop;

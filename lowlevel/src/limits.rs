@@ -1,4 +1,4 @@
-//! What a joint may be asked to do.
+//! Limits of a joint: range, speed, acceleration.
 
 use config::WITH_LOAD;
 use config::robot::Joint;
@@ -8,9 +8,9 @@ const PLANNED: f64 = 0.8;
 /// \[1\] A target at its limit is none beyond it.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// Why a target was changed or refused.
+/// Reason why a target was changed or refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
+pub enum TargetRefusal {
     /// NaN or infinite: the whole set of targets is worth nothing.
     NotFinite,
     /// Outside of the range or too fast: held back to the limit.
@@ -19,7 +19,7 @@ pub enum Refusal {
 
 /// Angle \[rad\] and speed \[rad/s\] of one joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
+pub struct Setpoint {
     /// \[rad\]
     pub angle: f64,
     /// \[rad/s\]
@@ -36,12 +36,12 @@ pub struct Motion {
 pub fn admit(
     joint: &Joint,
     possible: impl FnOnce() -> f64,
-    last: Motion,
-    wanted: Motion,
+    last: Setpoint,
+    wanted: Setpoint,
     dt: f64,
-) -> Result<(Motion, bool), Refusal> {
+) -> Result<(Setpoint, bool), TargetRefusal> {
     if !(wanted.angle.is_finite() && wanted.speed.is_finite()) {
-        return Err(Refusal::NotFinite);
+        return Err(TargetRefusal::NotFinite);
     }
     let asked = needed(last, wanted, dt);
     let reached = if asked <= WITH_LOAD * joint.acceleration {
@@ -58,19 +58,19 @@ pub fn admit(
     if angle != reached.angle {
         speed = speed.clamp(-((angle - last.angle) / dt).abs(), ((angle - last.angle) / dt).abs());
     }
-    let motion = Motion { angle, speed };
+    let motion = Setpoint { angle, speed };
     Ok((motion, motion != wanted))
 }
 
 /// \[rad/s^2\] Acceleration that a target needs: by its speed, or by its angle if that is further from where the joint moves
 /// at its last speed (a target whose angle and speed agree needs half of it for the angle).
-fn needed(last: Motion, wanted: Motion, dt: f64) -> f64 {
+fn needed(last: Setpoint, wanted: Setpoint, dt: f64) -> f64 {
     let ahead = wanted.angle - last.angle - last.speed * dt;
     ((wanted.speed - last.speed) / dt).abs().max((ahead / (dt * dt)).abs()) / ROUNDING
 }
 
 /// The motion with at most `most` \[rad/s^2\] that leads to `wanted`.
-fn accelerated(joint: &Joint, most: f64, last: Motion, wanted: Motion, dt: f64) -> Motion {
+fn accelerated(joint: &Joint, most: f64, last: Setpoint, wanted: Setpoint, dt: f64) -> Setpoint {
     if needed(last, wanted, dt) <= most {
         return wanted;
     }
@@ -79,7 +79,7 @@ fn accelerated(joint: &Joint, most: f64, last: Motion, wanted: Motion, dt: f64) 
     let speed = wanted.speed + in_time.copysign(ahead);
     let speed = speed.clamp(last.speed - most * dt, last.speed + most * dt);
     let speed = speed.clamp(-joint.speed_limit, joint.speed_limit);
-    Motion { angle: last.angle + 0.5 * (last.speed + speed) * dt, speed }
+    Setpoint { angle: last.angle + 0.5 * (last.speed + speed) * dt, speed }
 }
 
 /// Largest allowed distance between target and measured angle at a joint speed: a floor plus a delay (scales with
@@ -107,30 +107,30 @@ mod tests {
 
     #[test]
     fn a_target_in_range_passes_unchanged() {
-        let wanted = Motion { angle: 0.504, speed: 4.0 };
+        let wanted = Setpoint { angle: 0.504, speed: 4.0 };
         assert_eq!(
-            admit(&joint(), || 200.0, Motion { angle: 0.5, speed: 4.0 }, wanted, 1e-3),
+            admit(&joint(), || 200.0, Setpoint { angle: 0.5, speed: 4.0 }, wanted, 1e-3),
             Ok((wanted, false))
         );
     }
 
     #[test]
     fn a_joint_outside_of_its_range_may_come_back() {
-        let last = Motion { angle: -0.3, speed: 0.0 };
+        let last = Setpoint { angle: -0.3, speed: 0.0 };
         let joint = Joint { acceleration: f64::INFINITY, ..joint() };
         let (m, held) =
-            admit(&joint, || f64::INFINITY, last, Motion { angle: -0.295, speed: 5.0 }, 1e-3).unwrap();
+            admit(&joint, || f64::INFINITY, last, Setpoint { angle: -0.295, speed: 5.0 }, 1e-3).unwrap();
         assert!(!held && m.angle == -0.295);
         let (m, held) =
-            admit(&joint, || f64::INFINITY, last, Motion { angle: -0.305, speed: -5.0 }, 1e-3).unwrap();
+            admit(&joint, || f64::INFINITY, last, Setpoint { angle: -0.305, speed: -5.0 }, 1e-3).unwrap();
         assert!(held && m.angle == -0.3 && m.speed == 0.0);
     }
 
     /// A step of the target by half a radian: the drive's acceleration is kept, the target met and not passed.
     #[test]
     fn a_target_that_jumps_is_followed_as_fast_as_the_drive_can_and_met() {
-        let (j, target) = (joint(), Motion { angle: 1.0, speed: 0.0 });
-        let mut last = Motion { angle: 0.5, speed: 0.0 };
+        let (j, target) = (joint(), Setpoint { angle: 1.0, speed: 0.0 });
+        let mut last = Setpoint { angle: 0.5, speed: 0.0 };
         let mut cycles = 0;
         while last != target {
             let (next, held) = admit(&j, || 200.0, last, target, 1e-3).unwrap();
@@ -162,8 +162,8 @@ mod tests {
         #[test]
         fn whatever_is_asked_stays_within_range_and_rate(angle in any_f64(), speed in any_f64(), last in -0.1..2.0f64) {
             let j = joint();
-            match admit(&j, || 200.0, Motion { angle: last, speed: 0.0 }, Motion { angle, speed }, 1e-3) {
-                Err(Refusal::NotFinite) => prop_assert!(!(angle.is_finite() && speed.is_finite())),
+            match admit(&j, || 200.0, Setpoint { angle: last, speed: 0.0 }, Setpoint { angle, speed }, 1e-3) {
+                Err(TargetRefusal::NotFinite) => prop_assert!(!(angle.is_finite() && speed.is_finite())),
                 Err(other) => prop_assert!(false, "{other:?}"),
                 Ok((m, held)) => {
                     prop_assert!(angle.is_finite() && speed.is_finite());

@@ -1,4 +1,4 @@
-//! What the joint loop believes of the bus, node by node, and when it no longer believes.
+//! Guard of the lines: sensor data that the joint loop believes, node by node, and its reaction to missing frames.
 //!
 //! | cycles without all frames of a node | reaction |
 //! |---|---|
@@ -18,7 +18,7 @@ use fieldbus::{ErrorFrame, ErrorState};
 use messages::event::Refused;
 use messages::{BusCounters, BusFrames, EventCode, Sensors};
 
-use crate::reading::{Bounds, Readings, copy_joint};
+use crate::reading::{ReadingBounds, Readings, copy_joint};
 
 /// Room for events of one cycle.
 const EVENTS: usize = 8;
@@ -29,14 +29,14 @@ const ENABLED: u32 = 0x27;
 
 /// One local controller, with the line it is on.
 #[derive(Clone, Debug, Default)]
-struct Node {
+struct GuardedNode {
     reads: Readings,
     /// Cycles in a row in which not all came.
     missed: u32,
     /// The robot can walk without it: it is held, and nobody stops.
     spare: bool,
     /// Something came since the start.
-    heard: bool,
+    known: bool,
     /// State of lowlevel's controller on its line.
     line: ErrorState,
 }
@@ -44,42 +44,44 @@ struct Node {
 /// Guards the readings of one robot.
 #[derive(Clone, Debug)]
 pub(crate) struct LineGuard {
-    bounds: Bounds,
+    bounds: ReadingBounds,
     carried_on: u32,
     missed: u32,
-    nodes: Vec<Node>,
+    nodes: Vec<GuardedNode>,
     /// Node that reads each joint.
     node_of: [usize; messages::MAX_JOINTS],
     /// Drives that said once that they are not enabled.
     doubted: [bool; messages::MAX_JOINTS],
     /// Joints that said once that they found out where they are, or that they no longer know.
     referenced: [bool; messages::MAX_JOINTS],
-    /// What is believed of this cycle before it is heard.
+    /// Sensor data expected in this cycle, before its frames are read.
     believed: Sensors,
     counters: BusCounters,
     /// Frames of a whole cycle.
     frames: u64,
-    /// How often a node went missing.
+    /// Number of times a node went missing.
     gaps: u64,
-    /// How often frames were refused, by [`Refused`].
+    /// Number of times frames were refused, by [`Refused`].
     refused: [u64; 6],
     layout: Layout,
     events: [(EventCode, u64); EVENTS],
-    told: usize,
+    pending: usize,
 }
 
 impl LineGuard {
     pub(crate) fn new(robot: &Robot, system: &System, dt: f64) -> Self {
+        // Nodes by what they read; each joint is read by one of them.
         let spare = |i: usize| robot.spare.contains(&i);
         let nodes = Readings::of(robot).into_iter().enumerate();
-        let nodes: Vec<Node> =
-            nodes.map(|(i, reads)| Node { reads, spare: spare(i), ..Node::default() }).collect();
+        let nodes: Vec<GuardedNode> = nodes
+            .map(|(i, reads)| GuardedNode { reads, spare: spare(i), ..GuardedNode::default() })
+            .collect();
         let mut node_of = [0; messages::MAX_JOINTS];
         for (i, node) in nodes.iter().enumerate() {
             node.reads.joints.iter().for_each(|&j| node_of[j] = i);
         }
         Self {
-            bounds: Bounds::new(robot, system.bus, dt),
+            bounds: ReadingBounds::new(robot, system.bus, dt),
             carried_on: system.bus.carried_on,
             missed: system.bus.missed,
             nodes,
@@ -93,20 +95,20 @@ impl LineGuard {
             refused: [0; 6],
             layout: robot.layout.clone(),
             events: [(EventCode::None, 0); EVENTS],
-            told: 0,
+            pending: 0,
         }
     }
 
-    /// Before the frames of a cycle are read: what is believed of it without them.
+    /// Before the frames of a cycle are read: expects its sensor data without them.
     pub(crate) fn expect(&mut self, sensors: &mut Sensors) {
-        for node in self.nodes.iter().filter(|node| node.heard) {
+        for node in self.nodes.iter().filter(|node| node.known) {
             self.bounds.carry_on(&node.reads, node.missed < self.carried_on, sensors);
         }
         self.believed = *sensors;
     }
 
-    /// After they were read: which nodes were heard, and what of it can be, `skipped` cycles of the joint loop's own after
-    /// the last one.
+    /// After they were read: finds the nodes that are complete, and puts back readings that cannot be, `skipped` cycles of
+    /// the joint loop's own after the last one.
     pub(crate) fn judge(
         &mut self,
         frames: Option<&BusFrames>,
@@ -115,6 +117,8 @@ impl LineGuard {
         sensors: &mut Sensors,
     ) {
         let powered = self.believed.power == 1;
+        // Frames as such: error frames, counters. The supply is one bit, so a change of it goes by the vote of all nodes,
+        // and first, for what follows depends on it.
         match frames {
             Some(frames) => {
                 self.read_errors(frames);
@@ -125,13 +129,16 @@ impl LineGuard {
             }
             None => self.counters.lost += self.frames,
         }
+        // Readings, node by node. A joint that has just found its reference may jump, so these are known before any jump
+        // is judged.
         let found = if powered { self.doubt_references(sensors) } else { [false; messages::MAX_JOINTS] };
         for i in 0..self.nodes.len() {
             let node = &self.nodes[i];
-            let mut heard = frames.is_some() && received.complete(i);
+            let mut complete = frames.is_some() && received.complete(i);
             // Without power a joint may be moved by hand, and nobody acts on what is read.
-            let check = powered && node.heard;
+            let check = powered && node.known;
             let cycles = node.missed.saturating_add(skipped).saturating_add(1);
+            // One reading that cannot be makes the whole node doubtful: its frames have one source.
             if check && !self.bounds.believes(&node.reads, &self.believed, sensors, cycles, &found) {
                 node.reads.copy(&self.believed, sensors);
                 for &j in node.reads.joints.iter().filter(|j| found[**j]) {
@@ -139,10 +146,11 @@ impl LineGuard {
                     self.referenced[j] = true;
                 }
                 self.refuse(Refused::Jump, 1);
-                heard = false;
+                complete = false;
             }
-            self.hear(i, heard, sensors.power == 1);
+            self.note(i, complete, sensors.power == 1);
         }
+        // States last: of the statuswords that were not put back.
         self.doubt_states(sensors);
     }
 
@@ -162,7 +170,7 @@ impl LineGuard {
     /// it says so, as a bent bit says it once; until then its angle is carried on. Returns the joints that are believed now.
     fn doubt_references(&mut self, sensors: &mut Sensors) -> [bool; messages::MAX_JOINTS] {
         let mut found = [false; messages::MAX_JOINTS];
-        let known = self.nodes.iter().filter(|node| node.heard);
+        let known = self.nodes.iter().filter(|node| node.known);
         for &j in known.flat_map(|node| &node.reads.joints) {
             let referenced = &mut self.referenced[j];
             let turned = (self.believed.drive_status[j] ^ sensors.drive_status[j]) & u32::from(REFERENCED);
@@ -181,7 +189,7 @@ impl LineGuard {
         if let Some(line) = self.off() {
             return Some((EventCode::BusOff, line as u64));
         }
-        let silent = |node: &Node| node.missed > self.missed;
+        let silent = |node: &GuardedNode| node.missed > self.missed;
         let i = self.nodes.iter().position(|node| silent(node) && !node.spare)?;
         let cycles = self.nodes[i].missed;
         match self.nodes.iter().all(silent) {
@@ -195,12 +203,12 @@ impl LineGuard {
         self.nodes.iter().position(|node| node.line == ErrorState::Off)
     }
 
-    /// Whether the robot can walk without the node of a joint.
+    /// True if the robot can walk without the node of a joint.
     pub(crate) fn spares(&self, joint: usize) -> bool {
         self.nodes[self.node_of[joint]].spare
     }
 
-    /// Whether a joint was read in this cycle.
+    /// True if a joint was read in this cycle.
     pub(crate) fn reads(&self, joint: usize) -> bool {
         self.nodes[self.node_of[joint]].missed == 0
     }
@@ -211,44 +219,45 @@ impl LineGuard {
 
     /// Something worth a line in the log, since the last call; what came first comes first.
     pub(crate) fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        let first = *self.events[..self.told].first()?;
-        self.events.copy_within(1..self.told, 0);
-        self.told -= 1;
+        let first = *self.events[..self.pending].first()?;
+        self.events.copy_within(1..self.pending, 0);
+        self.pending -= 1;
         Some(first)
     }
 
-    /// More than there is room for is not told, but counted.
-    fn tell(&mut self, code: EventCode, detail: u64) {
-        if let Some(room) = self.events.get_mut(self.told) {
+    /// Reports an event; more than there is room for is not reported, but counted.
+    fn report(&mut self, code: EventCode, detail: u64) {
+        if let Some(room) = self.events.get_mut(self.pending) {
             *room = (code, detail);
-            self.told += 1;
+            self.pending += 1;
         }
     }
 
-    /// A node was heard in this cycle, or not.
-    fn hear(&mut self, i: usize, heard: bool, powered: bool) {
+    /// Notes that all frames of a node came in this cycle, or not.
+    fn note(&mut self, i: usize, complete: bool, powered: bool) {
         let node = &mut self.nodes[i];
-        let (was, known) = (node.missed, node.heard);
-        node.heard |= heard;
-        node.missed = if heard { 0 } else { was.saturating_add(1) };
+        let (was, known) = (node.missed, node.known);
+        node.known |= complete;
+        node.missed = if complete { 0 } else { was.saturating_add(1) };
         let missed = node.missed;
-        if heard && node.line == ErrorState::Off && !powered {
-            node.line = ErrorState::Active; // heard while the supply is off: its controller was started again
-            self.tell(EventCode::BusActive, i as u64);
+        if complete && node.line == ErrorState::Off && !powered {
+            node.line = ErrorState::Active; // it sends while the supply is off: its controller was started again
+            self.report(EventCode::BusActive, i as u64);
         }
         if !known {
             return;
         }
+        // Gaps at a falling rate, so that a bad line does not fill the log; what the joints notice, each time.
         if missed == 1 {
             self.gaps += 1;
             if self.gaps.is_power_of_two() {
-                self.tell(EventCode::FramesLost, i as u64);
+                self.report(EventCode::FramesLost, i as u64);
             }
         }
         if missed == self.carried_on + 1 {
-            self.tell(EventCode::NodeHeld, detail(i, missed));
-        } else if heard && was > self.carried_on {
-            self.tell(EventCode::NodeBack, detail(i, was));
+            self.report(EventCode::NodeHeld, detail(i, missed));
+        } else if complete && was > self.carried_on {
+            self.report(EventCode::NodeBack, detail(i, was));
         }
     }
 
@@ -262,7 +271,7 @@ impl LineGuard {
         self.refuse(Refused::Unknown, received.unknown);
     }
 
-    /// Frames or readings that are not used; told at the first, second, fourth, eighth ... time.
+    /// Counts frames or readings that are not used; reported at the first, second, fourth, eighth ... time.
     fn refuse(&mut self, why: Refused, frames: u32) {
         if frames == 0 {
             return;
@@ -273,11 +282,11 @@ impl LineGuard {
         let times = &mut self.refused[why as usize];
         *times += 1;
         if times.is_power_of_two() {
-            self.tell(EventCode::FrameRefused, why as u64);
+            self.report(EventCode::FrameRefused, why as u64);
         }
     }
 
-    /// What lowlevel's bus controllers say about their lines.
+    /// Error frames of lowlevel's own bus controllers.
     fn read_errors(&mut self, frames: &BusFrames) {
         for frame in frames.as_slice() {
             let Some(error) = ErrorFrame::read(frame) else { continue };
@@ -295,11 +304,11 @@ impl LineGuard {
                 ErrorState::Passive => EventCode::BusPassive,
                 ErrorState::Off => EventCode::BusOff,
             };
-            self.tell(code, frame.line.into());
+            self.report(code, frame.line.into());
         }
     }
 
-    /// Whether most nodes say that the supply is on: one flipped bit neither stops the robot nor wakes it.
+    /// Vote of the nodes on the supply: one flipped bit neither stops the robot nor wakes it.
     fn most_say_powered(&self, frames: &BusFrames) -> bool {
         let mut votes = 0;
         for frame in frames.as_slice() {

@@ -1,4 +1,4 @@
-//! What a reading may be: the next one of a joint, a foot or the upper body is not far from the last.
+//! Plausibility of readings: the next one of a joint, a foot or the upper body is not far from the last.
 //!
 //! A checksum lets some flipped bits pass, and a counter does not see them. What they do to a number is seen only if it is
 //! more than the robot can do in the time since the last reading.
@@ -21,7 +21,7 @@ const PLAY: f64 = 0.005;
 /// \[m/s^2\] Most the specific force changes in one cycle: a foot stamps. In a walk it changes by 65.
 const SHOCK: f64 = 200.0;
 
-/// What a node reads.
+/// Readings of a node.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Readings {
     pub(crate) joints: Vec<usize>,
@@ -31,7 +31,7 @@ pub(crate) struct Readings {
 
 /// The bounds of a robot.
 #[derive(Clone, Debug)]
-pub(crate) struct Bounds {
+pub(crate) struct ReadingBounds {
     dt: f64,
     limits: BusLimits,
     speed: [f64; MAX_JOINTS],
@@ -40,7 +40,7 @@ pub(crate) struct Bounds {
     force: f64,
 }
 
-/// Copies what is read of a joint.
+/// Copies the readings of a joint.
 pub(crate) fn copy_joint(j: usize, from: &Sensors, to: &mut Sensors) {
     to.joint_angle[j] = from.joint_angle[j];
     to.joint_speed[j] = from.joint_speed[j];
@@ -49,7 +49,7 @@ pub(crate) fn copy_joint(j: usize, from: &Sensors, to: &mut Sensors) {
 }
 
 impl Readings {
-    /// What each node of the robot's bus reads.
+    /// Readings of each node of the robot's bus.
     pub(crate) fn of(robot: &Robot) -> Vec<Self> {
         let mut all = vec![Self::default(); robot.layout.nodes.len()];
         for message in robot.layout.sent(false) {
@@ -66,7 +66,7 @@ impl Readings {
         all
     }
 
-    /// Copies what the node reads.
+    /// Copies the readings of the node.
     pub(crate) fn copy(&self, from: &Sensors, to: &mut Sensors) {
         for &j in &self.joints {
             copy_joint(j, from, to);
@@ -80,7 +80,7 @@ impl Readings {
     }
 }
 
-impl Bounds {
+impl ReadingBounds {
     pub(crate) fn new(robot: &Robot, limits: BusLimits, dt: f64) -> Self {
         let (mut speed, mut range) = ([0.0; MAX_JOINTS], [[0.0; 2]; MAX_JOINTS]);
         for (j, joint) in robot.joints.iter().enumerate() {
@@ -109,7 +109,7 @@ impl Bounds {
         }
     }
 
-    /// Whether what a node reads can be, `cycles` after what was believed `before`; the angle of a joint that has just
+    /// True if what a node reads can be, `cycles` after what was believed `before`; the angle of a joint that has just
     /// `found` out where it is can be any.
     pub(crate) fn believes(
         &self,

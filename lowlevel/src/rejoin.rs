@@ -3,7 +3,7 @@
 //! While targets are missing a joint is carried on at its last speed. When they come again they lie elsewhere: the difference
 //! in angle and speed is kept as an offset, and dies out as a critically damped motion x'' = -2 w x' - w^2 x.
 
-use crate::limits::Motion;
+use crate::limits::Setpoint;
 
 /// \[1/s\] w: an offset has died out after a tenth of a second, and asks for no more than a step does.
 const RATE: f64 = 40.0;
@@ -13,25 +13,25 @@ const GONE: (f64, f64) = (1e-7, 1e-5);
 /// Offset of one joint from its targets.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Rejoin {
-    offset: Option<Motion>,
+    offset: Option<Setpoint>,
 }
 
 impl Rejoin {
     /// Targets come again: at the end of this cycle the joint is where it would be without them, `carried`.
-    pub(crate) fn begin(&mut self, carried: Motion, target: Motion) {
-        let offset = Motion { angle: carried.angle - target.angle, speed: carried.speed - target.speed };
+    pub(crate) fn begin(&mut self, carried: Setpoint, target: Setpoint) {
+        let offset = Setpoint { angle: carried.angle - target.angle, speed: carried.speed - target.speed };
         self.offset = (offset.angle.is_finite() && offset.speed.is_finite()).then_some(offset);
     }
 
     /// Each cycle of `dt` after that \[s\]: the target with what is left of the offset.
-    pub(crate) fn step(&mut self, target: Motion, dt: f64) -> Motion {
+    pub(crate) fn step(&mut self, target: Setpoint, dt: f64) -> Setpoint {
         let Some(o) = self.offset else { return target };
         let decay = (-RATE * dt).exp();
         let b = o.speed + RATE * o.angle;
-        let next = Motion { angle: (o.angle + b * dt) * decay, speed: (o.speed - RATE * b * dt) * decay };
+        let next = Setpoint { angle: (o.angle + b * dt) * decay, speed: (o.speed - RATE * b * dt) * decay };
         let gone = next.angle.abs() < GONE.0 && next.speed.abs() < GONE.1;
         self.offset = (!gone).then_some(next);
-        Motion { angle: target.angle + next.angle, speed: target.speed + next.speed }
+        Setpoint { angle: target.angle + next.angle, speed: target.speed + next.speed }
     }
 
     /// No offset left: targets are followed as they are.
@@ -55,11 +55,11 @@ mod tests {
     #[test]
     fn the_offset_dies_out_critically_damped() {
         let mut rejoin = Rejoin::default();
-        let start = Motion { angle: 0.005, speed: -0.3 };
-        rejoin.begin(start, Motion { angle: 0.0, speed: 0.0 });
+        let start = Setpoint { angle: 0.005, speed: -0.3 };
+        rejoin.begin(start, Setpoint { angle: 0.0, speed: 0.0 });
         let (mut x, mut v) = (start.angle, start.speed);
         for cycle in 0..100 {
-            let m = rejoin.step(Motion { angle: 0.0, speed: 0.0 }, DT);
+            let m = rejoin.step(Setpoint { angle: 0.0, speed: 0.0 }, DT);
             for _ in 0..1000 {
                 let a = -2.0 * 40.0 * v - 40.0 * 40.0 * x;
                 x += v * DT / 1000.0;
@@ -75,9 +75,9 @@ mod tests {
     #[test]
     fn it_begins_where_the_joint_was_and_ends_on_the_target() {
         let mut rejoin = Rejoin::default();
-        let target = Motion { angle: 1.0, speed: 2.0 };
+        let target = Setpoint { angle: 1.0, speed: 2.0 };
         assert_eq!(rejoin.step(target, DT), target, "nothing to make good for");
-        rejoin.begin(Motion { angle: 1.01, speed: 1.5 }, target);
+        rejoin.begin(Setpoint { angle: 1.01, speed: 1.5 }, target);
         // The target stands still, so the offset alone moves: with its speed, and braked by 2 w x' and w^2 x.
         let first = rejoin.step(target, DT);
         assert!(
@@ -89,7 +89,7 @@ mod tests {
             last = rejoin.step(target, DT);
         }
         assert_eq!(last, target, "to the bit");
-        rejoin.begin(Motion { angle: f64::NAN, speed: 0.0 }, target);
+        rejoin.begin(Setpoint { angle: f64::NAN, speed: 0.0 }, target);
         assert_eq!(rejoin.step(target, DT), target);
     }
 }

@@ -1,17 +1,14 @@
-//! The near end of a Sercos ring: the master.
+//! Near end of a Sercos ring: the master.
 
 use std::error::Error;
 use std::time::Duration;
 
-use codec::layout::Layout;
-use daemon::Daemon;
-use ipc::Waiter;
 use messages::{BusFrames, EventCode};
 use realtime::clock;
 use sercos::packing::{Interfaces, Packing, stations};
 use sercos::{Event, Near, Setup, Stage};
 
-use crate::Fieldbus;
+use crate::fieldbus::{BusSettings, Fieldbus, RunControl};
 
 /// In lockstep: between two looks whether to end.
 const LOOK: u64 = clock::SECOND / 50;
@@ -23,7 +20,7 @@ const UNDER_WAY: u64 = 3 * clock::SECOND / 1000;
 /// A ring or line of slaves, one for each local controller.
 pub(crate) struct SercosBus {
     near: Near,
-    layout: Layout,
+    settings: BusSettings,
     commands: Packing,
     feedback: Packing,
     rx: BusFrames,
@@ -33,41 +30,34 @@ pub(crate) struct SercosBus {
     open: bool,
     /// The motor supply is off.
     idle: bool,
-    period_ns: u64,
-    /// \[ns\] How long the first answer is waited for in lockstep.
-    patience: u64,
 }
 
 impl SercosBus {
     /// Opens the interfaces. Nothing is sent.
-    pub(crate) fn new(d: &Daemon, place: &str) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn new(settings: BusSettings, place: &str) -> Result<Self, Box<dyn Error>> {
         let Interfaces { near: (first, second), .. } = place.parse()?;
-        let layout = d.setup.robot.layout.clone();
-        let losses = d.setup.system.targets_missed as u16;
         let setup = Setup {
-            cycle: u32::try_from(d.period_ns())?,
-            losses,
-            beat_losses: losses,
-            stations: stations(&layout),
+            cycle: u32::try_from(settings.period_ns)?,
+            losses: settings.losses,
+            beat_losses: settings.losses,
+            stations: stations(&settings.layout),
             ports: [None; 2],
         };
         let near = Near::open(&first, second.as_deref(), setup)?;
         Ok(Self {
             near,
-            commands: Packing::new(&layout, true),
-            feedback: Packing::new(&layout, false),
-            layout,
+            commands: Packing::new(&settings.layout, true),
+            feedback: Packing::new(&settings.layout, false),
             rx: BusFrames::default(),
             asked: 0,
             open: false,
             idle: true,
-            period_ns: d.period_ns(),
-            patience: d.patience().as_nanos() as u64,
+            settings,
         })
     }
 
     fn nodes(&self) -> usize {
-        self.layout.nodes.len()
+        self.settings.layout.nodes.len()
     }
 
     /// The frames of the cycle that has just ended.
@@ -77,7 +67,7 @@ impl SercosBus {
         self.rx.header.tick = self.asked;
         for node in 0..self.nodes() {
             if let Some(data) = self.near.master().feedback(node) {
-                self.feedback.unpack(&self.layout, node, data, &mut self.rx);
+                self.feedback.unpack(&self.settings.layout, node, data, &mut self.rx);
             }
         }
     }
@@ -94,37 +84,38 @@ impl SercosBus {
 
     /// One cycle of the start; of real time in lockstep, too: whoever is switched on needs it.
     fn start_cycle(&mut self, begun: u64) -> Stage {
-        clock::sleep_until(begun + self.period_ns);
+        clock::sleep_until(begun + self.settings.period_ns);
         self.near.send();
         self.near.receive_all(UNDER_WAY)
     }
 }
 
 impl Fieldbus for SercosBus {
-    fn start(&mut self, d: &Daemon) -> Result<bool, Box<dyn Error>> {
-        let mut heard = vec![false; self.nodes()];
+    fn start(&mut self, run: &dyn RunControl) -> Result<bool, Box<dyn Error>> {
+        let mut received = vec![false; self.nodes()];
         let begun = clock::now();
-        while !d.stop.asked() {
+        while !run.is_ending() {
             match self.start_cycle(clock::now()) {
                 Stage::Failed(trouble) => return Err(format!("lowlevel: {trouble}").into()),
                 Stage::Starting(_) => continue,
                 Stage::Running => {}
             }
-            for (node, heard) in heard.iter_mut().enumerate() {
-                if let Some(data) = self.near.master().feedback(node).filter(|_| !*heard) {
-                    self.feedback.unpack(&self.layout, node, data, &mut self.rx);
-                    *heard = true;
+            // The first data of each slave: where its drives are, before anything is commanded.
+            for (node, received) in received.iter_mut().enumerate() {
+                if let Some(data) = self.near.master().feedback(node).filter(|_| !*received) {
+                    self.feedback.unpack(&self.settings.layout, node, data, &mut self.rx);
+                    *received = true;
                 }
             }
-            if heard.iter().all(|heard| *heard) {
+            if received.iter().all(|received| *received) {
                 return Ok(true);
             }
-            if clock::now() - begun > self.patience + 10 * clock::SECOND {
-                let silent = heard.iter().position(|heard| !heard).unwrap_or(0);
+            if clock::now() - begun > self.settings.patience_ns + 10 * clock::SECOND {
+                let silent = received.iter().position(|received| !received).unwrap_or(0);
                 return Err(format!(
                     "lowlevel: sercos: slave {} ({}) is in CP4 and sends no data; switch it off and on",
                     silent + 1,
-                    self.layout.nodes[silent]
+                    self.settings.layout.nodes[silent]
                 )
                 .into());
             }
@@ -139,7 +130,7 @@ impl Fieldbus for SercosBus {
     fn send(&mut self, frames: &BusFrames) {
         self.take_back();
         self.asked = frames.header.tick;
-        self.commands.pack(&self.layout, frames);
+        self.commands.pack(&self.settings.layout, frames);
         for node in 0..self.nodes() {
             if let Some(data) = self.commands.data(node) {
                 self.near.master_mut().set_command(node, data);
@@ -157,17 +148,17 @@ impl Fieldbus for SercosBus {
         (self.asked > 0 || self.rx.count > 0).then_some(&self.rx)
     }
 
-    fn wait(&mut self, d: &Daemon, _: &Waiter, _: u64) -> Result<bool, Box<dyn Error>> {
+    fn wait(&mut self, run: &dyn RunControl, _: u64) -> Result<bool, Box<dyn Error>> {
         let begun = clock::now();
-        while self.open && !d.stop.asked() {
+        while self.open && !run.is_ending() {
             let waited = clock::now() - begun;
             if self.near.drain() || self.near.master().has_some() && waited > GRACE {
                 self.near.end();
                 self.unpack();
                 return Ok(true);
             }
-            if waited > self.patience {
-                let seconds = Duration::from_nanos(self.patience).as_secs_f64();
+            if waited > self.settings.patience_ns {
+                let seconds = Duration::from_nanos(self.settings.patience_ns).as_secs_f64();
                 return Err(format!(
                     "lowlevel: no telegram came back from the Sercos slaves within {seconds} s; are they running, and \
                      their cables plugged?"
@@ -176,7 +167,7 @@ impl Fieldbus for SercosBus {
             }
             self.near.wait(LOOK);
         }
-        Ok(!d.stop.asked())
+        Ok(!run.is_ending())
     }
 
     fn take_event(&mut self) -> Option<(EventCode, u64)> {
@@ -188,7 +179,7 @@ impl Fieldbus for SercosBus {
                 }
                 Event::RingClosed => return Some((EventCode::RingClosed, 0)),
                 Event::Restart => return Some((EventCode::BusRestart, 0)),
-                // Silent nodes are told by the joint loop, on every bus the same.
+                // Silent nodes are reported by the joint loop, on every bus the same.
                 Event::Phase(_) | Event::Lost(_) | Event::Back(_) => {}
             }
         }

@@ -1,11 +1,12 @@
-//! The simulated field bus: frames through shared memory.
+//! Simulated field bus: frames through shared memory.
 
-use daemon::Daemon;
-use ipc::{IpcError, Mode, Reader, Waiter, Writer};
+use std::error::Error;
+
+use ipc::{IpcError, Reader, Space, Writer};
 use messages::BusFrames;
 use messages::topics::{BUS_RX, BUS_TX};
 
-use crate::Fieldbus;
+use crate::fieldbus::{Fieldbus, RunControl};
 
 /// The bus whose far end is the process sim-backend.
 pub(crate) struct SimulatedBus {
@@ -16,8 +17,8 @@ pub(crate) struct SimulatedBus {
 
 impl SimulatedBus {
     /// Opens both directions.
-    pub(crate) fn new(d: &Daemon) -> Result<Self, IpcError> {
-        Ok(Self { tx: d.space.writer(&BUS_TX)?, rx: d.space.reader(&BUS_RX)?, new: false })
+    pub(crate) fn new(space: &Space) -> Result<Self, IpcError> {
+        Ok(Self { tx: space.writer(&BUS_TX)?, rx: space.reader(&BUS_RX)?, new: false })
     }
 }
 
@@ -31,11 +32,10 @@ impl Fieldbus for SimulatedBus {
         self.rx.held().filter(|_| new)
     }
 
-    fn wait(&mut self, d: &Daemon, waiter: &Waiter, tick: u64) -> Result<bool, Box<dyn std::error::Error>> {
-        debug_assert!(d.mode == Mode::Lockstep);
+    fn wait(&mut self, run: &dyn RunControl, tick: u64) -> Result<bool, Box<dyn Error>> {
         let rx = &mut self.rx;
         let answered =
-            d.wait(waiter, "sim-backend", || rx.latest().is_some_and(|f| f.header.tick == tick))?;
+            run.wait_for("sim-backend", &mut || rx.latest().is_some_and(|f| f.header.tick == tick))?;
         self.new = answered;
         Ok(answered)
     }

@@ -1,5 +1,5 @@
-//! The way from a robot without power to one that may walk. Pure: sensor data of a cycle and commands in, what the drives
-//! are to be told out.
+//! The way from a robot without power to one that may walk. Pure: sensor data of a cycle and commands in, demands on
+//! the drives out.
 //!
 //! ```text
 //!  Off ──supply on──► NotHomed ──joint/home──► Homing ──► Enabling ──► Hanging ──joint/zero_force──► Zeroed
@@ -24,15 +24,15 @@ const LANDED: f64 = 0.9;
 const LANDED_CYCLES: u32 = 100;
 /// Readings of which the zero of a force sensor is the mean.
 const ZERO_CYCLES: u32 = 100;
-/// Cycles for switching all drives on; after these somebody is told.
+/// Cycles for switching all drives on; after these it is reported.
 const ENABLE_CYCLES: u32 = 100;
 /// Cycles for which a reset is passed on to drives with a fault.
 const RESET_CYCLES: u32 = 100;
 
 /// Force sensors that are set to zero.
 #[derive(Clone, Debug, Default)]
-struct Zero {
-    /// What is taken away; right, left.
+struct ForceZero {
+    /// Offsets that are taken away; right, left.
     offset: [Wrench; 2],
     sum: [[f64; 6]; 2],
     /// Readings still to come; 0: none is asked for.
@@ -48,8 +48,8 @@ pub struct StartUpSequence {
     weight: f64,
     /// \[N\] Most that both feet carried since the supply is on.
     most_load: f64,
-    zero: Zero,
-    /// What the force sensors read; right, left.
+    zero: ForceZero,
+    /// Raw readings of the force sensors; right, left.
     raw: [Wrench; 2],
     /// Cycles in this state, and cycles in which the feet carried.
     cycles: u32,
@@ -66,7 +66,7 @@ impl StartUpSequence {
             joints,
             weight,
             most_load: 0.0,
-            zero: Zero::default(),
+            zero: ForceZero::default(),
             raw: Default::default(),
             cycles: 0,
             landed: 0,
@@ -80,7 +80,7 @@ impl StartUpSequence {
         self.state
     }
 
-    /// What happened since the last call.
+    /// The event since the last call.
     pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
         self.event.take()
     }
@@ -107,14 +107,14 @@ impl StartUpSequence {
     /// Takes `system/reset`, `joint/home` and `joint/zero_force`; `sensors` as [`Self::receive`] left them.
     ///
     /// # Errors
-    /// Why it does not do what it is told.
+    /// Why it is refused.
     pub fn command(&mut self, command: &Command, sensors: &Sensors) -> Verdict {
         match command {
             Command::Reset => self.reset = RESET_CYCLES,
             Command::Home if self.state == StartUp::NotHomed => self.enter(StartUp::Homing),
             Command::Home if self.state == StartUp::Homing => {}
             Command::Home => {
-                self.tell(EventCode::CommandRefused, command.address().1.into());
+                self.report(EventCode::CommandRefused, command.address().1.into());
                 return Err(Reason::NotNow);
             }
             Command::ZeroForce => return self.begin_zero(sensors),
@@ -128,6 +128,7 @@ impl StartUpSequence {
     pub fn step(&mut self, sensors: &Sensors, stopped: bool, spares: impl Fn(usize) -> bool) {
         self.cycles = self.cycles.saturating_add(1);
         self.reset = self.reset.saturating_sub(1);
+        // Drives: the first that does not know its angle, and the first that does not follow.
         let unknown = (0..self.joints).find(|&j| sensors.drive_status[j] & u32::from(REFERENCED) == 0);
         let stands = self.state == StartUp::Standing;
         let off = (0..self.joints).find(|&j| !(is_enabled(sensors, j) || stands && spares(j)));
@@ -136,6 +137,7 @@ impl StartUpSequence {
         self.most_load = if sensors.power == 1 { self.most_load.max(load) } else { 0.0 };
         let carried = load > LANDED * self.weight;
         self.landed = if carried { self.landed.saturating_add(1) } else { 0 };
+        // The drawing above, from the strongest reason to the weakest.
         let next = match self.state {
             _ if sensors.power != 1 => StartUp::Off,
             _ if stopped => StartUp::Stopped,
@@ -152,27 +154,27 @@ impl StartUpSequence {
         };
         match (self.state, next) {
             (StartUp::NotHomed, StartUp::NotHomed) => {}
-            (_, StartUp::NotHomed) => self.tell(EventCode::NotHomed, unknown.unwrap_or(0) as u64),
-            (StartUp::Homing, StartUp::Enabling) => self.tell(EventCode::Homed, self.cycles.into()),
+            (_, StartUp::NotHomed) => self.report(EventCode::NotHomed, unknown.unwrap_or(0) as u64),
+            (StartUp::Homing, StartUp::Enabling) => self.report(EventCode::Homed, self.cycles.into()),
             (StartUp::Enabling, StartUp::Enabling) if self.cycles == ENABLE_CYCLES => {
-                self.tell(EventCode::DriveNotEnabled, off.unwrap_or(0) as u64);
+                self.report(EventCode::DriveNotEnabled, off.unwrap_or(0) as u64);
             }
             _ => {}
         }
         self.enter(next);
     }
 
-    /// Whether targets may be followed.
+    /// True if targets may be followed.
     pub fn ready(&self) -> bool {
         matches!(self.state, StartUp::Hanging | StartUp::Zeroed | StartUp::Standing)
     }
 
-    /// Whether drives are still being switched on, or find their angles.
+    /// True if drives are still being switched on, or find their angles.
     pub fn begins(&self) -> bool {
         matches!(self.state, StartUp::Off | StartUp::NotHomed | StartUp::Homing | StartUp::Enabling)
     }
 
-    /// What is wanted of the drive of joint `j`.
+    /// Demand on the drive of joint `j`.
     pub fn wanted(&self, j: usize, sensors: &Sensors) -> Wanted {
         let unknown = sensors.drive_status[j] & u32::from(REFERENCED) == 0;
         match self.state {
@@ -190,7 +192,7 @@ impl StartUpSequence {
         }
     }
 
-    fn tell(&mut self, code: EventCode, detail: u64) {
+    fn report(&mut self, code: EventCode, detail: u64) {
         self.event.get_or_insert((code, detail));
     }
 
@@ -205,7 +207,7 @@ impl StartUpSequence {
             self.zero.sum = [[0.0; 6]; 2];
             self.zero.left = ZERO_CYCLES;
         } else {
-            self.tell(EventCode::ZeroRefused, load as u64);
+            self.report(EventCode::ZeroRefused, load as u64);
         }
         verdict
     }
@@ -218,7 +220,7 @@ impl StartUpSequence {
         let load = heaviest(sensors);
         if !(load < UNLOADED * self.weight) {
             self.zero.left = 0;
-            return self.tell(EventCode::ZeroRefused, load as u64);
+            return self.report(EventCode::ZeroRefused, load as u64);
         }
         for (sum, w) in self.zero.sum.iter_mut().zip(&sensors.foot_wrench) {
             for (sum, x) in sum.iter_mut().zip(w.force.iter().chain(&w.moment)) {
@@ -230,13 +232,13 @@ impl StartUpSequence {
             let mean = self.zero.sum.map(|sum| sum.map(|x| x / f64::from(ZERO_CYCLES)));
             self.zero.offset = mean.map(|[a, b, c, d, e, f]| Wrench { force: [a, b, c], moment: [d, e, f] });
             let most = mean.iter().flat_map(|m| &m[..3]).fold(0.0f64, |most, x| most.max(x.abs()));
-            self.tell(EventCode::ForceZeroed, most.round() as u64);
+            self.report(EventCode::ForceZeroed, most.round() as u64);
             self.enter(StartUp::Zeroed);
         }
     }
 }
 
-/// Whether the drive of joint `j` follows its targets.
+/// True if the drive of joint `j` follows its targets.
 pub fn is_enabled(sensors: &Sensors, j: usize) -> bool {
     state_of(sensors.drive_status[j] as u16) == Some(State::OperationEnabled)
 }

@@ -7,7 +7,9 @@ use config::{Robot, System};
 use drives::cia402::{self, REFERENCED, status_of};
 use fieldbus::{ErrorFrame, ErrorState, Injector};
 use lowlevel::JointLoop;
-use lowlevel::joint_loop::State;
+use lowlevel::joint_loop::LoopState;
+use codec::frames::{DriveCommand, decode_targets, encode_sensors};
+use codec::layout::Carries;
 use messages::{BusFrames, EventCode, Frame, JointMode, JointTargets, Sensors};
 use proptest::prelude::*;
 
@@ -51,7 +53,7 @@ impl Rig {
             let answer = rig.answer();
             rig.cycle(Some(&answer));
         }
-        assert_eq!(rig.loop_.state(), State::Track);
+        assert_eq!(rig.loop_.state(), LoopState::Track);
         rig.events.clear();
         rig
     }
@@ -148,10 +150,10 @@ fn a_silent_node_is_carried_on_within_bounds_then_held_then_a_stop_that_names_it
         assert!((moved - f64::from(cycle.min(k)) * speed * DT).abs() < 1e-12, "cycle {cycle}: {moved}");
         assert_eq!(rig.seen.joint_speed[j] == 0.0, cycle > k);
         assert!(rig.seen.joint_speed[other] > 0.02, "the others are read");
-        assert_eq!(rig.loop_.state(), State::Track, "cycle {cycle}");
+        assert_eq!(rig.loop_.state(), LoopState::Track, "cycle {cycle}");
     }
     rig.cycle_without(line);
-    assert_eq!(rig.loop_.state(), State::Stop(EventCode::NodeSilent));
+    assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::NodeSilent));
     let detail = |cycles: u32| 1000 * u64::from(line) + u64::from(cycles);
     assert!(rig.events.contains(&(EventCode::FramesLost, line.into())), "{:?}", rig.events);
     assert!(rig.events.contains(&(EventCode::NodeHeld, detail(k + 1))), "{:?}", rig.events);
@@ -171,7 +173,7 @@ fn a_node_that_comes_back_in_time_is_told_and_nobody_stops() {
     }
     let (answer, place) = (rig.answer(), rig.drives.joint_angle[rig.joint(KNEE)]);
     rig.cycle(Some(&answer));
-    assert_eq!(rig.loop_.state(), State::Track);
+    assert_eq!(rig.loop_.state(), LoopState::Track);
     let back = (EventCode::NodeBack, 1000 * u64::from(line) + u64::from(rig.system.bus.missed));
     assert!(rig.events.contains(&back), "{:?}", rig.events);
     assert!((rig.seen.joint_angle[rig.joint(KNEE)] - place).abs() < 2e-9, "read again");
@@ -184,7 +186,7 @@ fn the_robot_walks_on_without_a_node_it_can_spare() {
     for _ in 0..100 {
         rig.cycle_without(line);
     }
-    assert_eq!(rig.loop_.state(), State::Track);
+    assert_eq!(rig.loop_.state(), LoopState::Track);
     assert!(rig.has(EventCode::NodeHeld) && !rig.has(EventCode::NodeSilent), "{:?}", rig.events);
 }
 
@@ -194,7 +196,7 @@ fn a_bus_without_any_frame_is_silent() {
     for _ in 0..=rig.system.bus.missed {
         rig.cycle(None);
     }
-    assert_eq!(rig.loop_.state(), State::Stop(EventCode::BusSilent));
+    assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::BusSilent));
 }
 
 #[test]
@@ -205,7 +207,7 @@ fn a_line_off_the_bus_is_no_power_and_only_the_way_over_power_off_leads_back() {
     let mut answer = rig.answer();
     answer.push(&off);
     rig.cycle(Some(&answer));
-    assert_eq!((rig.loop_.state(), rig.trip), (State::Stop(EventCode::BusOff), EventCode::BusOff as u64));
+    assert_eq!((rig.loop_.state(), rig.trip), (LoopState::Stop(EventCode::BusOff), EventCode::BusOff as u64));
     assert!(rig.events.contains(&(EventCode::BusOff, line.into())), "{:?}", rig.events);
     for _ in 0..50 {
         let answer = rig.answer();
@@ -215,13 +217,17 @@ fn a_line_off_the_bus_is_no_power_and_only_the_way_over_power_off_leads_back() {
     rig.drives.power = 0;
     let answer = rig.answer();
     rig.cycle(Some(&answer));
-    assert_eq!((rig.loop_.state(), rig.trip), (State::Off, 0), "the watchdog's reset edge is let through");
+    assert_eq!(
+        (rig.loop_.state(), rig.trip),
+        (LoopState::Off, 0),
+        "the watchdog's reset edge is let through"
+    );
     rig.drives.power = 1;
     for _ in 0..3 {
         let answer = rig.answer();
         rig.cycle(Some(&answer));
     }
-    assert_eq!((rig.loop_.state(), rig.trip), (State::Track, 0));
+    assert_eq!((rig.loop_.state(), rig.trip), (LoopState::Track, 0));
     assert!(rig.has(EventCode::BusActive));
     let counters = rig.loop_.bus_counters();
     assert_eq!((counters.bus_off, counters.error_frames), (1, 1));
@@ -239,7 +245,7 @@ fn warnings_are_told_once_and_change_nothing() {
         rig.events,
         [(EventCode::BusWarning, 2), (EventCode::BusPassive, 2), (EventCode::BusActive, 2)]
     );
-    assert_eq!(rig.loop_.state(), State::Track);
+    assert_eq!(rig.loop_.state(), LoopState::Track);
     assert_eq!(rig.loop_.bus_counters().error_frames, 4);
 }
 

@@ -4,7 +4,8 @@ use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use config::{Robot, System};
 use drives::cia402::{self, REFERENCED, status_of};
 use lowlevel::JointLoop;
-use lowlevel::joint_loop::State;
+use lowlevel::joint_loop::LoopState;
+use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Sensors};
 use proptest::prelude::*;
 
@@ -37,7 +38,7 @@ impl Rig {
             let still = rig.still();
             rig.cycle(Some(&still));
         }
-        assert_eq!(rig.loop_.state(), State::Track);
+        assert_eq!(rig.loop_.state(), LoopState::Track);
         rig
     }
 
@@ -93,7 +94,7 @@ fn one_nan_in_any_joint_is_a_controlled_stop_that_names_it() {
         let mut bad = rig.still();
         bad.speed[j] = f64::NAN;
         rig.cycle(Some(&bad));
-        assert_eq!(rig.loop_.state(), State::Stop(EventCode::TargetNotFinite));
+        assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::TargetNotFinite));
         assert_eq!(rig.loop_.take_event(), Some((EventCode::TargetNotFinite, j as u64)));
         assert_eq!(rig.last.targets.angle, before);
     }
@@ -112,14 +113,14 @@ fn silence_of_the_controller_is_carried_on_then_stopped_and_stays_stopped() {
         rig.cycle(Some(&moving));
     }
     let mut cycles = 0;
-    while rig.loop_.state() == State::Track {
+    while rig.loop_.state() == LoopState::Track {
         rig.cycle(Some(&moving)); // the same old targets again
         cycles += 1;
         let carried_on = rig.last.targets.speed[5] > 0.49;
-        assert_eq!(carried_on, rig.loop_.state() == State::Track, "carried on at the last speed");
+        assert_eq!(carried_on, rig.loop_.state() == LoopState::Track, "carried on at the last speed");
         assert!(cycles < 100);
     }
-    assert_eq!(rig.loop_.state(), State::Stop(EventCode::TargetsStale));
+    assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::TargetsStale));
     assert_eq!(cycles, System::load(&config::root(None).join("system.toml")).unwrap().targets_missed + 1);
     for _ in 0..100 {
         rig.cycle(None);
@@ -127,14 +128,14 @@ fn silence_of_the_controller_is_carried_on_then_stopped_and_stays_stopped() {
     assert!((0..24).all(|j| rig.last.targets.speed[j] == 0.0), "at rest");
     let still = rig.still();
     rig.cycle(Some(&still));
-    assert_eq!(rig.loop_.state(), State::Stop(EventCode::TargetsStale), "latched while the supply is on");
+    assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::TargetsStale), "latched while the supply is on");
     rig.drives.power = 0;
     rig.cycle(None);
     rig.drives.power = 1;
     rig.cycle(None);
     let still = rig.still();
     rig.cycle(Some(&still));
-    assert_eq!(rig.loop_.state(), State::Track, "free again after the supply was off");
+    assert_eq!(rig.loop_.state(), LoopState::Track, "free again after the supply was off");
 }
 
 #[test]
@@ -164,7 +165,7 @@ fn a_silent_bus_is_a_controlled_stop() {
         t.header.tick = rig.tick;
         rig.cycle_with(None, Some(&t));
     }
-    assert_eq!(rig.loop_.state(), State::Stop(EventCode::BusSilent));
+    assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::BusSilent));
 }
 
 /// A joint loop that was started while the supply was on took zero for the place of all joints, and drove there.
@@ -183,7 +184,7 @@ fn without_power_the_targets_are_where_the_joints_are() {
     let mut wild = rig.still();
     wild.angle[3] += 0.3;
     rig.cycle(Some(&wild));
-    assert_eq!(rig.loop_.state(), State::Off);
+    assert_eq!(rig.loop_.state(), LoopState::Off);
     assert!((rig.last.targets.angle[3] - rig.drives.joint_angle[3]).abs() < 2e-9);
 }
 

@@ -5,7 +5,9 @@ use codec::layout::Carries;
 use config::{Robot, System};
 use drives::cia402::{self, Fault, Inputs, REFERENCED};
 use lowlevel::JointLoop;
-use lowlevel::joint_loop::State;
+use lowlevel::joint_loop::LoopState;
+use codec::frames::{DriveCommand, decode_targets, encode_sensors};
+use codec::layout::Carries;
 use messages::{BusFrames, Command, EventCode, JointMode, JointTargets, Reason, Sensors, StartUp, Verdict};
 
 /// \[N\] Lola's weight.
@@ -170,7 +172,7 @@ fn a_standing_robot_is_on_in_the_cycle_after_its_supply() {
     rig.cycle(None);
     assert_eq!(rig.enabled(), 24, "in the very cycle in which the supply was seen");
     rig.cycles(3);
-    assert_eq!((rig.state(), rig.loop_.state()), (StartUp::Standing, State::Track));
+    assert_eq!((rig.state(), rig.loop_.state()), (StartUp::Standing, LoopState::Track));
     assert!(rig.events.is_empty(), "{:?}", rig.events);
 }
 
@@ -183,7 +185,7 @@ fn a_joint_that_does_not_know_its_angle_keeps_all_drives_off_until_it_was_homed(
     rig.cycles(1000);
     assert_eq!((rig.state(), rig.enabled()), (StartUp::NotHomed, 0));
     assert_eq!(rig.events, [(EventCode::NotHomed, HEAD as u64)], "told once");
-    assert_eq!((rig.said.joint_angle, rig.loop_.state()), (before, State::Hold), "nothing moves");
+    assert_eq!((rig.said.joint_angle, rig.loop_.state()), (before, LoopState::Hold), "nothing moves");
     rig.cycle(Some(Command::Home));
     rig.cycles(10);
     assert_eq!((rig.state(), rig.enabled()), (StartUp::Homing, 1));
@@ -327,7 +329,10 @@ fn a_drive_with_a_fault_is_a_controlled_stop_that_names_it_and_only_a_reset_ends
     rig.cycles(50);
     let named = KNEE as u64 + ((Fault::OverTemperature as u64) << 16);
     assert_eq!(rig.events, [(EventCode::DriveTripped, named)]);
-    assert_eq!((rig.loop_.state(), rig.state()), (State::Stop(EventCode::DriveTripped), StartUp::Stopped));
+    assert_eq!(
+        (rig.loop_.state(), rig.state()),
+        (LoopState::Stop(EventCode::DriveTripped), StartUp::Stopped)
+    );
     assert_eq!(rig.enabled(), 23, "the others hold");
     assert!((0..24).all(|j| rig.told.targets.speed[j] == 0.0));
 
@@ -346,16 +351,16 @@ fn a_fault_behind_a_silent_line_is_named_when_its_frames_come_back() {
     rig.fault = Some((KNEE, Fault::Heartbeat));
     rig.cycles(10);
     (rig.fault, rig.mute) = (None, None);
-    assert_eq!(rig.loop_.state(), State::Stop(EventCode::NodeSilent));
+    assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::NodeSilent));
     let named = (EventCode::DriveTripped, KNEE as u64 + (0x8130 << 16));
     assert!(!rig.events.contains(&named), "nobody has said so yet: {:?}", rig.events);
     rig.cycles(50);
     assert_eq!(rig.events.iter().filter(|event| **event == named).count(), 1, "{:?}", rig.events);
-    assert_eq!((rig.loop_.state(), rig.enabled()), (State::Stop(EventCode::NodeSilent), 23));
+    assert_eq!((rig.loop_.state(), rig.enabled()), (LoopState::Stop(EventCode::NodeSilent), 23));
     rig.again(false);
-    assert_eq!((rig.loop_.state(), rig.enabled()), (State::Stop(EventCode::DriveTripped), 23));
+    assert_eq!((rig.loop_.state(), rig.enabled()), (LoopState::Stop(EventCode::DriveTripped), 23));
     rig.again(true);
-    assert_eq!((rig.state(), rig.loop_.state(), rig.enabled()), (StartUp::Standing, State::Track, 24));
+    assert_eq!((rig.state(), rig.loop_.state(), rig.enabled()), (StartUp::Standing, LoopState::Track, 24));
 }
 
 /// Of each node that can be spared; only a robot that stands goes on.
@@ -368,16 +373,16 @@ fn a_robot_that_stands_goes_on_without_a_drive_it_can_spare() {
     rig.cycles(300);
     let detail = ARM as u64 + (0x8130 << 16);
     assert_eq!(rig.events, [(EventCode::DriveHeld, detail)]);
-    assert_eq!((rig.state(), rig.loop_.state(), rig.enabled()), (StartUp::Standing, State::Track, 23));
+    assert_eq!((rig.state(), rig.loop_.state(), rig.enabled()), (StartUp::Standing, LoopState::Track, 23));
     rig.again(false);
-    assert_eq!(rig.loop_.state(), State::Stop(EventCode::DriveTripped), "it does not begin so");
+    assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::DriveTripped), "it does not begin so");
     rig.again(true);
-    assert_eq!((rig.state(), rig.loop_.state(), rig.enabled()), (StartUp::Standing, State::Track, 24));
+    assert_eq!((rig.state(), rig.loop_.state(), rig.enabled()), (StartUp::Standing, LoopState::Track, 24));
 
     let mut hangs = Rig::on(0.0);
     hangs.fault = Some((ARM, Fault::Heartbeat));
     hangs.cycles(3);
-    assert_eq!(hangs.loop_.state(), State::Stop(EventCode::DriveTripped));
+    assert_eq!(hangs.loop_.state(), LoopState::Stop(EventCode::DriveTripped));
 }
 
 #[test]
@@ -387,7 +392,7 @@ fn a_drive_that_drops_out_or_does_not_come_is_named() {
     rig.drives[KNEE].step(&Inputs::default());
     rig.cycles(4);
     assert_eq!(rig.events, [(EventCode::DriveNotEnabled, KNEE as u64)]);
-    assert_eq!(rig.loop_.state(), State::Stop(EventCode::DriveNotEnabled));
+    assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::DriveNotEnabled));
 
     let mut dead = Rig::new(WEIGHT);
     dead.said.power = 1;

@@ -1,6 +1,6 @@
-//! The far end of the CAN lines: a cycle is whole when every line has been told to synchronize.
+//! Far end of the CAN lines: a cycle is whole when every line has been synchronized.
 //!
-//! A line that lets a cycle pass is broken and is not waited for until it speaks again: what it was told stays missing.
+//! A line that lets a cycle pass is broken and is not waited for until it sends again: its frames stay missing.
 
 use std::error::Error;
 use std::time::Duration;
@@ -34,7 +34,7 @@ struct Gathering {
     frames: BusFrames,
     /// Lines (bits) that were synchronized in it.
     synced: u32,
-    /// Where in the frames each line was.
+    /// Place in the frames at which each line was.
     synced_at: [usize; MAX_NODES],
     /// Lines that are waited for.
     alive: u32,
@@ -42,9 +42,9 @@ struct Gathering {
     tick: u64,
 }
 
-/// What a frame brought.
+/// Result of a frame.
 #[derive(Debug, PartialEq, Eq)]
-enum Step {
+enum FrameResult {
     More,
     Whole,
     /// This line was asked for the state before the first cycle.
@@ -67,9 +67,9 @@ impl CanEnd {
         let count = self.inbox.count as usize;
         for i in 0..count {
             match self.gathering.take(&self.layout, &self.inbox.frames[i]) {
-                Step::More => {}
-                Step::Asked(line) => self.lines.send_on(line, &self.answer),
-                Step::Whole => {
+                FrameResult::More => {}
+                FrameResult::Asked(line) => self.lines.send_on(line, &self.answer),
+                FrameResult::Whole => {
                     self.inbox.frames.copy_within(i + 1..count, 0);
                     self.inbox.count = (count - i - 1) as u64;
                     self.finish();
@@ -155,14 +155,14 @@ impl Gathering {
         }
     }
 
-    fn take(&mut self, layout: &Layout, frame: &Frame) -> Step {
+    fn take(&mut self, layout: &Layout, frame: &Frame) -> FrameResult {
         let sync = layout.find(frame.line, frame.id).map(|i| &layout.messages[i]).filter(|m| m.is_sync());
         let counter = sync
             .filter(|m| m.len == frame.len)
             .and_then(|m| m.signals.iter().find(|s| s.carries == Carries::Counter));
         let Some(counter) = counter else {
             self.frames.push(frame);
-            return Step::More;
+            return FrameResult::More;
         };
         // The tick is the next one with these low bits.
         let ahead = (counter.get(&frame.data) as u64).wrapping_sub(self.tick) & ((1 << counter.bits) - 1);
@@ -170,11 +170,11 @@ impl Gathering {
         if ahead == 0 && self.synced == 0 {
             if self.tick == 0 {
                 self.frames.count = 0;
-                return Step::Asked(frame.line);
+                return FrameResult::Asked(frame.line);
             }
             // A repeated one, or a broken line that speaks again, too late for this cycle.
             self.alive |= line;
-            return Step::More;
+            return FrameResult::More;
         }
         if ahead > 0 && self.synced != 0 {
             // The next cycle begins, and this one is not whole: those who missed it are not waited for.
@@ -186,7 +186,7 @@ impl Gathering {
         self.frames.push(frame);
         self.synced |= line;
         self.synced_at[frame.line as usize] = self.frames.count as usize;
-        if self.synced & self.alive == self.alive { Step::Whole } else { Step::More }
+        if self.synced & self.alive == self.alive { FrameResult::Whole } else { FrameResult::More }
     }
 
     /// Forgets what belongs to the cycle that was not whole.
@@ -228,18 +228,18 @@ mod tests {
         frames
     }
 
-    /// What came of the frames; and which nodes were complete in the last whole cycle.
-    fn take_all(g: &mut Gathering, layout: &Layout, frames: &[Frame]) -> (Vec<Step>, Vec<bool>) {
+    /// Results of the frames; and which nodes were complete in the last whole cycle.
+    fn take_all(g: &mut Gathering, layout: &Layout, frames: &[Frame]) -> (Vec<FrameResult>, Vec<bool>) {
         let (mut steps, mut complete) = (Vec::new(), Vec::new());
         for frame in frames {
             let step = g.take(layout, frame);
-            if step == Step::Whole {
+            if step == FrameResult::Whole {
                 g.frames.header.tick = g.tick;
                 let seen = look(layout, true, &g.frames);
                 complete = (0..layout.nodes.len()).map(|n| seen.complete(n)).collect();
                 g.next();
             }
-            if step != Step::More {
+            if step != FrameResult::More {
                 steps.push(step);
             }
         }
@@ -252,7 +252,7 @@ mod tests {
         let mut g = Gathering::new(layout.nodes.len());
         assert_eq!(take_all(&mut g, &layout, cycle(&layout, 0).as_slice()).0.len(), 9);
         for tick in 1..600 {
-            let all = (vec![Step::Whole], vec![true; 9]);
+            let all = (vec![FrameResult::Whole], vec![true; 9]);
             assert_eq!(take_all(&mut g, &layout, cycle(&layout, tick).as_slice()), all);
             assert_eq!(g.tick, tick);
         }
@@ -265,7 +265,9 @@ mod tests {
         let without = |tick: u64| -> Vec<Frame> {
             cycle(&layout, tick).as_slice().iter().filter(|f| f.line != 8).copied().collect()
         };
-        let all = |missing: bool| (vec![Step::Whole], (0..9).map(|n| n != 8 || !missing).collect::<Vec<_>>());
+        let all = |missing: bool| {
+            (vec![FrameResult::Whole], (0..9).map(|n| n != 8 || !missing).collect::<Vec<_>>())
+        };
         assert_eq!(take_all(&mut g, &layout, cycle(&layout, 1).as_slice()), all(false));
         assert_eq!(take_all(&mut g, &layout, &without(2)).0, []);
         assert_eq!(take_all(&mut g, &layout, &without(3)), all(true), "2 was given up with the next cycle");

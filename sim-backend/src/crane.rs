@@ -4,7 +4,7 @@
 //! push. The trolley stands still while the rope is taut and follows the hook while it is slack, so that a robot that
 //! walks away is not pulled back.
 
-use crate::plant::orientation;
+use crate::layout::orientation;
 use config::crane::Crane as Description;
 use nalgebra::{UnitQuaternion, Vector3};
 

@@ -4,7 +4,7 @@
 //! joint loop.
 
 use crate::far_end::FarEnd;
-use crate::{SimBackend, far_end};
+use crate::{SimBackend, bus};
 use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Writer};
@@ -25,7 +25,7 @@ const PATIENCE: u64 = 2;
 pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut d = Daemon::new(Process::SimBackend, dir)?;
     let mut ports = Ports {
-        bus: far_end::open(&mut d)?,
+        bus: bus::open(&mut d)?,
         power: d.space.reader(&POWER)?,
         state: d.space.writer(&SIM_STATE)?,
         commands: connect(&d.space)?,
@@ -91,6 +91,7 @@ struct Ports {
 fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
     let taken = p.bus.held().map_or(Header::default(), |frames| frames.header);
     let tick = taken.tick;
+    // Commands first: those of the scene, which come by tick, then live ones.
     while let Some(live) = p.timeline.due(tick).map(Live::of_scene).or_else(|| p.commands.next()) {
         let mut verdict = Ok(());
         match live.command {
@@ -106,6 +107,7 @@ fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
         d.log.took(taken, &live, &verdict);
     }
     d.log.left_out(taken, p.commands.as_mut());
+    // A cycle that was missed while the process was stopped leaves the relay alone: the supply's record is of now.
     let frames = p.bus.held();
     let (frames, state) = match p.bus.is_late() {
         true => sim.step_late(frames),

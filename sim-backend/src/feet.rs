@@ -1,4 +1,4 @@
-//! The contact layer under the feet: what the ground does to each segment, and how fast the nodes move.
+//! Contact layer under the feet: forces of the ground on each segment, and rates of the nodes.
 //!
 //! | symbol | name | unit | frame |
 //! |---|---|---|---|
@@ -17,13 +17,15 @@ use environment::{Environment, Hit, Surface};
 use multibody::{Data, Frame, Model};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
 
+use crate::depth::ContactModel;
+
 /// Contact elements of both feet.
 #[derive(Clone)]
 pub struct Feet {
     law: Law,
     settings: Settings,
     segments: Vec<Segment>,
-    /// Whether each object of the environment carries something.
+    /// True if each object of the environment carries something.
     touched: Vec<bool>,
     /// \[m\] @world Every node that can touch; kept only where there are objects.
     places: Vec<[f64; 3]>,
@@ -40,17 +42,17 @@ struct Segment {
     moment: Vector3<f64>,
 }
 
-/// What is glued to a link.
+/// Contact elements of a link.
 #[derive(Clone)]
 enum Elements {
     /// Independent nodes at these places, link axes.
     Points(Vec<Vector3<f64>>),
     /// Blocks of rubber.
-    Pads(Vec<Block>),
+    Pads(Vec<PadBlock>),
 }
 
 #[derive(Clone)]
-struct Block {
+struct PadBlock {
     pad: Pad,
     memory: Memory,
     ground: Vec<Option<Ground>>,
@@ -58,7 +60,7 @@ struct Block {
 
 const CONVERGED: Report = Report { sweeps: 0, residual: 0.0, converged: true, unique: true };
 
-/// What is below the feet, and what is noted about it.
+/// Ground below the feet, and notes about it.
 struct Below<'a> {
     ground: &'a Environment,
     touched: &'a mut [bool],
@@ -73,7 +75,14 @@ impl Feet {
     ///
     /// # Errors
     /// A link does not exist, or the pads cannot be built.
-    pub fn new(robot: &Robot, model: &Model, pads: bool, objects: usize) -> Result<Self, Box<dyn Error>> {
+    pub fn new(
+        robot: &Robot,
+        model: &Model,
+        contact: ContactModel,
+        objects: usize,
+    ) -> Result<Self, Box<dyn Error>> {
+        let pads = contact == ContactModel::Pads;
+        // All pads are of one material, and share its matrices.
         let layer = if pads { Some(layer(robot)?) } else { None };
         let mut segments: Vec<Segment> = Vec::new();
         let mut names: Vec<&str> = Vec::new();
@@ -87,6 +96,7 @@ impl Feet {
                 .into());
             }
             for (link, at) in places {
+                // One segment for each link, in the order in which the robot's file names them first.
                 let i = match names.iter().position(|n| n == link) {
                     Some(i) => i,
                     None => {
@@ -125,17 +135,17 @@ impl Feet {
         &self.touched
     }
 
-    /// Where the nodes that can touch are \[m\] @world, after [`Feet::update`]; empty on ground without objects.
+    /// \[m\] @world Places of the nodes that can touch, after [`Feet::update`]; empty on ground without objects.
     pub fn places(&self) -> &[[f64; 3]] {
         &self.places
     }
 
-    /// How the solver of the pads ended, the worst since the last call.
+    /// Worst end of the solver of the pads since the last call.
     pub fn take_worst(&mut self) -> Report {
         std::mem::replace(&mut self.worst, CONVERGED)
     }
 
-    /// How far \[m\] a robot of `weight` \[N\] presses flat soles in.
+    /// \[m\] Depth to which a robot of `weight` \[N\] presses flat soles in.
     pub fn deflection(&self, weight: f64) -> f64 {
         let stiffness = |e: &Elements| match e {
             Elements::Points(places) => self.law.stiffness[2] * places.len() as f64,
@@ -180,6 +190,7 @@ impl Feet {
             (s.force, s.moment) = match &mut s.elements {
                 Elements::Points(places) => points(law, places, &pose, &twist, &mut below, d, rate),
                 Elements::Pads(blocks) => {
+                    // A pad is solved in the axes of its link, where its matrices are constant.
                     let inside = Twist {
                         linear: pose.rotation.inverse() * twist.linear,
                         angular: pose.rotation.inverse() * twist.angular,
@@ -189,9 +200,10 @@ impl Feet {
                     let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
                     for (block, (d, rate)) in blocks.iter_mut().zip(parts) {
                         let friction = block.look(&pose, &mut below, d).unwrap_or(settings.friction);
-                        let Block { pad, memory, ground } = block;
+                        let PadBlock { pad, memory, ground } = block;
                         let settings = Settings { friction, ..*settings };
                         let out = pad.solve(memory, d, ground, &inside, &settings, rate);
+                        // A pad that is not solved goes on with the last sweep's forces, and is reported.
                         if !out.report.converged && out.report.residual >= worst.residual {
                             *worst = out.report;
                         }
@@ -248,6 +260,7 @@ fn points(
         let w = twist.linear + twist.angular.cross(&arm);
         let hit = below.hit((pose.translation.vector + arm + d).into());
         let level = hit.surface == Surface::Ground && hit.normal[2] == 1.0;
+        // Level ground, nearly always: the axes of the law are those of the world.
         let (force, speed) = if level {
             let answer = point::solve(law, d.into(), w.into(), hit.gap);
             (Vector3::from(answer.force), Vector3::from(answer.rate))
@@ -268,7 +281,7 @@ fn points(
     (sum, moment)
 }
 
-impl Block {
+impl PadBlock {
     /// Looks where the ground is under every node of the sole; friction of an object that carries, if it has its own.
     fn look(&mut self, pose: &IsometryMatrix3<f64>, below: &mut Below<'_>, d: &[f64]) -> Option<f64> {
         let back = pose.rotation.inverse();
@@ -303,7 +316,7 @@ impl Elements {
             (Self::Pads(blocks), Some(layer)) => {
                 let pad = Pad::new(layer.clone(), at);
                 let n = layer.contacts();
-                blocks.push(Block { memory: pad.memory(), ground: vec![None; n], pad });
+                blocks.push(PadBlock { memory: pad.memory(), ground: vec![None; n], pad });
             }
             (Self::Pads(_), None) => {}
         }

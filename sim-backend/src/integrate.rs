@@ -4,10 +4,11 @@
 use config::scene::Integrator;
 
 use crate::drive::Drive;
-use crate::plant::{Outside, Plant};
+use crate::inputs::PlantInputs;
+use crate::plant::Plant;
 use crate::stiff::{GaveUp, Limits, Stiff};
 
-/// Tolerance of the adaptive method, unless it is told another one.
+/// Tolerance of the adaptive method, unless it is given another one.
 const TOLERANCE: f64 = 1e-6;
 
 /// A method, and room for one step of a state of fixed length.
@@ -37,7 +38,7 @@ impl Stepper {
         Self { stiff: Stiff::new(Limits::of_tolerance(tolerance)), ..self }
     }
 
-    /// Where the adaptive method last gave up since the last call; a semi-implicit step went on from there.
+    /// The last time the adaptive method gave up since the last call; a semi-implicit step went on from there.
     pub fn take_gave_up(&mut self) -> Option<GaveUp> {
         self.gave_up.take()
     }
@@ -50,18 +51,18 @@ impl Stepper {
         h: f64,
         state: &mut [f64],
         drives: &[Drive],
-        outside: &Outside,
+        inputs: &PlantInputs,
     ) {
-        let mut rate = |t: f64, x: &[f64], dx: &mut [f64]| plant.rate(t, x, drives, outside, dx);
+        let mut rate = |t: f64, x: &[f64], dx: &mut [f64]| plant.rate(t, x, drives, inputs, dx);
         match self.integrator {
             Integrator::Euler => self.euler(t, h, state, rate),
             Integrator::RungeKutta4 => self.runge_kutta_4(t, h, state, rate),
-            Integrator::SemiImplicit => plant.implicit_step(t, h, state, drives, outside),
+            Integrator::SemiImplicit => plant.implicit_step(t, h, state, drives, inputs),
             Integrator::Bdf => {
                 if let Err(gave_up) = self.stiff.advance(t, h, state, &mut rate) {
                     let at = gave_up.time;
                     self.gave_up = Some(gave_up);
-                    plant.implicit_step(at, t + h - at, state, drives, outside);
+                    plant.implicit_step(at, t + h - at, state, drives, inputs);
                 }
             }
         }

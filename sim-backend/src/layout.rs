@@ -1,4 +1,4 @@
-//! Where each state of a model is, and how many there are: thesis tables 2.4 and 2.5.
+//! State vector of a model: places and number of its states, thesis tables 2.4 and 2.5.
 //!
 //! | states | name | unit | frame | in the state vector |
 //! |---|---|---|---|---|
@@ -14,6 +14,8 @@
 //! The thesis counts Euler angles; the fourth component of the quaternion is redundant and is not counted here either.
 
 use std::ops::Range;
+
+use nalgebra::UnitQuaternion;
 
 /// Components of a model and their states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,13 +84,14 @@ impl Layout {
         after(&self.layer(), self.motors)
     }
 
-    /// What the state of this number is, in words: "speed of joint 3".
+    /// Name of the state of this number: "speed of joint 3".
     pub fn name(&self, state: usize) -> String {
         const AXES: [&str; 4] = ["x", "y", "z", "w"];
         let parts = [
             (self.pose(), ["position", "orientation", "angle of joint"]),
             (self.speed(), ["velocity", "angular velocity", "speed of joint"]),
         ];
+        // Pose and speed begin with the torso's six, its quaternion one more; joints follow.
         for (range, [first, second, joint]) in parts {
             let k = state.wrapping_sub(range.start);
             match k {
@@ -121,6 +124,18 @@ impl Layout {
         let (contact, electrical) = (3 * self.nodes, self.motors);
         Counts { mechanical, contact, electrical, odes: 2 * mechanical + contact + electrical }
     }
+}
+
+/// world_from_torso of a state; the quaternion is normalised here, so that integrators need not.
+pub fn orientation(x: &[f64]) -> UnitQuaternion<f64> {
+    UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(x[6], x[3], x[4], x[5]))
+}
+
+/// Rate of the quaternion, o' = o w / 2, components x, y, z, w.
+pub(crate) fn quaternion_rate(x: &[f64], w: &[f64]) -> [f64; 4] {
+    let o = nalgebra::Quaternion::new(x[6], x[3], x[4], x[5]);
+    let w = nalgebra::Quaternion::new(0.0, w[0], w[1], w[2]);
+    (o * w * 0.5).coords.into()
 }
 
 fn after(before: &Range<usize>, n: usize) -> Range<usize> {

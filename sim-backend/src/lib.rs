@@ -2,43 +2,59 @@
 //!
 //! | part | where |
 //! |---|---|
-//! | the bus, in shared memory or on CAN lines | `far_end.rs`, `can_end.rs` |
-//! | frames from the bus → joint targets; sensor data → frames | [`SimBackend::step`] |
+//! | bus, in shared memory, on CAN lines or Sercos | `far_end.rs` and its ends, `bus.rs` |
+//! | one cycle: frames from the bus → motion → frames for the bus | [`SimBackend::step`] |
 //! | motor power line | [`power`] |
-//! | who heard what | [`hearing`]; faults of the bus: [`fieldbus::injector`] |
-//! | states of the drives, their references and protection | `stages.rs` |
+//! | commands of each joint → references; who has torque | `joints.rs` |
+//! | nodes without commands | [`command_timeout`]; faults of the bus: [`fieldbus::injector`] |
+//! | states of the drives, their references and protection | `drive_electronics.rs` |
 //! | joint references | [`drive`] |
-//! | crane that holds the robot at the start | `crane.rs` |
-//! | equations of motion, types 1 to 5 of the thesis | [`plant`] |
+//! | pushes, and the crane that holds the robot at the start | `loads.rs`, `crane.rs` |
+//! | equations of motion, their state and time steps in a cycle | `body.rs` |
+//! | equations of motion | [`plant`]; types 1 to 5 of the thesis: [`depth`] |
 //! | their states | [`layout`] |
-//! | their drives, with their controllers, and both in an implicit step | [`train`], `local_control.rs`, [`implicit`] |
+//! | their inputs | [`inputs`], [`external_forces`] |
+//! | their drives: shafts, controllers, both in an implicit step | [`train`], [`shaft`], `local_control.rs`, `implicit.rs`, `train_step.rs` |
 //! | counts and look-up tables of these controllers | `resolution.rs` |
-//! | their contact, and what they stand on | [`feet`], [`terrain`] |
+//! | their contact, and what they stand on | `ground.rs`, [`feet`], [`terrain`] |
 //! | time steps; the adaptive ones | [`integrate`], [`stiff`] |
-//! | what the sensors make of it | [`sensors`] |
+//! | fall | `fall.rs` |
+//! | readings and truth | `instruments.rs`, [`sensors`] |
 
+mod body;
+mod bus;
 mod can_end;
+pub mod command_timeout;
 mod crane;
 pub mod daemon;
+pub mod depth;
 pub mod drive;
+mod drive_electronics;
+pub mod external_forces;
+mod fall;
 mod far_end;
 pub mod feet;
-pub mod hearing;
-pub mod implicit;
+mod ground;
+mod implicit;
+pub mod inputs;
+mod instruments;
 pub mod integrate;
+mod joints;
 pub mod layout;
+mod loads;
 mod local_control;
-mod outside;
 pub mod plant;
 pub mod power;
 mod resolution;
 mod robot;
 pub mod sensors;
 mod sercos_end;
-mod stages;
+pub mod shaft;
+mod shared_end;
 pub mod stiff;
 pub mod terrain;
 pub mod train;
+mod train_step;
 
 pub use crane::Rope;
 pub use robot::SimBackend;

@@ -1,4 +1,4 @@
-//! Local controllers at work: what encoders see of a shaft, and what its law makes of it (thesis 5.5).
+//! Local controllers: readings of the encoders of a shaft, and the current or voltage that the law makes of them (thesis 5.5).
 //!
 //! ```text
 //! cascade   w_d = c q'_d + K_x c (q_d - q_a),   I_d = K_v (w_d - w_b),   U = R I_d + k_M w + L w_c (I_d - I)
@@ -18,13 +18,14 @@
 //! | w_d, w | speed of the shaft, wanted and seen | rad/s |
 //! | K_x, K_v, w_c, C, D | gains, see [`drives::JointControl`]; `K_v = w_v J/k_M` | |
 
+use config::robot::{Drive as DriveData, Joint};
 use drives::{JointControl, Law, OutOfDomain, Sampled, Sampling, Side};
 
-use crate::resolution::Angles;
-use crate::train::{Given, Shaft};
+use crate::resolution::{Angles, Coarse};
+use crate::shaft::{Shaft, TrainInputs};
 
-/// What is seen of a shaft, in units of its motor; on the link's side and on the motor's.
-struct Seen {
+/// Readings of a shaft in units of its motor, on the link's side and on the motor's.
+struct ShaftReadings {
     /// c q'_d \[rad/s\].
     wanted: f64,
     /// c (q_d - q) \[rad\].
@@ -33,109 +34,145 @@ struct Seen {
     speed: [f64; 2],
 }
 
-/// What a controller puts out.
+/// Output of a controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Output {
-    /// What its law says at each instant.
-    Follow,
+pub(crate) enum ControllerOutput {
+    /// That of its law at each instant.
+    Continuous,
     /// A current I_d \[A\].
     Current(f64),
     /// A voltage U \[V\].
     Voltage(f64),
 }
 
-/// What a sampled controller remembers.
+/// Memory of a sampled controller.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sampler {
-    output: Output,
+struct Sampler {
+    output: ControllerOutput,
     /// Computed, and not yet put out.
-    next: Output,
+    next: ControllerOutput,
     /// \[rad\] Angles of the joints at the last sample, by side.
     last: Option<[[f64; 3]; 2]>,
 }
 
+/// Controller of one motor.
+#[derive(Clone)]
+pub(crate) struct LocalController {
+    /// K_v \[A s/rad\].
+    pub(crate) speed_gain: f64,
+    /// Speed that the position loop of a cascade asks for, and its distance from the speed seen \[rad/s\].
+    pub(crate) wanted: f64,
+    pub(crate) lag: f64,
+    /// Memory of a sampled law.
+    sampler: Sampler,
+    /// Counts and tables, if it has them.
+    coarse: Option<Coarse>,
+}
+
 impl Sampler {
     /// Of a controller that has measured nothing: no current, terminals shorted.
-    pub(crate) fn new(control: &JointControl) -> Self {
+    fn new(control: &JointControl) -> Self {
         let output = match (control.sampling, control.law) {
-            (Sampling::Continuous, _) => Output::Follow,
-            (Sampling::Cycle(_), Law::Cascade(_)) => Output::Current(0.0),
-            (Sampling::Cycle(_), Law::Voltage(_)) => Output::Voltage(0.0),
+            (Sampling::Continuous, _) => ControllerOutput::Continuous,
+            (Sampling::Cycle(_), Law::Cascade(_)) => ControllerOutput::Current(0.0),
+            (Sampling::Cycle(_), Law::Voltage(_)) => ControllerOutput::Voltage(0.0),
         };
         Self { output, next: output, last: None }
     }
-
-    /// What is put out now.
-    pub(crate) fn output(&self) -> Output {
-        self.output
-    }
 }
 
-impl Shaft {
-    /// Speed, and how far it is from the wanted one, with the gear as it is.
+impl LocalController {
+    /// Controller of a drive that moves some of `joints`; its speed loop is tuned later.
     ///
     /// # Errors
-    /// A joint is to be, or is, where the drive has no numbers for it; it goes on with those it had.
-    pub(crate) fn load(&mut self, given: &Given<'_>) -> Result<(), OutOfDomain> {
-        let looked = self.look(given);
-        let seen = self.seen(given);
-        self.speed = seen.speed[Side::Motor as usize];
-        if let Law::Cascade(cascade) = self.drive.control.law {
+    /// Its linkage has no look-up table where it needs one.
+    pub(crate) fn new(drive: &DriveData, joints: &[Joint]) -> Result<Self, String> {
+        let coarse = Coarse::new(drive, joints)?;
+        Ok(Self { speed_gain: 0.0, wanted: 0.0, lag: 0.0, sampler: Sampler::new(&drive.control), coarse })
+    }
+
+    /// Output that is held now; [`ControllerOutput::Continuous`]: none is held.
+    pub(crate) fn output(&self) -> ControllerOutput {
+        self.sampler.output
+    }
+
+    /// Takes a new state: returns the speed w of the shaft \[rad/s\], and keeps its distance from the wanted one, with
+    /// the gear as it is.
+    ///
+    /// The second result is an error where a joint is to be, or is, where the drive has no numbers for it; it goes on with
+    /// those it had.
+    pub(crate) fn load(&mut self, shaft: &Shaft, inputs: &TrainInputs<'_>) -> (f64, Result<(), OutOfDomain>) {
+        let looked = self.look(shaft, inputs);
+        let seen = self.read(shaft, inputs);
+        if let Law::Cascade(cascade) = shaft.drive.control.law {
             let feedback = cascade.feedback;
             self.wanted = cascade.speed_wanted(seen.error[feedback.position() as usize], seen.wanted);
             self.lag = self.wanted - seen.speed[feedback.speed() as usize];
         }
-        if given.powered { looked } else { Ok(()) } // without supply nobody computes
+        // Without supply nobody computes.
+        let looked = if inputs.switches.powered { looked } else { Ok(()) };
+        (seen.speed[Side::Motor as usize], looked)
     }
 
-    /// What a controller with coarse numbers sees.
-    fn look(&mut self, given: &Given<'_>) -> Result<(), OutOfDomain> {
-        let Some(mut coarse) = self.coarse.take() else { return Ok(()) };
+    /// Gives the joints' angles to a controller with coarse numbers.
+    fn look(&mut self, shaft: &Shaft, inputs: &TrainInputs<'_>) -> Result<(), OutOfDomain> {
+        let Some(coarse) = &mut self.coarse else { return Ok(()) };
         let angles =
-            |of: &dyn Fn(usize) -> f64| [0, 1, 2].map(|i| if i < self.coupled { of(i) } else { 0.0 });
+            |of: &dyn Fn(usize) -> f64| [0, 1, 2].map(|i| if i < shaft.coupled { of(i) } else { 0.0 });
         let at = Angles {
-            reference: angles(&|i| given.reference[self.joints[i]].angle),
-            measured: [Side::Link, Side::Motor].map(|side| angles(&|i| self.at(side, i, given).0)),
+            reference: angles(&|i| inputs.reference[shaft.joints[i]].angle),
+            measured: [Side::Link, Side::Motor].map(|side| angles(&|i| shaft.at(side, i, inputs).0)),
         };
-        let looked = coarse.look(&self.drive.transmission, &at);
-        self.coarse = Some(coarse);
-        looked
+        coarse.look(&shaft.drive.transmission, &at)
     }
 
-    /// Measures and computes once, at the state of [`Shaft::load`]; `cycle` \[s\] since the last time.
-    pub(crate) fn sample(&mut self, cycle: f64, given: &Given<'_>) {
-        let Sampling::Cycle(sampled) = self.drive.control.sampling else { return };
-        let seen = self.sampled(cycle, given, sampled);
+    /// Measures and computes once, at the state of [`LocalController::load`]; `cycle` \[s\] since the last time.
+    pub(crate) fn sample(&mut self, shaft: &Shaft, cycle: f64, inputs: &TrainInputs<'_>) {
+        let Sampling::Cycle(sampled) = shaft.drive.control.sampling else { return };
+        let seen = self.read_sample(shaft, cycle, inputs, sampled);
         let motor = Side::Motor as usize;
-        let output = match self.drive.control.law {
+        let output = match shaft.drive.control.law {
             Law::Cascade(cascade) => {
                 let feedback = cascade.feedback;
                 let wanted = cascade.speed_wanted(seen.error[feedback.position() as usize], seen.wanted);
-                Output::Current(self.speed_gain * (wanted - seen.speed[feedback.speed() as usize]))
+                ControllerOutput::Current(self.speed_gain * (wanted - seen.speed[feedback.speed() as usize]))
             }
             Law::Voltage(law) => {
                 let motor_seen = (seen.error[motor], seen.speed[motor]);
-                Output::Voltage(law.voltage(&self.drive.motor, motor_seen.0, seen.wanted, motor_seen.1))
+                ControllerOutput::Voltage(law.voltage(
+                    &shaft.drive.motor,
+                    motor_seen.0,
+                    seen.wanted,
+                    motor_seen.1,
+                ))
             }
         };
+        // A controller that needs the whole cycle for computing puts out what it found in the last one.
         self.sampler.output = if sampled.delay { self.sampler.next } else { output };
         self.sampler.next = output;
     }
 
-    /// What is seen at a sample.
-    fn sampled(&mut self, cycle: f64, given: &Given<'_>, sampled: Sampled) -> Seen {
-        let mut seen = self.seen(given);
+    /// Readings at a sample.
+    fn read_sample(
+        &mut self,
+        shaft: &Shaft,
+        cycle: f64,
+        inputs: &TrainInputs<'_>,
+        sampled: Sampled,
+    ) -> ShaftReadings {
+        let mut seen = self.read(shaft, inputs);
         let angles = [Side::Link, Side::Motor].map(|side| {
-            let place = |i: usize| if i < self.coupled { self.at(side, i, given).0 } else { 0.0 };
+            let place = |i: usize| if i < shaft.coupled { shaft.at(side, i, inputs).0 } else { 0.0 };
             [place(0), place(1), place(2)]
         });
         // A first difference is that of a shaft at rest.
         let last = self.sampler.last.replace(angles).unwrap_or(angles);
         if sampled.difference {
             for side in 0..2 {
-                let turned = |i: usize| self.gear.ratio[i] * (angles[side][i] - last[side][i]);
-                seen.speed[side] = (0..self.coupled).map(turned).sum::<f64>() / cycle;
+                let turned = |i: usize| shaft.gear.ratio[i] * (angles[side][i] - last[side][i]);
+                seen.speed[side] = (0..shaft.coupled).map(turned).sum::<f64>() / cycle;
             }
+            // Who counts differentiates his counts, not the angles behind them.
             if let Some(coarse) = &mut self.coarse {
                 seen.speed[Side::Motor as usize] = coarse.speed(cycle);
             }
@@ -143,51 +180,46 @@ impl Shaft {
         seen
     }
 
-    fn seen(&self, given: &Given<'_>) -> Seen {
-        let mut seen = Seen { wanted: 0.0, error: [0.0; 2], speed: [0.0; 2] };
-        for i in 0..self.coupled {
-            let (c, reference) = (self.gear.ratio[i], &given.reference[self.joints[i]]);
+    /// Readings at an instant.
+    fn read(&self, shaft: &Shaft, inputs: &TrainInputs<'_>) -> ShaftReadings {
+        let mut seen = ShaftReadings { wanted: 0.0, error: [0.0; 2], speed: [0.0; 2] };
+        for i in 0..shaft.coupled {
+            let (c, reference) = (shaft.gear.ratio[i], &inputs.reference[shaft.joints[i]]);
             seen.wanted += c * reference.speed;
             for side in [Side::Link, Side::Motor] {
-                let (angle, speed) = self.at(side, i, given);
+                let (angle, speed) = shaft.at(side, i, inputs);
                 seen.error[side as usize] += c * (reference.angle - angle);
                 seen.speed[side as usize] += c * speed;
             }
         }
         if let Some(coarse) = &self.coarse {
-            let speed = |i: usize| coarse.ratio()[i] * given.reference[self.joints[i]].speed;
-            seen.wanted = (0..self.coupled).map(speed).sum();
+            let speed = |i: usize| coarse.ratio()[i] * inputs.reference[shaft.joints[i]].speed;
+            seen.wanted = (0..shaft.coupled).map(speed).sum();
             seen.error = coarse.error();
         }
         seen
     }
 
-    /// Angle and speed of the i-th joint, or of the rotor that moves it, in units of the joint.
-    fn at(&self, side: Side, i: usize, given: &Given<'_>) -> (f64, f64) {
-        match self.elastic.as_ref().filter(|_| side == Side::Motor) {
-            Some((e, _)) => (given.rotor.0[*e], given.rotor.1[*e]),
-            None => (given.joint.0[self.joints[i]], given.joint.1[self.joints[i]]),
-        }
-    }
-
     /// Current the speed loop asks for \[A\].
-    pub(crate) fn wanted_current(&self) -> f64 {
-        let limit = self.drive.current_limit;
+    pub(crate) fn wanted_current(&self, shaft: &Shaft) -> f64 {
+        let limit = shaft.drive.current_limit;
         let wanted = match self.sampler.output {
-            Output::Current(held) => held,
+            ControllerOutput::Current(held) => held,
             _ => self.speed_gain * self.lag,
         };
         wanted.clamp(-limit, limit)
     }
 
     /// Voltage that the controller sets \[V\].
-    pub(crate) fn voltage(&self, current: f64) -> f64 {
-        let voltage = match (self.sampler.output, self.drive.control.law) {
-            (Output::Voltage(held), _) => held,
-            (_, Law::Cascade(c)) => c.voltage(&self.drive.motor, self.wanted_current(), current, self.speed),
+    pub(crate) fn voltage(&self, shaft: &Shaft, current: f64) -> f64 {
+        let voltage = match (self.sampler.output, shaft.drive.control.law) {
+            (ControllerOutput::Voltage(held), _) => held,
+            (_, Law::Cascade(c)) => {
+                c.voltage(&shaft.drive.motor, self.wanted_current(shaft), current, shaft.speed)
+            }
             // Never: a voltage law is sampled, its output a voltage.
             (_, Law::Voltage(_)) => 0.0,
         };
-        voltage.clamp(-self.drive.voltage_limit, self.drive.voltage_limit)
+        voltage.clamp(-shaft.drive.voltage_limit, shaft.drive.voltage_limit)
     }
 }

@@ -1,66 +1,67 @@
 //! The equations of motion of one robot: bodies, drives and contact layer put together as deep as a scene asks.
 //!
-//! | type | joints | gears | contact | thesis |
-//! |---|---|---|---|---|
-//! | 1 | follow their targets (2.80), (2.81) | | points | reduced model |
-//! | 2 | have dynamics of their own, with motors and their controllers | rigid | points | |
-//! | 3 | as 2 | elastic | points | |
-//! | 4 | as 2 | rigid | pads of finite elements | |
-//! | 5 | as 2 | elastic | pads of finite elements | |
-//!
-//! The states are in [`crate::layout`], the drives in [`crate::train`], the contact in [`crate::feet`].
+//! Depth: [`crate::depth`]; states: [`crate::layout`]; drives: [`crate::train`]; contact: [`crate::feet`].
 
 use std::error::Error;
 
 use config::Robot;
 use environment::Environment;
 use messages::Wrench;
-use multibody::{Data, Frame, Limbs, Model};
-use nalgebra::{UnitQuaternion, Vector3, Vector6};
+use multibody::{Data, Frame, Model};
+use nalgebra::{Vector3, Vector6};
 
+use crate::depth::{Depth, JointModel};
 use crate::drive::{Drive, Motion};
-use crate::feet::Feet;
-use crate::implicit::Step;
-use crate::layout::Layout;
-pub use crate::outside::Outside;
-use crate::outside::{at_base, outside_force};
+use crate::external_forces::at_base;
+use crate::ground::GroundContact;
+use crate::implicit::ShaftStep;
+pub use crate::inputs::PlantInputs;
+pub use crate::layout::orientation;
+use crate::layout::{Layout, quaternion_rate};
 use crate::sensors::carried;
-use crate::train::{Fault, Given, Train, rotors};
+use crate::shaft::TrainInputs;
+use crate::train::{Train, TrainFault, rotors};
+
+/// \[s\] Step of a snapshot before the first step of the state, if it is to move by implicit ones.
+const FIRST_STEP: f64 = 1e-3;
 
 /// The equations of motion of one robot.
 #[derive(Clone)]
 pub struct Plant {
     model: Model,
     data: Data,
+    depth: Depth,
     layout: Layout,
-    environment: Environment,
-    feet: Feet,
-    /// What the feet's frames hang on.
-    limbs: Limbs,
-    soles: [Frame; 2],
-    train: Option<Train>,
+    ground: GroundContact,
+    joints: Joints,
     /// \[s\] Length of the implicit steps by which the state moves; none if it moves by [`Plant::rate`].
     implicit: Option<f64>,
     scratch: Scratch,
 }
 
-/// What an evaluation leaves behind.
+/// Cause of the joints' motion, with its drives.
+#[derive(Clone)]
+enum Joints {
+    /// They follow their references (2.80); rotors of drives, if the robot has some, turn along.
+    Following(Option<Train>),
+    /// Motors move them.
+    Driven(Train),
+}
+
+/// Kinematics and forces of one evaluation.
 #[derive(Clone)]
 struct Scratch {
     q: Vec<f64>,
     v: Vec<f64>,
     joint_acceleration: Vec<f64>,
-    /// Where the joints are to be.
+    /// References of the joints.
     reference: Vec<Motion>,
     force: Vec<f64>,
     acceleration: Vec<f64>,
     bias: Vec<f64>,
-    layer_rate: Vec<f64>,
     next: Vec<f64>,
     rate: Vec<f64>,
-    /// q, v and d of the last evaluation, whose kinematics, gears and contact forces still hold.
-    seen: Vec<f64>,
-    steps: Vec<Step>,
+    steps: Vec<ShaftStep>,
 }
 
 /// Result of one evaluation at the end of a cycle: what sensors and logs want to know.
@@ -90,52 +91,46 @@ impl Plant {
         depth: u8,
         pose: &[f64],
     ) -> Result<Self, Box<dyn Error>> {
-        let (dynamic, elastic, pads) = (depth > 1, depth == 3 || depth == 5, depth > 3);
-        if dynamic && robot.drives.is_empty() {
+        let depth = Depth::of_type(depth);
+        let driven = depth.joints == JointModel::Motors;
+        if driven && robot.drives.is_empty() {
             return Err(format!(
                 "robot `{}`: robot.toml has no [[drive]]; choose depth 1, or describe the drives",
                 robot.name
             )
             .into());
         }
+        // Bodies first, then what acts on them: feet and drives name links and joints of the model.
         let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
         let model =
-            Model::from_urdf(&robot.urdf, &robot.torso, &order)?.with_rotors(&rotors(robot, elastic))?;
-        let feet = Feet::new(robot, &model, pads, environment.objects().len())?;
-        let soles = [
-            model.frame(&robot.feet[0].link, robot.feet[0].sole)?,
-            model.frame(&robot.feet[1].link, robot.feet[1].sole)?,
-        ];
-        let driven = !robot.drives.is_empty();
-        let train = driven.then(|| Train::new(robot, &model, elastic, pose)).transpose()?;
-        let of_train = |count: fn(&Train) -> usize| train.as_ref().filter(|_| dynamic).map_or(0, count);
-        let layout = Layout {
-            joints: if dynamic { model.n() } else { 0 },
-            elastic: of_train(Train::elastic),
-            nodes: feet.nodes(),
-            motors: of_train(Train::motors),
-        };
-        let scratch = Scratch::new(&model, &layout);
+            Model::from_urdf(&robot.urdf, &robot.torso, &order)?.with_rotors(&rotors(robot, depth.gears))?;
+        let ground = GroundContact::new(robot, &model, environment, depth.contact)?;
+        let described = !robot.drives.is_empty();
+        let train = described.then(|| Train::new(robot, &model, depth.gears, pose)).transpose()?;
         let mut data = Data::new(&model);
         if let Some(train) = &train {
             train.set_constant_gears(&mut data);
         }
-        let limbs = model.limbs(&feet.frames());
-        Ok(Self {
-            data,
-            model,
-            layout,
-            environment,
-            feet,
-            limbs,
-            soles,
-            train,
-            implicit: dynamic.then_some(1e-3),
-            scratch,
-        })
+        // From here on the type is in `joints` and in `layout`, and is not asked for again.
+        let nodes = ground.feet.nodes();
+        let (joints, layout) = match train {
+            Some(train) if driven => {
+                let (elastic, motors) = (train.elastic(), train.motors());
+                (Joints::Driven(train), Layout { joints: model.n(), elastic, nodes, motors })
+            }
+            train => (Joints::Following(train), Layout { joints: 0, elastic: 0, nodes, motors: 0 }),
+        };
+        let scratch = Scratch::new(&model, &layout);
+        let implicit = driven.then_some(FIRST_STEP);
+        Ok(Self { model, data, depth, layout, ground, joints, implicit, scratch })
     }
 
-    /// Where each state is.
+    /// Modelling depth.
+    pub fn depth(&self) -> Depth {
+        self.depth
+    }
+
+    /// Places of the states.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -157,29 +152,29 @@ impl Plant {
         self.scratch.q[..7].copy_from_slice(&x[..7]);
         self.scratch.q[7..].copy_from_slice(joints);
         self.model.forward_kinematics(&mut self.data, &self.scratch.q);
-        self.scratch.seen.fill(f64::NAN);
+        self.ground.forget();
+        let Self { ground: GroundContact { feet, .. }, .. } = self;
         let depth = match height {
-            None => self.feet.deflection(self.model.mass() * -multibody::GRAVITY.z),
+            None => feet.deflection(self.model.mass() * -multibody::GRAVITY.z),
             Some(height) => -height,
         };
-        x[2] = -self.feet.lowest(&self.model, &self.data) - depth;
+        x[2] = -feet.lowest(&self.model, &self.data) - depth;
         if height.is_none() {
-            self.feet.press(&self.model, &self.data, depth, &mut x[l.layer()]);
+            feet.press(&self.model, &self.data, depth, &mut x[l.layer()]);
         }
         x[7..7 + l.joints].copy_from_slice(&joints[..l.joints]);
-        if let Some(train) = &self.train {
+        if let Joints::Driven(train) = &self.joints {
             train.relax(joints, &mut x[l.rotor_angle()]);
         }
         x
     }
 
-    /// Where the joints are, and how fast, in a state; type 1: as its references say.
+    /// Motions of the joints in a state; of joints that follow: those of their references.
     pub fn joints(&self, x: &[f64], reference: &[Motion], out: &mut [Motion]) {
-        let l = &self.layout;
-        if l.joints == 0 {
-            out.copy_from_slice(reference);
-            return;
+        if let Joints::Following(_) = self.joints {
+            return out.copy_from_slice(reference);
         }
+        let l = &self.layout;
         let (q, v) = (&x[l.pose()][7..], &x[l.speed()][6..]);
         for (j, m) in out.iter_mut().enumerate() {
             *m = Motion { angle: q[j], speed: v[j], acceleration: self.scratch.acceleration[6 + j] };
@@ -187,38 +182,38 @@ impl Plant {
     }
 
     /// The sampled controllers measure, at the begin of a cycle \[s\] in state `x`, and compute what they hold until the next.
-    pub fn sample(&mut self, cycle: f64, x: &[f64], drives: &[Drive], outside: &Outside) {
-        let l = self.layout;
-        if l.joints > 0 && self.train.as_ref().is_some_and(Train::is_sampled) {
+    pub fn sample(&mut self, cycle: f64, x: &[f64], drives: &[Drive], inputs: &PlantInputs) {
+        let Joints::Driven(train) = &self.joints else { return };
+        if train.is_sampled() {
             self.load(0.0, x, drives);
-            let Self { data, scratch, train: Some(train), .. } = self else { return };
-            let given = given(&l, x, &scratch.reference, outside);
+            let Self { data, layout, scratch, joints: Joints::Driven(train), .. } = self else { return };
+            let given = train_inputs(layout, x, &scratch.reference, inputs);
             train.load(&given, data);
             train.sample(cycle, &given);
         }
     }
 
     /// The derivative of `x` with the references of `drives`, `tau` \[s\] into the cycle.
-    pub fn rate(&mut self, tau: f64, x: &[f64], drives: &[Drive], outside: &Outside, dx: &mut [f64]) {
+    pub fn rate(&mut self, tau: f64, x: &[f64], drives: &[Drive], inputs: &PlantInputs, dx: &mut [f64]) {
         self.implicit = None;
         let l = self.layout;
         self.load(tau, x, drives);
         self.touch_ground(&x[l.layer()]);
-        let Self { model, data, feet, scratch, train, .. } = self;
-        dx[l.layer()].copy_from_slice(&scratch.layer_rate);
-        if l.joints == 0 {
-            self.base_rate(x, outside);
-        } else {
-            let Scratch { v, force, acceleration, .. } = scratch;
-            outside_force(model, data, feet, outside, (x, &x[l.speed()]), force);
-            if let Some(train) = train {
-                let given = given(&l, x, &scratch.reference, outside);
+        dx[l.layer()].copy_from_slice(&self.ground.layer_rate);
+        let Self { model, data, ground, scratch, joints, .. } = self;
+        match joints {
+            Joints::Following(_) => self.base_rate(x, inputs),
+            Joints::Driven(train) => {
+                let Scratch { v, force, acceleration, .. } = scratch;
+                external_force(model, data, ground, inputs, (x, &x[l.speed()]), force);
+                let given = train_inputs(&l, x, &scratch.reference, inputs);
                 train.load(&given, data);
                 train.explicit(&given, data, &mut force[6..], &mut dx[l.current()]);
                 model.forward_dynamics_here(data, v, force, acceleration);
                 train.rotor_rates(model, data, &mut dx[l.rotor_speed()]);
             }
         }
+        // Positions follow from the speeds, whatever moves them.
         let scratch = &self.scratch;
         dx[l.speed()].copy_from_slice(&scratch.acceleration[..6 + l.joints]);
         for (i, at) in l.rotor_angle().enumerate() {
@@ -232,50 +227,57 @@ impl Plant {
 
     /// One semi-implicit step of `h` \[s\]: contact forces of its begin; motors, controllers, springs and dry friction of
     /// its end; then positions with the speeds of the end. First order.
-    pub fn implicit_step(&mut self, tau: f64, h: f64, x: &mut [f64], drives: &[Drive], outside: &Outside) {
+    pub fn implicit_step(&mut self, tau: f64, h: f64, x: &mut [f64], drives: &[Drive], inputs: &PlantInputs) {
         let l = self.layout;
         self.implicit = Some(h);
-        // References of the end of the step, with which the drives work.
-        self.load(if l.joints == 0 { tau } else { tau + h }, x, drives);
-        self.accelerate(h, x, outside);
-        let Self { model, scratch, train, .. } = self;
+        let reference = match self.joints {
+            Joints::Following(_) => tau,
+            Joints::Driven(_) => tau + h, // the drives work at the end of the step
+        };
+        self.load(reference, x, drives);
+        self.accelerate(h, x, inputs);
+        let Self { model, ground, scratch, joints, .. } = self;
         let Scratch { q, v, acceleration, next, .. } = scratch;
         for (v, a) in v.iter_mut().zip(&acceleration[..6 + l.joints]) {
             *v += h * a;
         }
-        if let Some(train) = train.as_mut().filter(|_| l.joints > 0) {
+        if let Joints::Driven(train) = joints {
             for j in train.held_joints() {
-                v[6 + j] = 0.0;
+                v[6 + j] = 0.0; // what the stiff damper of a sticking shaft leaves is rounding
             }
             let (before, current) = x.split_at_mut(l.current().start);
             let (before, rotor_speed) = before[..l.rotor_speed().end].split_at_mut(l.rotor_speed().start);
             let rotor_angle = &mut before[l.rotor_angle()];
             train.end(h, current, (rotor_angle, rotor_speed));
         }
+        // Positions with the speeds of the end, which makes the step semi-implicit.
         model.integrate(q, v, h, next);
         x[l.pose()].copy_from_slice(&next[..7 + l.joints]);
         x[l.speed()].copy_from_slice(&v[..6 + l.joints]);
-        for (d, rate) in x[l.layer()].iter_mut().zip(&scratch.layer_rate) {
+        for (d, rate) in x[l.layer()].iter_mut().zip(&ground.layer_rate) {
             *d += h * rate;
         }
     }
 
-    /// What the state looks like from outside.
-    pub fn snapshot(&mut self, tau: f64, x: &[f64], drives: &[Drive], outside: &Outside) -> Snapshot {
+    /// Forces and accelerations in a state, as sensors and logs need them.
+    pub fn snapshot(&mut self, tau: f64, x: &[f64], drives: &[Drive], inputs: &PlantInputs) -> Snapshot {
+        // By the same equations as the steps: implicit ones have no rate at an instant.
         match self.implicit {
             None => {
                 let mut rate = std::mem::take(&mut self.scratch.rate);
-                self.rate(tau, x, drives, outside, &mut rate);
+                self.rate(tau, x, drives, inputs, &mut rate);
                 self.scratch.rate = rate;
             }
-            Some(h) => self.try_acceleration(tau, h, x, drives, outside),
+            Some(h) => self.try_acceleration(tau, h, x, drives, inputs),
         }
+        // Of the torso: the acceleration that a sensor feels is that in the world, less gravity.
         let (speed, change) = (&x[self.layout.speed()], &self.scratch.acceleration);
         let omega = Vector3::from_column_slice(&speed[3..6]);
         let acceleration =
             Vector3::from_column_slice(&change[..3]) + omega.cross(&Vector3::from_column_slice(&speed[..3]));
         let angular_acceleration = Vector3::from_column_slice(&change[3..6]);
-        let Self { model, data, feet, soles, .. } = self;
+        // Of the feet, with the kinematics of all bodies: an evaluation needs only those of the limbs.
+        let Self { model, data, ground: GroundContact { feet, soles, .. }, .. } = self;
         model.forward_kinematics_here(data);
         let mut foot_wrench = [Wrench { force: [0.0; 3], moment: [0.0; 3] }; 2];
         for (foot, wrench) in foot_wrench.iter_mut().enumerate() {
@@ -297,7 +299,7 @@ impl Plant {
         }
     }
 
-    /// What carries and moves the bodies below each force sensor; after [`Plant::snapshot`], whose acceleration it takes.
+    /// Wrenches that carry and move the bodies below each force sensor; after [`Plant::snapshot`], whose acceleration it takes.
     pub fn carried(&mut self, sensors: &[Frame; 2]) -> [Wrench; 2] {
         let Self { model, data, scratch, .. } = self;
         model.inverse_dynamics_here(data, &scratch.v, &scratch.acceleration, &mut scratch.bias);
@@ -307,7 +309,7 @@ impl Plant {
     /// Motors in a state: angles and speeds in joint units, which hold the joints' on entry, and currents.
     pub fn motors(&self, x: &[f64], angle: &mut [f64], speed: &mut [f64], current: &mut [f64]) {
         let l = &self.layout;
-        if let Some(train) = &self.train {
+        if let Joints::Driven(train) = &self.joints {
             train.motor_side((&x[l.rotor_angle()], &x[l.rotor_speed()]), angle, speed);
         }
         current[..l.motors].copy_from_slice(&x[l.current()]);
@@ -323,57 +325,45 @@ impl Plant {
         &self.model
     }
 
-    /// The drives, for who tunes them; type 1 without motors has none.
+    /// The drives, for who tunes them; none of a robot without motors.
     pub fn train_mut(&mut self) -> Option<&mut Train> {
-        self.train.as_mut()
-    }
-
-    /// Moves the objects of the environment to `time` \[s\], as far as nothing touches them; what happened.
-    pub fn advance(&mut self, time: f64) -> &[environment::Event] {
-        if !self.environment.objects().is_empty() {
-            self.scratch.seen.fill(f64::NAN);
+        match &mut self.joints {
+            Joints::Following(train) => train.as_mut(),
+            Joints::Driven(train) => Some(train),
         }
-        self.environment.advance(time, self.feet.touched(), self.feet.places())
     }
 
-    /// How the solver of the pads ended at worst since the last call.
+    /// Moves the objects of the environment to `time` \[s\], as far as nothing touches them; returns what happened.
+    pub fn advance(&mut self, time: f64) -> &[environment::Event] {
+        self.ground.advance(time)
+    }
+
+    /// Worst end of the solver of the pads since the last call.
     pub fn take_contact_report(&mut self) -> contact::Report {
-        self.feet.take_worst()
+        self.ground.feet.take_worst()
     }
 
     /// Something a drive could not do, since the last call.
-    pub fn take_fault(&mut self) -> Option<Fault> {
-        self.train.as_mut().and_then(Train::take_fault)
+    pub fn take_fault(&mut self) -> Option<TrainFault> {
+        self.train_mut().and_then(Train::take_fault)
     }
 
-    /// Kinematics of the feet and forces of the ground for the loaded q and v, unless they hold already: a cycle begins
-    /// with the state that the sensors have seen.
+    /// Kinematics of the feet and forces of the ground for the loaded q and v.
     fn touch_ground(&mut self, d: &[f64]) {
-        let Self { model, data, environment, feet, limbs, scratch, .. } = self;
-        let Scratch { q, v, layer_rate, seen, .. } = scratch;
-        let now = || q.iter().chain(v.iter()).chain(d);
-        if seen.iter().eq(now()) {
-            return;
-        }
-        for (seen, now) in seen.iter_mut().zip(now()) {
-            *seen = *now;
-        }
-        model.set_position(data, q);
-        model.limb_motion_here(data, limbs, v);
-        feet.update(model, data, environment, d, layer_rate);
+        let Self { model, data, ground, scratch, .. } = self;
+        ground.touch(model, data, [&scratch.q, &scratch.v, d]);
     }
 
     /// Acceleration over an implicit step of `h` \[s\] from the loaded state: drives and dry friction at its end.
-    fn accelerate(&mut self, h: f64, x: &[f64], outside: &Outside) {
+    fn accelerate(&mut self, h: f64, x: &[f64], inputs: &PlantInputs) {
         let l = self.layout;
         self.touch_ground(&x[l.layer()]);
-        let Self { model, data, feet, scratch, train, .. } = self;
-        let Some(train) = train.as_mut().filter(|_| l.joints > 0) else {
-            return self.base_rate(x, outside);
-        };
+        let Self { model, data, ground, scratch, joints, .. } = self;
+        let Joints::Driven(train) = joints else { return self.base_rate(x, inputs) };
         let Scratch { v, force, acceleration, bias, .. } = scratch;
-        outside_force(model, data, feet, outside, (x, &x[l.speed()]), force);
-        let given = given(&l, x, &scratch.reference, outside);
+        external_force(model, data, ground, inputs, (x, &x[l.speed()]), force);
+        // Gears before the dynamics: the mass matrix holds the geared rotors, the bias their gyroscopic moments.
+        let given = train_inputs(&l, x, &scratch.reference, inputs);
         train.load(&given, data);
         train.free_rotors(data);
         model.dynamics_here(data, v, bias);
@@ -381,6 +371,7 @@ impl Plant {
             *f -= b;
         }
         train.solve(h, &given, model, data, force, acceleration);
+        // A free rotor is turned along by its stator, which only the accelerations of the bodies tell.
         if train.elastic() > 0 {
             model.accelerate(data, v, acceleration);
             train.turn_along(model, data);
@@ -388,27 +379,27 @@ impl Plant {
     }
 
     /// The acceleration that the next implicit step would find, and nothing moves.
-    fn try_acceleration(&mut self, tau: f64, h: f64, x: &[f64], drives: &[Drive], outside: &Outside) {
+    fn try_acceleration(&mut self, tau: f64, h: f64, x: &[f64], drives: &[Drive], inputs: &PlantInputs) {
         self.load(tau, x, drives);
-        if let Some(train) = &self.train {
+        if let Joints::Driven(train) = &self.joints {
             self.scratch.steps.clear();
             self.scratch.steps.extend(train.steps());
         }
-        self.accelerate(h, x, outside);
-        if let Some(train) = &mut self.train {
+        self.accelerate(h, x, inputs);
+        if let Joints::Driven(train) = &mut self.joints {
             train.restore(&self.scratch.steps);
         }
     }
 
     /// Acceleration of the torso while the joints follow their references (2.80).
-    fn base_rate(&mut self, x: &[f64], outside: &Outside) {
-        let Self { model, data, feet, scratch, train, .. } = self;
+    fn base_rate(&mut self, x: &[f64], inputs: &PlantInputs) {
+        let Self { model, data, ground, scratch, joints, .. } = self;
         let Scratch { q, v, joint_acceleration, acceleration, .. } = scratch;
-        if let Some(train) = train {
+        if let Joints::Following(Some(train)) = joints {
             train.load_prescribed(&q[7..], &v[6..], data);
         }
-        let (force, moment) = feet.total(model, data, &Vector3::zeros(), None);
-        let others = outside.total(model, x, &x[self.layout.speed()]);
+        let (force, moment) = ground.feet.total(model, data, &Vector3::zeros(), None);
+        let others = inputs.forces.total(model, x, &x[self.layout.speed()]);
         let base_force = at_base(x, &(force + others.0), &(moment + others.1));
         let (m, bias) = model.base_dynamics_here(data, v, joint_acceleration);
         let a = m.cholesky().map_or(Vector6::repeat(f64::NAN), |c| c.solve(&(base_force - bias)));
@@ -425,7 +416,7 @@ impl Plant {
         q[..7 + l.joints].copy_from_slice(&x[l.pose()]);
         q[3..7].copy_from_slice(&<[f64; 4]>::from(orientation(x).into_inner().coords));
         v[..6 + l.joints].copy_from_slice(&x[l.speed()]);
-        if l.joints == 0 {
+        if let Joints::Following(_) = self.joints {
             for (j, m) in reference.iter().enumerate() {
                 (q[7 + j], v[6 + j], joint_acceleration[j]) = (m.angle, m.speed, m.acceleration);
             }
@@ -443,36 +434,38 @@ impl Scratch {
             force: vec![0.0; model.nv()],
             acceleration: vec![0.0; model.nv()],
             bias: vec![0.0; model.nv()],
-            layer_rate: vec![0.0; 3 * layout.nodes],
             next: model.neutral(),
             rate: vec![0.0; layout.len()],
-            seen: vec![f64::NAN; model.nq() + model.nv() + 3 * layout.nodes],
             steps: Vec::with_capacity(model.n()),
         }
     }
 }
 
-fn given<'a>(l: &Layout, x: &'a [f64], reference: &'a [Motion], outside: &Outside) -> Given<'a> {
-    Given {
+/// Generalized force of ground, push and rope (2.40) in a state x with these speeds.
+fn external_force(
+    model: &Model,
+    data: &Data,
+    ground: &GroundContact,
+    inputs: &PlantInputs,
+    (x, speed): (&[f64], &[f64]),
+    force: &mut [f64],
+) {
+    force.fill(0.0);
+    ground.feet.add_to(model, data, force);
+    inputs.forces.add_to(model, x, speed, force);
+}
+
+fn train_inputs<'a>(
+    l: &Layout,
+    x: &'a [f64],
+    reference: &'a [Motion],
+    inputs: &PlantInputs,
+) -> TrainInputs<'a> {
+    TrainInputs {
         joint: (&x[l.pose()][7..], &x[l.speed()][6..]),
         rotor: (&x[l.rotor_angle()], &x[l.rotor_speed()]),
         current: &x[l.current()],
         reference,
-        powered: outside.powered,
-        off: outside.off,
-        braked: outside.braked,
-        held: outside.held,
+        switches: inputs.switches,
     }
-}
-
-/// world_from_torso of a state; the quaternion is normalised here, so that integrators need not.
-pub fn orientation(x: &[f64]) -> UnitQuaternion<f64> {
-    UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(x[6], x[3], x[4], x[5]))
-}
-
-/// o' = o w / 2, components x, y, z, w.
-fn quaternion_rate(x: &[f64], w: &[f64]) -> [f64; 4] {
-    let o = nalgebra::Quaternion::new(x[6], x[3], x[4], x[5]);
-    let w = nalgebra::Quaternion::new(0.0, w[0], w[1], w[2]);
-    (o * w * 0.5).coords.into()
 }

@@ -25,7 +25,7 @@ impl PowerLine {
         self.closed
     }
 
-    /// What decides what it does next, besides whether it is closed: cycles of silence, the toggle, what it is used up for.
+    /// State besides being closed: cycles of silence, the toggle, the arming that is used up.
     pub fn state(&self) -> (u64, u64, (u64, u64)) {
         (self.quiet.min(self.limit), self.toggle, self.spent)
     }

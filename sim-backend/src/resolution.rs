@@ -17,13 +17,13 @@ use drives::{FixedTable, Law, OutOfDomain, Resolution, Side, Transmission};
 /// \[rad\] How far a table goes beyond the ranges of the joints: targets end there, and what follows them may overshoot.
 const MARGIN: f64 = 0.02;
 
-/// What a drive sees and wants of its motor.
+/// Angle of a motor, and its reference, as a drive with counts and tables has them.
 #[derive(Clone)]
 pub(crate) struct Coarse {
     table: Option<FixedTable>,
     /// \[rad\] Of the motor, one count; 0: all of the angle.
     count: f64,
-    /// Whether the law needs the link's side.
+    /// True if the law needs the link's side.
     link: bool,
     /// \[rad\], \[1\] Where the motor is to be, and the ratios there.
     wanted: (f64, [f64; 3]),
@@ -35,9 +35,9 @@ pub(crate) struct Coarse {
 
 /// Angles of the joints of a drive \[rad\].
 pub(crate) struct Angles {
-    /// Where they are to be.
+    /// References.
     pub(crate) reference: [f64; 3],
-    /// Where they are, on the link's side and on the motor's.
+    /// Readings, on the link's side and on the motor's.
     pub(crate) measured: [[f64; 3]; 2],
 }
 

@@ -53,6 +53,7 @@ impl SercosEnd {
         let layout = d.setup.robot.layout.clone();
         let slaves: Vec<_> =
             stations(&layout).iter().map(|s| Slave::new(s.address, s.command, s.feedback)).collect();
+        // In real time the robot answers within the cycle, complete or not.
         let grace = if d.mode == ipc::Mode::Lockstep { GRACE } else { d.period_ns() / 4 };
         Ok(Self {
             have: vec![false; slaves.len()],
@@ -133,12 +134,12 @@ impl FarEnd for SercosEnd {
     fn wait(&mut self, at_most: Duration) {
         let at_most = at_most.as_nanos() as u64;
         let at_most = if self.since.is_some() { at_most.min(self.grace) } else { at_most };
-        let heard = self.far.await_telegrams(at_most);
+        let came = self.far.await_telegrams(at_most);
         let now = clock::now();
         // Of real time only: in lockstep nobody knows how long a cycle takes.
-        let periods = if heard { 0 } else { (now - self.counted) / self.period_ns };
+        let periods = if came { 0 } else { (now - self.counted) / self.period_ns };
         (0..periods).for_each(|_| self.far.chain_mut().silence());
-        self.counted = if heard { now } else { self.counted + periods * self.period_ns };
+        self.counted = if came { now } else { self.counted + periods * self.period_ns };
     }
 
     fn next(&mut self, d: &Daemon) -> Result<bool, Box<dyn Error>> {

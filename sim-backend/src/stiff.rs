@@ -2,7 +2,7 @@
 //! uses LSODE, of the same family. Not for real time: it allocates, and how long it takes depends on the motion.
 //!
 //! Dry friction with a jump at rest and other sliding modes make every such method take ever smaller steps. A guard ends
-//! that: it counts evaluations, and says which state it was whose rate jumped to and fro.
+//! that: it counts evaluations, and names the state whose rate jumped to and fro.
 //!
 //! | symbol | name | unit |
 //! |---|---|---|
@@ -23,7 +23,7 @@ type Lu = NalgebraLU<f64>;
 /// f: `rate(t, x, dx)` writes the derivative.
 pub type Rate<'a> = dyn FnMut(f64, &[f64], &mut [f64]) + 'a;
 
-/// How accurate a motion is to be, and what it may cost.
+/// Accuracy and cost of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Error of a step in each state, relative to it and absolute in its unit.
@@ -41,7 +41,7 @@ impl Limits {
     }
 }
 
-/// What a motion took.
+/// Cost of a motion so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effort {
     /// Evaluations of f, those for J included.
@@ -61,7 +61,7 @@ pub struct GaveUp {
     pub state: usize,
     /// Why it gave up.
     pub why: Why,
-    /// What was spent.
+    /// Cost until then.
     pub effort: Effort,
 }
 
@@ -112,9 +112,10 @@ impl Stiff {
     /// # Errors
     /// [`GaveUp`]; then `x` is the state of its time, and finite if it was at the begin.
     pub fn advance(&mut self, t: f64, h: f64, x: &mut [f64], rate: &mut Rate<'_>) -> Result<Effort, GaveUp> {
+        // The library asks for f and J in turns: both need the one guard, which borrows f.
         let n = x.len();
         let kept = std::mem::take(&mut self.jacobian);
-        let watch = RefCell::new(Watch::new(n, self.limits.most_calls, rate, kept));
+        let watch = RefCell::new(RateGuard::new(n, self.limits.most_calls, rate, kept));
         let start = x.to_vec();
         let Limits { tolerance, least_step, .. } = self.limits;
         let problem = OdeBuilder::<Matrix>::new()
@@ -129,6 +130,7 @@ impl Stiff {
             .build();
         let (mut time, mut effort) = (t, Effort { smallest: f64::INFINITY, ..Effort::default() });
         let arrived = problem.is_ok_and(|mut problem| {
+            // Failed steps end by the guard's count and by their length, hardly by their number.
             problem.ode_options.min_timestep = least_step;
             problem.ode_options.max_error_test_failures = 200;
             problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
@@ -165,6 +167,7 @@ where
     }
     loop {
         let Ok(reason) = solver.step() else { return false };
+        // A step that is not finite is not taken over, so that `x` stays good.
         let state = solver.state();
         let y = state.y.inner().as_slice();
         if y.iter().any(|y| !y.is_finite()) {
@@ -196,7 +199,7 @@ fn slope(near: f64, far: f64) -> f64 {
 }
 
 /// f as the library calls it, with the guard.
-struct Watch<'a, 'b> {
+struct RateGuard<'a, 'b> {
     inner: &'a mut Rate<'b>,
     calls: u32,
     most_calls: u32,
@@ -212,7 +215,7 @@ struct Watch<'a, 'b> {
     moved: Vec<f64>,
 }
 
-impl<'a, 'b> Watch<'a, 'b> {
+impl<'a, 'b> RateGuard<'a, 'b> {
     fn new(n: usize, most_calls: u32, inner: &'a mut Rate<'b>, jacobian: Vec<f64>) -> Self {
         let zero = || vec![0.0; n];
         let (calls, not_finite, used) = (0, None, jacobian.len() != n * n);

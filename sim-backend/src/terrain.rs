@@ -1,4 +1,4 @@
-//! What a scene puts on the ground, as the environment of the equations of motion.
+//! Terrain of a scene, as the environment of the equations of motion.
 
 use std::error::Error;
 

@@ -83,7 +83,7 @@ fn voltage_law() {
     let mut rig = Rig::of(controlled(Law::Voltage(law), Sampling::Cycle(sampled)), 3, Environment::flat());
     let step = 1e-3;
     rig.drives = rig.pose.iter().map(|q| Drive::resting(q + step)).collect();
-    rig.plant.sample(1e-3, &rig.x, &rig.drives, &rig.outside);
+    rig.plant.sample(1e-3, &rig.x, &rig.drives, &rig.inputs);
     let x = rig.x.clone();
     let rates = rig.rate(0.0, &x);
     for (k, at) in rig.plant.layout().current().enumerate() {
@@ -109,7 +109,7 @@ fn a_sampled_law_holds_and_waits() {
         let mut rig = flying(controlled(Law::Cascade(CASCADE), sampling), 2);
         rig.drives = rig.pose.iter().map(|q| Drive::resting(q + 1e-3)).collect();
         for _ in 0..samples {
-            rig.plant.sample(1e-3, &rig.x, &rig.drives, &rig.outside);
+            rig.plant.sample(1e-3, &rig.x, &rig.drives, &rig.inputs);
         }
         rig.run(Integrator::SemiImplicit, 0.0, 1e-3, 10);
         let places = rig.plant.layout().current();

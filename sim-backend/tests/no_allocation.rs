@@ -34,13 +34,13 @@ fn equations_of_motion() {
         let mut rig = Rig::new(depth).moving(0.01, 0.1);
         let mut dx = vec![0.0; rig.x.len()];
         let counts = during(|| {
-            let Rig { plant, x, drives, outside, .. } = &mut rig;
+            let Rig { plant, x, drives, inputs, .. } = &mut rig;
             for i in 0..5 {
                 let t = 1e-4 * f64::from(i);
-                plant.rate(t, x, drives, outside, &mut dx);
-                plant.implicit_step(t, 1e-4, x, drives, outside);
+                plant.rate(t, x, drives, inputs, &mut dx);
+                plant.implicit_step(t, 1e-4, x, drives, inputs);
             }
-            plant.snapshot(5e-4, x, drives, outside);
+            plant.snapshot(5e-4, x, drives, inputs);
             plant.advance(5e-4);
         });
         assert_eq!(counts, [0, 0], "type {depth}");
@@ -56,9 +56,9 @@ fn coarse_controllers() {
     }
     let mut rig = Rig::of(robot, 3, Environment::flat()).moving(0.01, 0.1);
     let counts = during(|| {
-        let Rig { plant, x, drives, outside, .. } = &mut rig;
+        let Rig { plant, x, drives, inputs, .. } = &mut rig;
         for i in 0..5 {
-            plant.implicit_step(1e-4 * f64::from(i), 1e-4, x, drives, outside);
+            plant.implicit_step(1e-4 * f64::from(i), 1e-4, x, drives, inputs);
         }
     });
     assert_eq!(counts, [0, 0]);

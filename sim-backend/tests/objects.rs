@@ -51,7 +51,7 @@ fn friction_of_an_object() {
         let mut rig = on_board(1, true, friction, f64::INFINITY);
         rig.run(Integrator::SemiImplicit, 0.0, 2.0, 4000);
         let m = rig.plant.model().mass();
-        rig.outside.push = [0.1 * m * 9.81, 0.0, 0.0];
+        rig.inputs.forces.push = [0.1 * m * 9.81, 0.0, 0.0];
         let before = rig.snapshot(0.0).feet[0][0];
         rig.run(Integrator::SemiImplicit, 0.0, 0.2, 2000);
         let s = rig.snapshot(0.0);

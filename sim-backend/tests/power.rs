@@ -69,7 +69,7 @@ fn without_supply_everything_loses() {
     for depth in [2, 3] {
         for seed in 0..10 {
             let mut rig = Rig::new(depth).in_the_air().shaken(seed);
-            rig.outside.powered = false;
+            rig.inputs.switches.powered = false;
             let (stored, power, _) = balance(&mut rig);
             assert!(
                 (stored - power).abs() < 1e-5 * power.abs().max(100.0),
@@ -192,7 +192,7 @@ fn brakes_stop_joints_in_the_air() {
     for depth in 2..=5 {
         let mut rig = Rig::of(braked(), depth, Environment::flat()).in_the_air().moving(0.2, 0.1);
         rig.run(Integrator::SemiImplicit, 0.0, 0.03, 60);
-        (rig.outside.powered, rig.outside.braked) = (false, u64::MAX);
+        (rig.inputs.switches.powered, rig.inputs.switches.braked) = (false, u64::MAX);
         let speed =
             |rig: &Rig| rig.motors(0.0, &rig.x).iter().fold(0.0, |most, (_, w)| f64::max(most, w.abs()));
         let x = rig.x.clone();

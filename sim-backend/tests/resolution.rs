@@ -9,7 +9,7 @@ use environment::Environment;
 use rig::{Rig, lola};
 use sim_backend::drive::{Drive, Motion};
 use sim_backend::plant::Plant;
-use sim_backend::train::Why;
+use sim_backend::train::FaultCause;
 use std::f64::consts::TAU;
 
 /// \[V/rad\] Gain of a controller that shows its error as a voltage.
@@ -45,7 +45,7 @@ fn errors(robot: Robot) -> (Rig, Vec<f64>) {
 fn voltages(robot: Robot, told: impl Fn(f64) -> Drive) -> (Rig, Vec<f64>) {
     let mut rig = Rig::of(robot, 3, Environment::flat());
     rig.drives = rig.pose.iter().map(|q| told(*q)).collect();
-    rig.plant.sample(1e-3, &rig.x, &rig.drives, &rig.outside);
+    rig.plant.sample(1e-3, &rig.x, &rig.drives, &rig.inputs);
     let x = rig.x.clone();
     let rates = rig.rate(0.0, &x);
     let places = rig.plant.layout().current();
@@ -146,15 +146,15 @@ fn a_target_beyond_the_table() {
     let mut rig = Rig::of(robot, 2, Environment::flat());
     let x = rig.x.clone();
     let current = rig.plant.layout().current().start + drive;
-    rig.plant.sample(1e-3, &x, &rig.drives, &rig.outside);
+    rig.plant.sample(1e-3, &x, &rig.drives, &rig.inputs);
     let before = rig.rate(0.0, &x)[current];
     assert_eq!(rig.plant.take_fault(), None);
     rig.drives[knee] = Drive::resting(beyond);
-    rig.plant.sample(1e-3, &x, &rig.drives, &rig.outside);
+    rig.plant.sample(1e-3, &x, &rig.drives, &rig.inputs);
     assert_eq!(rig.rate(0.0, &x)[current], before);
     let fault = rig.plant.take_fault().unwrap();
-    assert_eq!((fault.drive, fault.why), (drive, Why::Linkage(OutOfDomain::Table { angle: beyond })));
-    rig.outside.powered = false;
+    assert_eq!((fault.drive, fault.why), (drive, FaultCause::Linkage(OutOfDomain::Table { angle: beyond })));
+    rig.inputs.switches.powered = false;
     rig.rate(0.0, &x);
     assert_eq!(rig.plant.take_fault(), None);
 }

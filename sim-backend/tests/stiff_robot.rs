@@ -5,7 +5,7 @@ use config::{Setup, root};
 use environment::Environment;
 use sim_backend::drive::Drive;
 use sim_backend::integrate::Stepper;
-use sim_backend::plant::{Outside, Plant};
+use sim_backend::plant::{Plant, PlantInputs};
 
 const CYCLE: f64 = 1e-3;
 
@@ -16,12 +16,12 @@ fn moved(setup: &Setup, mut stepper: impl FnMut(usize) -> Stepper, steps: u32) -
     let mut x = plant.standing(pose);
     let mut drives: Vec<Drive> = pose.iter().map(|q| Drive::resting(*q)).collect();
     drives[2] = Drive::resting(pose[2] + 1e-3);
-    let outside = Outside { powered: true, ..Outside::default() };
+    let inputs = PlantInputs::POWERED;
     let mut stepper = stepper(x.len());
     let h = CYCLE / f64::from(steps);
     for _ in 0..4 {
         for i in 0..steps {
-            stepper.step(&mut plant, f64::from(i) * h, h, &mut x, &drives, &outside);
+            stepper.step(&mut plant, f64::from(i) * h, h, &mut x, &drives, &inputs);
         }
     }
     assert_eq!(stepper.take_gave_up(), None);

@@ -7,13 +7,12 @@ use config::Setup;
 use messages::JointTargets;
 use sim_backend::drive::{Drive, Motion};
 use sim_backend::integrate::Stepper;
-use sim_backend::plant::{Outside, Plant};
+use sim_backend::plant::{Plant, PlantInputs};
 
 use chain::Chain;
 
 /// What the drives are supplied with while a second is replayed: motors on, nobody pushes.
-pub const POWERED: Outside =
-    Outside { push: [0.0; 3], powered: true, off: 0, braked: 0, held: 0, rope: None };
+pub const POWERED: PlantInputs = PlantInputs::POWERED;
 
 /// A second of motion.
 pub struct Second {

@@ -1,4 +1,4 @@
-//! How the nodes of a layer act on each other: damping and its inverse, for the nodes that can touch the ground.
+//! Coupling of the nodes of a layer: damping and its inverse, for the nodes that can touch the ground.
 //!
 //! With B = alpha K and y = d' + d/alpha the equation of the layer (2.37) reads B y = f without the elastic term. Nodes
 //! that never touch carry no force and are eliminated; what is left couples forces and velocities of the others:
@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 
 /// A 3 x 3 block of S, columns padded to 4.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Block {
+pub(crate) struct CouplingBlock {
     pub(crate) node: usize,
     columns: [[f64; 4]; 3],
 }
@@ -29,7 +29,7 @@ pub struct Coupling {
     w: Vec<f64>,
     diagonal: Vec<Matrix3<f64>>,
     /// Neighbours of each node, itself left out: `blocks[rows[i]..rows[i + 1]]`.
-    blocks: Vec<Block>,
+    blocks: Vec<CouplingBlock>,
     rows: Vec<usize>,
     own: Vec<Matrix3<f64>>,
     /// Inverse of `own`.
@@ -50,6 +50,7 @@ impl Coupling {
         let block = |m: &DMatrix<f64>, i: usize, j: usize| -> Matrix3<f64> {
             m.fixed_view::<3, 3>(3 * i, 3 * j).into()
         };
+        // Bricks couple only neighbours: blocks of all others are rounding, and are left out of the sweeps.
         let nothing = NOTHING * s.amax();
         let (mut blocks, mut rows) = (Vec::new(), vec![0]);
         for i in 0..nodes {
@@ -57,7 +58,7 @@ impl Coupling {
                 let b = block(s, i, j);
                 if b.amax() > nothing {
                     let columns = std::array::from_fn(|k| [b[(0, k)], b[(1, k)], b[(2, k)], 0.0]);
-                    blocks.push(Block { node: j, columns });
+                    blocks.push(CouplingBlock { node: j, columns });
                 }
             }
             rows.push(blocks.len());
@@ -94,7 +95,7 @@ impl Coupling {
     }
 
     /// Neighbours of a node that its force depends on.
-    pub(crate) fn neighbours(&self, node: usize) -> &[Block] {
+    pub(crate) fn neighbours(&self, node: usize) -> &[CouplingBlock] {
         &self.blocks[self.rows[node]..self.rows[node + 1]]
     }
 

@@ -28,7 +28,7 @@ pub struct Elasticity {
     pub poisson: f64,
 }
 
-/// How the change of volume enters.
+/// Treatment of the change of volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Volume {
     /// At every Gauss point: the textbook element.
@@ -88,6 +88,7 @@ fn strain(corners: &[Vector3<f64>; 8], xi: &Vector3<f64>) -> Option<(Strain, f64
         let f: [f64; 3] = std::array::from_fn(|k| 1.0 + a[k] * xi[k]);
         Vector3::new(a[0] * f[1] * f[2], a[1] * f[0] * f[2], a[2] * f[0] * f[1]) / 8.0
     });
+    // From the unit cube to the brick; one turned inside out has no volume.
     let j: Matrix3<f64> = corners.iter().zip(&slopes).map(|(x, n)| x * n.transpose()).sum();
     let size = j.determinant();
     if !(size > 0.0) {
@@ -95,6 +96,7 @@ fn strain(corners: &[Vector3<f64>; 8], xi: &Vector3<f64>) -> Option<(Strain, f64
     }
     let to_place = j.try_inverse()?.transpose();
     let mut b = Strain::zeros();
+    // Strains xx, yy, zz, xy, yz, zx by the displacements of corner k.
     for (k, slope) in slopes.iter().enumerate() {
         let n = to_place * slope;
         for (row, [x, y, z]) in [

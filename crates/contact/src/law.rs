@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// How the forces of coupled nodes are found.
+/// Search for the forces of coupled nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Algorithm 1 as the thesis has it, with the r-factors of the errata: all nodes at once.
@@ -34,22 +34,22 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// What holds for rubber on a floor with friction mu.
+    /// For rubber on a floor with friction mu.
     pub fn of_friction(friction: f64) -> Self {
         Self { friction, recovery: 200.0, method: Method::Fastest, gamma: 1.0, tolerance: 1e-3, sweeps: 200 }
     }
 }
 
-/// How the solver ended.
+/// End of the solver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// Sweeps over the nodes.
     pub sweeps: u32,
     /// \[1\] Residual of the law, as a multiple of 0.1 N and of 1 mm/s, the larger of the two.
     pub residual: f64,
-    /// Whether the residual is within the tolerance; if not, forces are finite and within the friction cone all the same.
+    /// True if the residual is within the tolerance; if not, forces are finite and within the friction cone all the same.
     pub converged: bool,
-    /// Whether the law of each touching node alone has one solution only (errata 1, F7). With large friction on
+    /// True if the law of each touching node alone has one solution only (errata 1, F7). With large friction on
     /// slanting ground it need not have.
     pub unique: bool,
 }

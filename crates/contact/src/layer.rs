@@ -56,6 +56,7 @@ impl Material {
         if let Some(x) = self.size.iter().find(|x| !positive(**x)) {
             return refuse("size [m]", *x, "positive in every direction");
         }
+        // The top is glued to the foot, so its nodes are not free.
         let nodes = (self.bricks[0] + 1) * (self.bricks[1] + 1) * self.bricks[2];
         if self.bricks.contains(&0) || nodes > MOST_NODES {
             return refuse(
@@ -64,6 +65,7 @@ impl Material {
                 "1 to 1500: at least one brick in every direction",
             );
         }
+        // Then the material: each number by itself.
         let Elasticity { modulus, poisson } = self.elasticity;
         if !positive(modulus) {
             return refuse("modulus [N/m^2]", modulus, "positive");
@@ -86,7 +88,7 @@ impl Material {
     }
 }
 
-/// What all pads of one material share.
+/// Matrices that all pads of one material share.
 #[derive(Clone, Debug)]
 pub struct Layer {
     pub(crate) alpha: f64,
@@ -138,7 +140,7 @@ impl Layer {
         &self.stiffness
     }
 
-    /// How contact nodes act on each other.
+    /// Coupling of the contact nodes.
     pub fn coupling(&self) -> &Coupling {
         &self.coupling
     }

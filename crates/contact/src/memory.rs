@@ -1,4 +1,4 @@
-//! What a pad keeps from call to call, and room to work in: nothing allocates after [`Memory::new`].
+//! Memory of a pad from call to call, and its scratch: nothing allocates after [`Memory::new`].
 //!
 //! | symbol | name | unit | frame |
 //! |---|---|---|---|
@@ -21,7 +21,7 @@ pub struct Memory {
     pub(crate) states: Vec<State>,
     pub(crate) normals: Vec<Vector3<f64>>,
     pub(crate) frames: Vec<Matrix3<f64>>,
-    /// Whether frame and mobility of a node are those of this call; few nodes need them when most stick.
+    /// True if frame and mobility of a node are those of this call; few nodes need them when most stick.
     pub(crate) framed: Vec<bool>,
     /// S_ii^-1 in the contact frame.
     pub(crate) mobilities: Vec<Matrix3<f64>>,
@@ -98,7 +98,7 @@ impl Memory {
         &self.f
     }
 
-    /// What each contact node does.
+    /// State of each contact node.
     pub fn states(&self) -> &[State] {
         &self.states
     }

@@ -12,7 +12,7 @@ pub struct Mesh {
     pub nodes: Vec<Vector3<f64>>,
     /// Nodes of each brick, in the order of [`crate::hexahedron::CORNERS`].
     pub bricks: Vec<[usize; 8]>,
-    /// How many nodes the sole has, and the top: a layer.
+    /// Number of nodes of the sole, and of the top: a layer.
     pub layer: usize,
 }
 

@@ -28,7 +28,7 @@ pub struct Answer {
     pub state: State,
 }
 
-/// Whether the law has exactly one solution for every c: G_NN > mu |G_NT| (errata 1, F7).
+/// True if the law has exactly one solution for every c: G_NN > mu |G_NT| (errata 1, F7).
 pub fn unique(g: &Matrix3<f64>, mu: f64) -> bool {
     g[(2, 2)] > mu * g[(0, 2)].hypot(g[(1, 2)])
 }

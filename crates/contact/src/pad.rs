@@ -39,14 +39,14 @@ pub struct Twist {
     pub angular: Vector3<f64>,
 }
 
-/// What a pad does to its segment.
+/// Effect of a pad on its segment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// \[N\] @segment (2.38)
     pub force: Vector3<f64>,
     /// \[N m\] @segment About the segment's origin (2.39).
     pub moment: Vector3<f64>,
-    /// How the solver ended.
+    /// End of the solver.
     pub report: Report,
 }
 
@@ -101,6 +101,7 @@ impl Pad {
             let report = Report { residual: f64::INFINITY, ..Report::default() };
             return Outcome { report, ..Outcome::default() };
         }
+        // In the air: forces of the last touchdown are no guess for the next one.
         if memory.active.is_empty() {
             memory.clear();
             self.relax(d, dd);

@@ -27,7 +27,7 @@ pub struct Law {
     pub recovery: f64,
 }
 
-/// What a contact point does.
+/// State of a contact point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// No contact.

@@ -130,7 +130,7 @@ fn jacobi(memory: &mut Memory, settings: &Settings) -> f64 {
     worst
 }
 
-/// How far the law is from holding, whatever gamma.
+/// Distance of the law from holding, whatever gamma.
 fn residual(memory: &Memory, settings: &Settings) -> f64 {
     let of = |(k, &i): (usize, &usize)| {
         let (lambda, u) = look(memory, k, i);

@@ -21,13 +21,13 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use crate::turn::Turn;
+use crate::turn::Rotation;
 use crate::{Gear, OutOfDomain};
 
 /// \[1\] Cosine between coupler and screw at which the coupler counts as standing across it.
 const LEAST_COSINE: f64 = 1e-6;
 
-/// Where an ankle drive's parts are.
+/// Places of an ankle drive's parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnkleGeometry {
     /// \[1\] Unit vector of the adduction axis, in the shank and in the ankle.
@@ -109,7 +109,7 @@ impl Ankle {
         Ok(ankle)
     }
 
-    /// What it was made of.
+    /// Geometry that it was made of.
     pub fn geometry(&self) -> &AnkleGeometry {
         &self.geometry
     }
@@ -127,7 +127,7 @@ impl Ankle {
     /// The nut at adduction and flexion `q` \[rad\], speeds `qd` \[rad/s\].
     pub(crate) fn nut(&self, q: [f64; 2], qd: [f64; 2]) -> Result<Nut, OutOfDomain> {
         let (e, a, f) = (&self.screw, &self.adduction, &self.flexion);
-        let (turn_a, turn_f) = (Turn::new(*a, q[0]), Turn::new(*f, q[1]));
+        let (turn_a, turn_f) = (Rotation::new(*a, q[0]), Rotation::new(*f, q[1]));
         let s = turn_f.of(&self.attachment);
         let x = turn_a.of(&(self.foot + s));
         let r0 = self.base + x; // (2.22)

@@ -81,7 +81,7 @@ pub enum Fault {
     OverCurrent = 0x2310,
     /// Winding too hot.
     OverTemperature = 0x4310,
-    /// No sign of life of the master (CiA 301: life guard or heartbeat).
+    /// Heartbeat of the master missing (CiA 301: life guard or heartbeat).
     Heartbeat = 0x8130,
     /// The joint does not follow.
     FollowingError = 0x8611,
@@ -97,7 +97,7 @@ impl Fault {
         Self::ALL.into_iter().find(|fault| *fault as u16 == code)
     }
 
-    /// Whether the power stage may still brake on the ramp; otherwise it lets go at once.
+    /// True if the power stage may still brake on the ramp; otherwise it lets go at once.
     pub const fn ramps(self) -> bool {
         !matches!(self, Self::OverCurrent)
     }
@@ -113,16 +113,16 @@ impl Fault {
     }
 }
 
-/// What one cycle of a drive sees.
+/// Inputs of one cycle of a drive.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Inputs {
     /// The controlword, if one came in this cycle; otherwise the last one holds, without an edge.
     pub control: Option<u16>,
     /// Voltage of the motor supply.
     pub supply: bool,
-    /// Whether the drive may go to Operation enabled: its angle is known, or it is to find it out.
+    /// True if the drive may go to Operation enabled: its angle is known, or it is to find it out.
     pub permit: bool,
-    /// What is wrong in this cycle.
+    /// Fault in this cycle.
     pub fault: Option<Fault>,
     /// The joint has come to rest.
     pub still: bool,
@@ -149,17 +149,17 @@ impl Drive {
         self.state
     }
 
-    /// What the last fault was, until it is reset.
+    /// The last fault, until it is reset.
     pub fn error(&self) -> Option<Fault> {
         self.error
     }
 
-    /// Whether the power stage drives the motor; otherwise it has no torque, and a brake holds it if there is one.
+    /// True if the power stage drives the motor; otherwise it has no torque, and a brake holds it if there is one.
     pub fn drives(&self) -> bool {
         matches!(self.state, State::OperationEnabled | State::QuickStop | State::FaultReaction)
     }
 
-    /// Whether the joint brakes on the ramp instead of following its targets.
+    /// True if the joint brakes on the ramp instead of following its targets.
     pub fn ramps(&self) -> bool {
         matches!(self.state, State::QuickStop | State::FaultReaction)
     }
@@ -252,7 +252,7 @@ pub const fn state_of(status: u16) -> Option<State> {
     }
 }
 
-/// What the master wants of a drive.
+/// Demand of the master on a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
     /// No torque, ready to be switched on.

@@ -13,18 +13,18 @@
 
 use crate::Motor;
 
-/// How one drive is controlled.
+/// Control of one drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointControl {
     /// The law.
     pub law: Law,
     /// When it is computed.
     pub sampling: Sampling,
-    /// How finely.
+    /// Resolution.
     pub resolution: Resolution,
 }
 
-/// How finely a local controller sees its motor and computes where it is to be. The default is exact.
+/// Resolution with which a local controller sees its motor and computes the reference. The default is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Resolution {
     /// Points in each dimension of the [`FixedTable`](crate::FixedTable) of a linkage, by which the motor's angle and speed
@@ -97,9 +97,9 @@ pub enum Sampling {
 /// A law computed once per cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampled {
-    /// Whether what was computed acts one cycle later.
+    /// True if what was computed acts one cycle later.
     pub delay: bool,
-    /// Whether speeds are differences of the angles of two cycles.
+    /// True if speeds are differences of the angles of two cycles.
     pub difference: bool,
 }
 
@@ -109,12 +109,12 @@ impl Feedback {
     /// Their names in configuration files.
     pub const WORDS: [&str; 3] = ["link", "motor", "link_motor"];
 
-    /// Where the angle is measured.
+    /// Side of the angle sensor.
     pub fn position(self) -> Side {
         if self == Self::Motor { Side::Motor } else { Side::Link }
     }
 
-    /// Where the speed is measured.
+    /// Side of the speed sensor.
     pub fn speed(self) -> Side {
         if self == Self::Link { Side::Link } else { Side::Motor }
     }

@@ -75,7 +75,7 @@ impl ElasticJoint {
         [second, a3 * second - a4 * a1 * a1]
     }
 
-    /// Whether the continuous loop is stable: all coefficients and determinants are positive.
+    /// True if the continuous loop is stable: all coefficients and determinants are positive.
     pub fn is_stable(&self, feedback: Feedback, gains: Gains) -> bool {
         let positive = |x: &f64| *x > 0.0;
         self.characteristic(feedback, gains).iter().all(positive)
@@ -170,7 +170,7 @@ impl Held {
         schur.complex_eigenvalues().iter().map(|z| z.norm()).fold(0.0, f64::max)
     }
 
-    /// Whether the sampled loop is stable.
+    /// True if the sampled loop is stable.
     pub fn is_stable(&self, feedback: Feedback, gains: Gains, sampled: Sampled) -> bool {
         self.spectral_radius(feedback, gains, sampled) < 1.0
     }

@@ -65,9 +65,9 @@ pub enum FitError {
         row: usize,
         /// Which of its entries.
         quantity: &'static str,
-        /// What it is.
+        /// Its value.
         value: f64,
-        /// What it may be.
+        /// The allowed range.
         allowed: &'static str,
     },
     /// The points do not tell the parameters apart.

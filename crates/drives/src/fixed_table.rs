@@ -29,26 +29,26 @@ const FINEST: i32 = 30;
 /// Motor angle and ratios of a transmission on a grid, in integers.
 #[derive(Clone, Debug)]
 pub struct FixedTable {
-    axes: [Axis; 2],
+    axes: [TableAxis; 2],
     /// Angle and the ratios by the table's joints, the second joint's index running fastest.
     rows: Vec<[i32; 3]>,
     /// Bits behind the point of the columns.
     bits: [i32; 3],
     /// Share of the joint that an ankle's motor is driven past, and its bits.
     knee: (i32, i32),
-    /// Whether the table's joints are the second and third one.
+    /// True if the table's joints are the second and third one.
     ankle: bool,
 }
 
 /// Grid of one dimension \[2^-29 rad\].
 #[derive(Clone, Copy, Debug)]
-struct Axis {
+struct TableAxis {
     lower: i64,
     step: i64,
     points: usize,
 }
 
-/// What a table says.
+/// Entry of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
     /// \[[`FixedTable::angle_unit`]\] Angle of the motor.
@@ -89,8 +89,8 @@ impl FixedTable {
     ) -> Result<Self, OutOfDomain> {
         let ankle = transmission.joints() == 3;
         let first = if ankle { 1 } else { 0 };
-        let second = if ankle { Axis::new(ranges[2], points[1])? } else { Axis::POINT };
-        let axes = [Axis::new(ranges[first], points[0])?, second];
+        let second = if ankle { TableAxis::new(ranges[2], points[1])? } else { TableAxis::POINT };
+        let axes = [TableAxis::new(ranges[first], points[0])?, second];
         let mut rows = Vec::with_capacity(axes[0].points * axes[1].points);
         let mut share = 0.0;
         for i in 0..axes[0].points {
@@ -185,7 +185,7 @@ impl FixedTable {
     }
 }
 
-impl Axis {
+impl TableAxis {
     /// The dimension that a table on one joint lacks.
     const POINT: Self = Self { lower: 0, step: 1, points: 1 };
 

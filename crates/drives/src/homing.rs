@@ -1,4 +1,4 @@
-//! How a joint finds out where it is: reference of an incremental encoder.
+//! Homing: reference of a joint with an incremental encoder.
 //!
 //! The encoder on the motor counts from where it was switched on. A joint with an absolute encoder has its reference at
 //! once: what that reads, less the pose in which it reads zero. A joint without one has a home switch, open on one side

@@ -16,13 +16,13 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use crate::turn::Turn;
+use crate::turn::Rotation;
 use crate::{Gear, OutOfDomain};
 
 /// \[1\] Lever, and length of the screw, over the size of the linkage that count as none.
 const LEAST_LEVER: f64 = 1e-6;
 
-/// Where a knee's parts are.
+/// Places of a knee's parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KneeGeometry {
     /// \[1\] Unit vector of the joint's axis.
@@ -80,14 +80,14 @@ impl Knee {
         knee.at(0.0, 0.0).map(|_| knee)
     }
 
-    /// What it was made of.
+    /// Geometry that it was made of.
     pub fn geometry(&self) -> &KneeGeometry {
         &self.geometry
     }
 
     /// Angle, ratio and bias of the motor at joint angle `q` \[rad\] and speed `qd` \[rad/s\].
     pub(crate) fn at(&self, q: f64, qd: f64) -> Result<Gear, OutOfDomain> {
-        let s = Turn::new(self.axis, q).of(&self.attachment);
+        let s = Rotation::new(self.axis, q).of(&self.attachment);
         let r = self.base + s; // (2.15)
         let rp = self.axis.cross(&s);
         let rpp = self.axis.cross(&rp);

@@ -24,6 +24,7 @@ mod elasticity;
 pub mod fit;
 pub mod fixed_table;
 mod friction;
+mod gear;
 pub mod homing;
 mod inverse;
 mod knee;
@@ -38,6 +39,7 @@ pub use control::{Cascade, Feedback, JointControl, Law, Resolution, Sampled, Sam
 pub use elasticity::Elasticity;
 pub use fixed_table::FixedTable;
 pub use friction::{Friction, HarmonicFriction, NoLoadTorque, ScrewFriction, Sliding};
+pub use gear::{Gear, OutOfDomain};
 pub use knee::{Knee, KneeGeometry};
 pub use motor::Motor;
-pub use transmission::{Gear, OutOfDomain, Transmission};
+pub use transmission::Transmission;

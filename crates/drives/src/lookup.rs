@@ -15,7 +15,7 @@ pub struct Table {
     rows: Vec<[f64; 3]>,
     /// Share of the joint that an ankle's motor is driven past.
     knee: f64,
-    /// Whether the table's joints are the second and third one.
+    /// True if the table's joints are the second and third one.
     ankle: bool,
 }
 
@@ -33,6 +33,7 @@ impl Table {
             (ranges[k][0], (ranges[k][1] - ranges[k][0]) / (n - 1) as f64, n)
         };
         let grid = [axis(0), if ankle { axis(1) } else { (0.0, 1.0, 1) }];
+        // Row by row. An ankle turns with the knee at a constant ratio, so the knee needs no axis.
         let mut rows = Vec::with_capacity(grid[0].2 * grid[1].2);
         let mut knee = 0.0;
         for i in 0..grid[0].2 {

@@ -4,13 +4,13 @@ use nalgebra::Vector3;
 
 /// Rotation by an angle about a unit vector: takes components in the child's frame to those in the parent's.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Turn {
+pub(crate) struct Rotation {
     axis: Vector3<f64>,
     sin: f64,
     cos: f64,
 }
 
-impl Turn {
+impl Rotation {
     /// `axis` is a unit vector, `angle` in rad.
     pub(crate) fn new(axis: Vector3<f64>, angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What is wrong with a mesh; lengths in the units and axes of its file.
+/// Fault of a mesh; lengths in the units and axes of its file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeshError {
     /// No triangle has an area.
@@ -20,7 +20,7 @@ pub enum MeshError {
     Number {
         /// Number of the triangle, from 0.
         triangle: usize,
-        /// What it names.
+        /// Vertex that it names.
         vertex: u32,
         /// Number of vertices there are.
         vertices: usize,

@@ -7,8 +7,8 @@
 use nalgebra::Vector3;
 
 use crate::bounds::Bounds;
-use crate::mesh::Triangle;
 use crate::point_triangle::{self, Feature};
+use crate::triangle::Triangle;
 
 /// Triangles below which a node is not divided further (measured: `benches/queries.rs`).
 const LEAF: usize = 4;
@@ -17,7 +17,7 @@ const DEPTH: usize = 33;
 
 /// A node: two children one after the other, or a run of triangles.
 #[derive(Clone, Debug)]
-struct Node {
+struct TreeNode {
     bounds: Bounds,
     /// First child, or first place in `order`.
     first: u32,
@@ -28,7 +28,7 @@ struct Node {
 /// The tree over the triangles of one mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct Hierarchy {
-    nodes: Vec<Node>,
+    nodes: Vec<TreeNode>,
     order: Vec<u32>,
 }
 
@@ -37,7 +37,7 @@ impl Hierarchy {
         let boxes: Vec<Bounds> = triangles.iter().map(|t| Bounds::of(t.corners)).collect();
         let mut tree = Self { nodes: Vec::new(), order: (0..triangles.len() as u32).collect() };
         let (mut order, count) = (std::mem::take(&mut tree.order), triangles.len());
-        tree.nodes.push(Node { bounds: Bounds::NOTHING, first: 0, count: 0 });
+        tree.nodes.push(TreeNode { bounds: Bounds::NOTHING, first: 0, count: 0 });
         tree.divide(0, &boxes, &mut order, 0, count);
         tree.order = order;
         tree
@@ -48,7 +48,7 @@ impl Hierarchy {
         let run = &mut order[from..to];
         let bounds = run.iter().fold(Bounds::NOTHING, |b, i| b.with(&boxes[*i as usize]));
         if run.len() <= LEAF {
-            self.nodes[n] = Node { bounds, first: from as u32, count: run.len() as u32 };
+            self.nodes[n] = TreeNode { bounds, first: from as u32, count: run.len() as u32 };
             return;
         }
         let centre = |i: &u32| (boxes[*i as usize].lo + boxes[*i as usize].hi) / 2.0;
@@ -56,8 +56,8 @@ impl Hierarchy {
         let half = run.len() / 2;
         run.select_nth_unstable_by(half, |a, b| centre(a)[axis].total_cmp(&centre(b)[axis]));
         let first = self.nodes.len();
-        self.nodes[n] = Node { bounds, first: first as u32, count: 0 };
-        let empty = Node { bounds: Bounds::NOTHING, first: 0, count: 0 };
+        self.nodes[n] = TreeNode { bounds, first: first as u32, count: 0 };
+        let empty = TreeNode { bounds: Bounds::NOTHING, first: 0, count: 0 };
         self.nodes.extend([empty.clone(), empty]);
         self.divide(first, boxes, order, from, from + half);
         self.divide(first + 1, boxes, order, from + half, to);

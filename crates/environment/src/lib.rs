@@ -1,4 +1,4 @@
-//! What a robot stands on: the plane z = 0 and rigid objects on it (thesis 2.3.2), and the distance of a point to them.
+//! Environment of a robot: the plane z = 0 and rigid objects on it (thesis 2.3.2), and the distance of a point to them.
 //!
 //! - [`Environment`]: ground and objects; [`Environment::query`] answers with gap, normal and what was hit.
 //! - [`Object`]: a [`Mesh`] with a pose; it may appear, move and vanish while nothing touches it.
@@ -7,23 +7,29 @@
 //! Lengths in m, z up. Everything is allocated in `new`; queries and [`Environment::advance`] allocate nothing and
 //! answer every input: where a point is no number, the answer is [`Surface::Far`].
 
+mod advance;
 mod bounds;
 mod error;
 mod hierarchy;
 mod mesh;
 mod object;
 mod point_triangle;
+mod pose;
 mod query;
 mod read;
 mod schedule;
 mod shapes;
 mod topology;
+mod triangle;
 
 pub use bounds::Bounds;
 pub use error::MeshError;
-pub use mesh::{Mesh, Nearest, Report};
-pub use object::{Object, Pose};
+pub use mesh::Mesh;
+pub use object::Object;
 pub use point_triangle::{Feature, closest};
-pub use query::{Environment, Hit, REACH, Surface};
+pub use pose::Pose;
+pub use query::{Environment, Event, Hit, REACH, Surface};
 pub use read::ReadError;
-pub use schedule::{Event, Schedule};
+pub use schedule::Schedule;
+pub use topology::MeshRepairs;
+pub use triangle::Nearest;

@@ -17,8 +17,9 @@ use nalgebra::Vector3;
 use crate::MeshError;
 use crate::bounds::Bounds;
 use crate::hierarchy::Hierarchy;
-use crate::point_triangle::{self, Feature};
-use crate::topology;
+use crate::point_triangle;
+use crate::topology::{self, MeshRepairs};
+use crate::triangle::{Nearest, Triangle};
 
 /// A closed surface with outward normals. Never changes after construction.
 #[derive(Clone, Debug)]
@@ -26,55 +27,17 @@ pub struct Mesh {
     triangles: Vec<Triangle>,
     hierarchy: Hierarchy,
     bounds: Bounds,
-    report: Report,
+    repairs: MeshRepairs,
 }
-
-/// What was put right while the mesh was built.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Report {
-    /// Triangles without area that were left out.
-    pub degenerate: usize,
-    /// All triangles were wound the other way round, and were turned.
-    pub inside_out: bool,
-}
-
-/// One triangle with its normals.
-#[derive(Clone, Debug)]
-pub(crate) struct Triangle {
-    /// \[m\] v0, v1, v2
-    pub(crate) corners: [Vector3<f64>; 3],
-    /// \[1\] of the face
-    pub(crate) normal: Vector3<f64>,
-    /// \[1\] of the edges k to k + 1
-    pub(crate) edge_normals: [Vector3<f64>; 3],
-    /// \[1\] of the corners
-    pub(crate) vertex_normals: [Vector3<f64>; 3],
-}
-
-/// The nearest point of a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
-    /// \[m\] g, negative inside.
-    pub gap: f64,
-    /// \[1\] Gradient of g.
-    pub normal: Vector3<f64>,
-    /// \[m\] p_min
-    pub point: Vector3<f64>,
-    /// Number of the triangle p_min was found on.
-    pub triangle: usize,
-}
-
-/// Below this distance \[m\] the direction to p_min is rounding, and the (pseudo-)normal is taken.
-const ON_SURFACE: f64 = 1e-12;
 
 impl Mesh {
     /// The mesh of `triangles`, given as numbers of `vertices` \[m\], each counter-clockwise seen from outside.
     pub fn new(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
         let solid = topology::solid(vertices, triangles)?;
-        let (triangles, report) = (solid.triangles, solid.report);
+        let (triangles, repairs) = (solid.triangles, solid.repairs);
         let hierarchy = Hierarchy::new(&triangles);
         let bounds = Bounds::of(triangles.iter().flat_map(|t| t.corners));
-        Ok(Self { triangles, hierarchy, bounds, report })
+        Ok(Self { triangles, hierarchy, bounds, repairs })
     }
 
     /// Number of triangles.
@@ -87,9 +50,9 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    /// What was put right.
-    pub fn report(&self) -> Report {
-        self.report
+    /// Repairs while it was built.
+    pub fn repairs(&self) -> MeshRepairs {
+        self.repairs
     }
 
     /// \[m\] The box around all corners.
@@ -134,29 +97,5 @@ impl Mesh {
             }
         }
         best.map(|(i, point, feature)| self.triangles[i].signed(p, point, feature, i))
-    }
-}
-
-impl Triangle {
-    /// \[m\] How far `p` lies above the plane of the face.
-    pub(crate) fn height(&self, p: &Vector3<f64>) -> f64 {
-        self.normal.dot(&(p - self.corners[0]))
-    }
-
-    fn signed(&self, p: &Vector3<f64>, point: Vector3<f64>, feature: Feature, triangle: usize) -> Nearest {
-        let normal = match feature {
-            Feature::Face => {
-                return Nearest { gap: self.height(p), normal: self.normal, point, triangle };
-            }
-            Feature::Edge(k) => self.edge_normals[usize::from(k)],
-            Feature::Vertex(k) => self.vertex_normals[usize::from(k)],
-        };
-        let r = p - point;
-        let (d, side) = (r.norm(), normal.dot(&r));
-        if d < ON_SURFACE {
-            return Nearest { gap: side, normal, point, triangle };
-        }
-        let sign = if side < 0.0 { -1.0 } else { 1.0 };
-        Nearest { gap: sign * d, normal: r * (sign / d), point, triangle }
     }
 }

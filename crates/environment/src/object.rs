@@ -1,19 +1,12 @@
 //! A solid at a place.
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use crate::bounds::Bounds;
-use crate::mesh::{Mesh, Nearest};
+use crate::mesh::Mesh;
+use crate::pose::Pose;
 use crate::schedule::Schedule;
-
-/// Where an object is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// \[m\] @world Origin of the mesh.
-    pub position: Vector3<f64>,
-    /// world_from_mesh
-    pub rotation: UnitQuaternion<f64>,
-}
+use crate::triangle::Nearest;
 
 /// A solid with its pose, its friction and what is planned for it.
 #[derive(Clone, Debug)]
@@ -46,27 +39,6 @@ const STANDABLE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// \[1\] How many times as deep as the nearest face a face one can stand on may be and still be the one a point came
 /// through.
 const FLOOR_FAVOUR: f64 = 4.0;
-
-impl Pose {
-    /// At the origin, not turned.
-    pub fn identity() -> Self {
-        Self { position: Vector3::zeros(), rotation: UnitQuaternion::identity() }
-    }
-
-    /// Turned by `roll`, then `pitch`, then `yaw` \[rad\] about x, y and z of the world, and moved to `position` \[m\].
-    pub fn new(position: [f64; 3], [roll, pitch, yaw]: [f64; 3]) -> Self {
-        Self { position: position.into(), rotation: UnitQuaternion::from_euler_angles(roll, pitch, yaw) }
-    }
-
-    /// `s` of the way to `other`: straight, and about one axis.
-    pub(crate) fn towards(&self, other: &Self, s: f64) -> Self {
-        if self == other {
-            return *self;
-        }
-        let rotation = self.rotation.try_slerp(&other.rotation, s, 1e-9).unwrap_or(other.rotation);
-        Self { position: self.position.lerp(&other.position, s), rotation }
-    }
-}
 
 impl Object {
     /// The solid `mesh` for the whole of a run or as `schedule` says; `friction` \[1\] if not that of the robot's soles.
@@ -101,7 +73,7 @@ impl Object {
         &self.mesh
     }
 
-    /// Where it is.
+    /// Its pose.
     pub fn pose(&self) -> &Pose {
         &self.pose
     }

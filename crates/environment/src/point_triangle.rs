@@ -13,7 +13,7 @@
 
 use nalgebra::Vector3;
 
-/// Where on the triangle the nearest point lies.
+/// Part of the triangle that the nearest point lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
     /// R_0: inside.

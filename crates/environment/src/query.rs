@@ -8,13 +8,12 @@
 use nalgebra::Vector3;
 
 use crate::object::Object;
-use crate::schedule::Event;
 
 /// \[m\] How far around an object the distance to it is computed: boxes are enlarged by it. Further away a lower bound
 /// is enough, because nothing touches.
 pub const REACH: f64 = 0.01;
 
-/// What was hit.
+/// Surface that was hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
     /// Nothing within reach: the gap is a lower bound, the normal points up.
@@ -34,6 +33,19 @@ pub struct Hit {
     pub normal: [f64; 3],
     /// Whose surface it is.
     pub surface: Surface,
+}
+
+/// Change of an object in [`crate::Environment::advance`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// Its next change has to wait, because it is touched or would touch.
+    Refused(usize),
+    /// It goes on with its schedule.
+    Resumed(usize),
+    /// It is there from now on.
+    Appeared(usize),
+    /// It is not there any more.
+    Vanished(usize),
 }
 
 /// Ground and objects.

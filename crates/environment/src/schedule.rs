@@ -1,11 +1,6 @@
-//! Objects in time: they appear, move along a polyline of poses and vanish, but only while nothing touches them.
-//!
-//! Each object has a clock of its own. It stands still while the next change would reach something that touches the
-//! object, or would put the object where a node of the robot is; so what is planned happens late, in the same order and
-//! at the same speed, and never by a jump.
+//! Plan of one object: when it is there, and where.
 
-use crate::object::Pose;
-use crate::query::Environment;
+use crate::pose::Pose;
 
 /// When an object is there, and where.
 #[derive(Clone, Debug)]
@@ -16,19 +11,6 @@ pub struct Schedule {
     pub vanishes: f64,
     /// Poses by time \[s\], ascending; at least one. Between them straight, before and after them at rest.
     poses: Vec<(f64, Pose)>,
-}
-
-/// What happened to an object in [`Environment::advance`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
-    /// Its next change has to wait, because it is touched or would touch.
-    Refused(usize),
-    /// It goes on with its schedule.
-    Resumed(usize),
-    /// It is there from now on.
-    Appeared(usize),
-    /// It is not there any more.
-    Vanished(usize),
 }
 
 impl Schedule {
@@ -56,41 +38,5 @@ impl Schedule {
             (Some((_, last)), None) => *last,
             (None, _) => self.poses[0].1,
         }
-    }
-}
-
-impl Environment {
-    /// Moves every object to where its schedule has it at `time` \[s\], except those that `touched` says something
-    /// touches, and those that would enclose one of the `nodes` \[m\] @world there. Returns what happened. An object
-    /// that has to wait loses the whole step, so steps should be short: a bus cycle.
-    pub fn advance(&mut self, time: f64, touched: &[bool], nodes: &[[f64; 3]]) -> &[Event] {
-        self.events.clear();
-        let step = (time - self.time).max(0.0);
-        self.time += step;
-        for (i, object) in self.objects.iter_mut().enumerate() {
-            let clock = object.clock + step;
-            let (present, pose) = (object.schedule.is_present(clock), object.schedule.pose(clock));
-            let changes = present != object.present || (present && pose != *object.pose());
-            if !changes {
-                object.clock = clock;
-                continue;
-            }
-            let held = object.present && touched.get(i).copied().unwrap_or(false);
-            if held || (present && !object.moved_clear_of(nodes, pose)) {
-                if !object.refused {
-                    self.events.push(Event::Refused(i));
-                }
-                object.refused = true;
-                continue;
-            }
-            if std::mem::take(&mut object.refused) {
-                self.events.push(Event::Resumed(i));
-            }
-            if present != object.present {
-                self.events.push(if present { Event::Appeared(i) } else { Event::Vanished(i) });
-            }
-            (object.clock, object.present) = (clock, present);
-        }
-        &self.events
     }
 }

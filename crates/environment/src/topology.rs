@@ -6,17 +6,26 @@ use std::collections::HashMap;
 use nalgebra::Vector3;
 
 use crate::MeshError;
-use crate::mesh::{Report, Triangle};
 use crate::point_triangle::degenerate;
+use crate::triangle::Triangle;
 
 /// More triangles than any floor needs; a file that says so is broken.
 pub(crate) const MOST_TRIANGLES: usize = 2_000_000;
 /// \[m\] Larger coordinates are a file in other units than it was taken for.
 const LARGEST: f64 = 1e4;
 
+/// Repairs of a mesh while it was built.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MeshRepairs {
+    /// Triangles without area that were left out.
+    pub degenerate: usize,
+    /// All triangles were wound the other way round, and were turned.
+    pub inside_out: bool,
+}
+
 pub(crate) struct Solid {
     pub(crate) triangles: Vec<Triangle>,
-    pub(crate) report: Report,
+    pub(crate) repairs: MeshRepairs,
 }
 
 pub(crate) fn solid(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Solid, MeshError> {
@@ -27,20 +36,20 @@ pub(crate) fn solid(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Sol
         .map(|t| t.map(|i| joined[i as usize]))
         .filter(|[a, b, c]| a != b && b != c && c != a)
         .collect();
-    let mut report = Report { degenerate: triangles.len() - numbers.len(), inside_out: false };
+    let mut repairs = MeshRepairs { degenerate: triangles.len() - numbers.len(), inside_out: false };
     let at = |i: u32| Vector3::from(vertices[i as usize]);
     let edges = closed(&numbers, &at)?;
     let volume: f64 = numbers.iter().map(|t| at(t[0]).dot(&at(t[1]).cross(&at(t[2])))).sum::<f64>() / 6.0;
     if volume == 0.0 {
         return Err(MeshError::Empty);
     }
-    report.inside_out = volume < 0.0;
+    repairs.inside_out = volume < 0.0;
     let solid = normals(&numbers, &at, &edges, volume.signum());
-    report.degenerate += numbers.len() - solid.len();
+    repairs.degenerate += numbers.len() - solid.len();
     if solid.is_empty() {
         return Err(MeshError::Empty);
     }
-    Ok(Solid { triangles: solid, report })
+    Ok(Solid { triangles: solid, repairs })
 }
 
 fn check_numbers(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
@@ -69,11 +78,11 @@ fn join(vertices: &[[f64; 3]]) -> Vec<u32> {
 }
 
 /// The triangle left of each directed edge.
-type Edges = HashMap<(u32, u32), u32>;
+type SolidEdges = HashMap<(u32, u32), u32>;
 
 /// Every edge must belong to two triangles that pass it in opposite directions.
-fn closed(numbers: &[[u32; 3]], at: &impl Fn(u32) -> Vector3<f64>) -> Result<Edges, MeshError> {
-    let mut edges = Edges::with_capacity(3 * numbers.len());
+fn closed(numbers: &[[u32; 3]], at: &impl Fn(u32) -> Vector3<f64>) -> Result<SolidEdges, MeshError> {
+    let mut edges = SolidEdges::with_capacity(3 * numbers.len());
     let ends = |a, b| (at(a).into(), at(b).into());
     for (i, t) in numbers.iter().enumerate() {
         for k in 0..3 {
@@ -99,7 +108,7 @@ fn closed(numbers: &[[u32; 3]], at: &impl Fn(u32) -> Vector3<f64>) -> Result<Edg
 fn normals(
     numbers: &[[u32; 3]],
     at: &impl Fn(u32) -> Vector3<f64>,
-    edges: &Edges,
+    edges: &SolidEdges,
     sign: f64,
 ) -> Vec<Triangle> {
     let face = |t: &[u32; 3]| {

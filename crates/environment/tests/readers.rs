@@ -177,11 +177,11 @@ fn put_right() {
     let degenerate = text_stl().replacen("facet normal", "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nvertex 0.5 0 0\nendloop\nendfacet\nfacet normal", 1);
     let mesh = read("degenerate.stl", degenerate).unwrap();
     is_the_wedge(&mesh);
-    assert_eq!((mesh.report().degenerate, mesh.report().inside_out), (1, false));
+    assert_eq!((mesh.repairs().degenerate, mesh.repairs().inside_out), (1, false));
     let turned: Vec<[u32; 3]> = TRIANGLES.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
     let mesh = Mesh::new(&VERTICES, &turned).unwrap();
     is_the_wedge(&mesh);
-    assert!(mesh.report().inside_out);
+    assert!(mesh.repairs().inside_out);
 }
 
 #[test]

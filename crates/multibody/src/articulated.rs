@@ -12,8 +12,9 @@
 
 use nalgebra::{Matrix6, Vector6};
 
+use crate::body::Body;
 use crate::data::{Articulated, Data, Local, with_turn};
-use crate::model::{Body, G, Model};
+use crate::model::{G, Model};
 use crate::space::{Mat3, Sym3, V3, ZERO, v3};
 use crate::turn::Turn;
 
@@ -37,6 +38,7 @@ impl Model {
         self.set_position(data, q);
         let Data { joints, oblique, locals, articulated, base, .. } = data;
 
+        // Outwards: velocities, and what they alone accelerate.
         let w = V3::from_slice(&v[3..]);
         locals[0].w = w;
         articulated[0] = own(&self.bodies[0], w, ZERO, ZERO);
@@ -48,6 +50,7 @@ impl Model {
                 articulated[k] = own(body, w, cw, ca);
             });
         }
+        // Inwards: articulated inertia, with each joint eliminated.
         for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
             let (before, from) = articulated.split_at_mut(k);
             let j = &joints[k];
@@ -55,6 +58,7 @@ impl Model {
                 eliminate(t, &mut from[0], force[k + 5] * body.sign, j.r, &mut before[body.parent]);
             });
         }
+        // Outwards again from the base, which nothing holds: accelerations.
         let (dw, a) = free(&articulated[0], V3::from_slice(force), V3::from_slice(&force[3..]));
         locals[0] = Local { w, dw, a, ..Local::default() };
         for (k, body) in self.bodies.iter().enumerate().skip(1) {

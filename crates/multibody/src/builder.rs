@@ -2,12 +2,13 @@
 
 use nalgebra::{IsometryMatrix3, Rotation3, Unit, Vector3};
 
+use crate::body::{Body, Kind, Link};
 use crate::error::ModelError;
 use crate::inertia::Inertia;
-use crate::model::{Body, Kind, Link, Model};
-use crate::space::{Mat3, Sym3, V3};
+use crate::model::Model;
+use crate::space::{Sym3, V3};
 
-/// How a child link moves against its parent. The axis is given in the child's frame, of any length above zero.
+/// Motion of a child link against its parent. The axis is given in the child's frame, of any length above zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointKind {
     /// Not at all: the child becomes part of its parent's body.
@@ -65,6 +66,7 @@ impl ModelBuilder {
         if let Some(fault) = inertia.fault() {
             return Err(ModelError::Inertia(child.into(), fault));
         }
+        // A fixed link is part of the body that carries its parent.
         let in_parent = parent.pose * placement;
         let carrier = parent.body;
         let (axis, slides) = match kind {
@@ -81,6 +83,7 @@ impl ModelBuilder {
         }
         let axis = Unit::try_new(in_parent.rotation * axis, 1e-9)
             .ok_or_else(|| ModelError::Geometry(name.into()))?;
+        // Frames of the bodies are parallel to the base at zero coordinates, whatever the links' axes are.
         let pose = IsometryMatrix3::from_parts(Vector3::zeros().into(), in_parent.rotation);
         let body = self.inertias.len();
         self.joints.push(NewJoint {
@@ -154,9 +157,4 @@ pub(crate) fn rotation_from_rpy(rpy: [f64; 3]) -> Rotation3<f64> {
     let exact = |a: f64| if a.abs() < 4e-16 { 0.0 } else { a };
     let m = *Rotation3::from_euler_angles(rpy[0], rpy[1], rpy[2]).matrix();
     Rotation3::from_matrix_unchecked(m.map(exact))
-}
-
-/// Internal rotation of a frame as the kernels want it.
-pub(crate) fn kernel_rotation(pose: &IsometryMatrix3<f64>) -> Mat3 {
-    pose.rotation.into()
 }

@@ -2,8 +2,9 @@
 
 use nalgebra::{Const, Dyn, Matrix, RawStorageMut, Vector3};
 
+use crate::body::Kind;
 use crate::data::Data;
-use crate::model::{Kind, Model};
+use crate::model::Model;
 use crate::space::{V3, ZERO};
 
 /// Momentum of the robot about its centre of gravity, world axes.

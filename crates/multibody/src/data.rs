@@ -2,14 +2,15 @@
 
 use nalgebra::DMatrix;
 
-use crate::model::{Body, Kind, Model};
-use crate::rotor::Spin;
+use crate::body::{Body, Composite, Kind};
+use crate::gyro::Spin;
+use crate::model::Model;
 use crate::space::{Mat3, Sym3, Twin, V3, ZERO, v3};
 use crate::trigonometry::sin_cos;
 
 /// Results and scratch for one [`Model`]. Nothing allocates after [`Data::new`].
 ///
-/// What a function leaves here it says in its documentation; a query reads what the last update left.
+/// Each function says in its documentation what it leaves here; a query reads what the last update left.
 #[derive(Clone, Debug)]
 pub struct Data {
     pub(crate) sin: Vec<f64>,
@@ -20,8 +21,8 @@ pub struct Data {
     /// Attitude and origin of the base.
     pub(crate) base: Mat3,
     pub(crate) origin: V3,
-    pub(crate) places: Vec<Place>,
-    pub(crate) motions: Vec<Motion>,
+    pub(crate) places: Vec<BodyPlace>,
+    pub(crate) motions: Vec<BodyMotion>,
     /// First moments of mass of the carried bodies, about the world's origin, world axes.
     pub(crate) moments: Vec<V3>,
     pub(crate) locals: Vec<Local>,
@@ -56,7 +57,7 @@ impl Position {
 
 /// A body in the world: rotation world_from_body, origin, axis of its joint along the coordinate.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct BodyPlace {
     pub a: Mat3,
     pub r: V3,
     pub e: V3,
@@ -64,7 +65,7 @@ pub(crate) struct Place {
 
 /// A body's motion, world axes: angular velocity, velocity of the origin, and both accelerations at v' = 0.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Motion {
+pub(crate) struct BodyMotion {
     pub w: V3,
     pub v: V3,
     pub dw: V3,
@@ -81,13 +82,6 @@ pub(crate) struct Local {
     pub a: V3,
     pub f: V3,
     pub n: V3,
-}
-
-/// First moment and moments of inertia about the body's origin of the body and all it carries.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Composite {
-    pub mc: V3,
-    pub i: Sym3,
 }
 
 /// Articulated inertia about the body's origin and what the elimination of the joint leaves for the second sweep.
@@ -136,8 +130,8 @@ impl Data {
             oblique: vec![Mat3::IDENTITY; nb],
             base: Mat3::IDENTITY,
             origin: ZERO,
-            places: vec![Place { a: Mat3::IDENTITY, r: ZERO, e: v3(0.0, 0.0, 1.0) }; nb],
-            motions: vec![Motion::default(); nb],
+            places: vec![BodyPlace { a: Mat3::IDENTITY, r: ZERO, e: v3(0.0, 0.0, 1.0) }; nb],
+            motions: vec![BodyMotion::default(); nb],
             moments: vec![ZERO; nb],
             locals: vec![Local::default(); nb],
             composites: vec![Composite::default(); nb],
@@ -191,7 +185,7 @@ impl Articulated {
 /// Runs an expression with the joint's [`crate::turn::Turn`]; the kernel is compiled for each kind.
 macro_rules! with_turn {
     ($body:expr, $joint:expr, $oblique:expr, $t:ident => $run:expr) => {{
-        use $crate::model::Kind;
+        use $crate::body::Kind;
         use $crate::turn::{About, AboutX, AboutY, AboutZ, Along};
         match $body.kind {
             Kind::X => {

@@ -1,4 +1,4 @@
-//! What can be wrong with a robot's description.
+//! Faults of a robot's description.
 
 use std::fmt;
 

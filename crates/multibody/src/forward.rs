@@ -72,6 +72,7 @@ fn turning<T: Turn>(t: T, p_dw: V3, w: V3, qd: f64, qdd: f64) -> V3 {
 /// Every row begins with the six columns of the base, which are updated at their fixed length.
 pub(crate) fn factor(paths: &Paths, l: &mut [f64]) {
     let nv = paths.start.len() - 1;
+    // Joints from the tips: each takes its share from the rows of its ancestors.
     let mut base = [[0.0; 6]; 6];
     for k in (6..nv).rev() {
         let range = paths.row(k);
@@ -91,12 +92,14 @@ pub(crate) fn factor(paths: &Paths, l: &mut [f64]) {
             }
             joints[t] = a;
         }
+        // The base gets its share in a block of its own, so that the rows above stay independent of each other.
         let scaled = six.map(|x| x * d);
         for (to, a) in base.iter_mut().zip(scaled) {
             subtract(to, six, a);
         }
         *six = scaled;
     }
+    // Then the base, a dense triangle of six.
     for k in 0..6 {
         for (x, y) in l[paths.row(k)].iter_mut().zip(&base[k]) {
             *x += y;

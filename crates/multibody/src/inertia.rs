@@ -52,7 +52,7 @@ impl Inertia {
         Inertia { mass, center, moments: about(self) + about(other) }
     }
 
-    /// What is wrong with a link of its own: negative mass, moments without mass, or principal moments that no
+    /// Fault of a link by itself: negative mass, moments without mass, or principal moments that no
     /// distribution of mass has (the largest exceeds the sum of the other two).
     pub(crate) fn fault(&self) -> Option<String> {
         let m = &self.moments;
@@ -75,7 +75,7 @@ impl Inertia {
         })
     }
 
-    /// What is wrong with a whole moving body: no mass, or no resistance to some rotation.
+    /// Fault of a whole moving body: no mass, or no resistance to some rotation.
     pub(crate) fn fault_of_moving_body(&self) -> Option<String> {
         if self.mass <= 0.0 {
             return Some(format!("the moving body has mass {} kg, must be above zero", self.mass));

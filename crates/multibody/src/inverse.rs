@@ -13,8 +13,9 @@
 
 use nalgebra::Vector3;
 
+use crate::body::Body;
 use crate::data::{Data, Local, with_turn};
-use crate::model::{Body, Frame, G, Model};
+use crate::model::{Frame, G, Model};
 use crate::space::{Mat3, V3, ZERO, v3};
 use crate::turn::Turn;
 
@@ -79,6 +80,7 @@ impl Model {
     ) {
         assert_eq!(v.len(), self.nv(), "length of v");
         let Data { joints, oblique, locals, base: attitude, spins, .. } = data;
+        // Outwards: motion of each body, and the force that it takes by itself. Gravity is an acceleration of the base.
         let w = V3::from_slice(&v[3..]);
         let a = base.0 + w.cross(V3::from_slice(v)) - attitude.t_mul(G);
         locals[0] = load(&self.bodies[0], w, base.1, a);
@@ -87,7 +89,9 @@ impl Model {
             let (qd, qdd) = (v[k + 5] * body.sign, qdd(k) * body.sign);
             with_turn!(body, j, &oblique[k], t => locals[k] = out(t, p, j.offset(), qd, qdd, body));
         }
+        // Rotors between the sweeps: they need their stators' motion, and load them before the loads are summed.
         self.load_stators(locals, spins, v, &qdd);
+        // Inwards: each joint bears its body and all that hangs on it.
         for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
             let (own, j) = (locals[k], &joints[k]);
             let p = &mut locals[body.parent];
@@ -111,7 +115,7 @@ fn collect(data: &Data, force: &mut [f64]) {
     force[3..6].copy_from_slice(&base.n.array());
 }
 
-/// What a joint feels: the moment if it turns, the force if it slides.
+/// Load of a joint: the moment if it turns, the force if it slides.
 #[inline(always)]
 pub(crate) fn choose<T: Turn>(_: T, turning: V3, sliding: V3) -> V3 {
     if T::SLIDES { sliding } else { turning }

@@ -5,8 +5,9 @@
 
 use nalgebra::{Const, Dyn, Matrix, RawStorageMut};
 
+use crate::body::Kind;
 use crate::data::Data;
-use crate::model::{Frame, Kind, Model};
+use crate::model::{Frame, Model};
 use crate::space::{V3, ZERO};
 
 /// A matrix with 6 rows, the caller's: owned or a view into a larger one.

@@ -13,8 +13,9 @@
 
 use nalgebra::{IsometryMatrix3, Vector3};
 
-use crate::data::{Data, Motion, Place, with_turn};
-use crate::model::{Frame, Kind, Model};
+use crate::body::Kind;
+use crate::data::{BodyMotion, BodyPlace, Data, with_turn};
+use crate::model::{Frame, Model};
 use crate::space::{Mat3, V3, ZERO};
 use crate::turn::Turn;
 
@@ -44,12 +45,12 @@ impl Model {
     /// [`Model::forward_kinematics`] at the configuration that `data` has.
     pub fn forward_kinematics_here(&self, data: &mut Data) {
         let Data { joints, oblique, places, base, origin, .. } = data;
-        places[0] = Place { a: *base, r: *origin, e: ZERO };
+        places[0] = BodyPlace { a: *base, r: *origin, e: ZERO };
         for (k, body) in self.bodies.iter().enumerate().skip(1) {
             let (p, j) = (places[body.parent], &joints[k]);
             with_turn!(body, j, &oblique[k], t => {
                 let a = t.chain(p.a);
-                places[k] = Place { a, r: p.r + p.a * j.r, e: t.column_of(&a) * body.sign };
+                places[k] = BodyPlace { a, r: p.r + p.a * j.r, e: t.column_of(&a) * body.sign };
             });
         }
     }
@@ -77,7 +78,7 @@ impl Model {
     pub fn limb_motion_here(&self, data: &mut Data, limbs: &Limbs, v: &[f64]) {
         assert_eq!(v.len(), self.nv(), "length of v");
         let Data { joints, oblique, places, motions, base, origin, .. } = data;
-        places[0] = Place { a: *base, r: *origin, e: ZERO };
+        places[0] = BodyPlace { a: *base, r: *origin, e: ZERO };
         motions[0] = base_motion(&places[0], v);
         for &k in &limbs.bodies {
             let (body, j) = (&self.bodies[k], &joints[k]);
@@ -85,7 +86,7 @@ impl Model {
             let d = p.a * j.r;
             with_turn!(body, j, &oblique[k], t => {
                 let a = t.chain(p.a);
-                places[k] = Place { a, r: p.r + d, e: t.column_of(&a) * body.sign };
+                places[k] = BodyPlace { a, r: p.r + d, e: t.column_of(&a) * body.sign };
             });
             motions[k] = carried_on(&motions[body.parent], body.kind, d, places[k].e * v[k + 5]);
         }
@@ -163,15 +164,15 @@ impl Model {
 
 /// The base's motion from v.
 #[inline(always)]
-fn base_motion(place: &Place, v: &[f64]) -> Motion {
+fn base_motion(place: &BodyPlace, v: &[f64]) -> BodyMotion {
     let (w, vel) = (place.a * V3::from_slice(&v[3..]), place.a * V3::from_slice(v));
-    Motion { w, v: vel, dw: ZERO, dv: w.cross(vel) }
+    BodyMotion { w, v: vel, dw: ZERO, dv: w.cross(vel) }
 }
 
 /// A body's motion from that of its parent `p`, whose origin is -d away; e has the length of the joint's speed.
 #[inline(always)]
-fn carried_on(p: &Motion, kind: Kind, d: V3, e: V3) -> Motion {
-    let mut m = Motion {
+fn carried_on(p: &BodyMotion, kind: Kind, d: V3, e: V3) -> BodyMotion {
+    let mut m = BodyMotion {
         w: p.w,
         v: p.v + p.w.cross(d),
         dw: p.dw,

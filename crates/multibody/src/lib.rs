@@ -22,6 +22,7 @@
 //! ```
 
 mod articulated;
+mod body;
 mod builder;
 mod centroid;
 mod configuration;
@@ -29,6 +30,7 @@ mod damper;
 mod data;
 mod error;
 mod forward;
+mod gyro;
 mod inertia;
 mod inverse;
 mod jacobian;

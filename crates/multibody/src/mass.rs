@@ -9,7 +9,8 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use crate::data::{Composite, Data, with_turn};
+use crate::body::Composite;
+use crate::data::{Data, with_turn};
 use crate::inverse::choose;
 use crate::model::Model;
 use crate::space::{Twin, V3};
@@ -59,6 +60,7 @@ impl Model {
     /// A joint's kernel is chosen once for its composite and for all momenta that pass it on their way to the base.
     pub(crate) fn rows(&self, data: &mut Data) {
         let Data { joints, oblique, composites, momenta, spins, m, .. } = data;
+        // From the tips: gyrostats of a body, its own momentum, then those that pass through it, then its inertia.
         let mut gyros = &self.gyros[..];
         composites.copy_from_slice(&self.own);
         for (k, body) in self.bodies.iter().enumerate().skip(1).rev() {
@@ -76,6 +78,7 @@ impl Model {
                 carry(t, &own, mass, j.offset(), p);
             });
         }
+        // The base last: what has arrived there are the first six columns of each row.
         base_rows(self.mass(), &composites[0], m);
         for g in gyros {
             g.add_momenta(&spins[g.index], momenta);

@@ -21,11 +21,13 @@
 
 use nalgebra::Vector3;
 
+use crate::body::Body;
 use crate::data::{Data, Local};
 use crate::error::ModelError;
+use crate::gyro::{Gyro, MOST_JOINTS, Spin};
 use crate::inertia::{Inertia, least};
-use crate::model::{Body, Model};
-use crate::space::{Sym3, Twin, V3};
+use crate::model::Model;
+use crate::space::V3;
 
 /// A rotor that [`Model::with_rotors`] puts into a link.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,32 +47,7 @@ pub struct Rotor {
 
 impl Rotor {
     /// Most joints one rotor can be geared to.
-    pub const JOINTS: usize = 3;
-}
-
-/// A rotor as the kernels want it.
-#[derive(Clone, Debug)]
-pub(crate) struct Gyro {
-    /// Place in the caller's list.
-    pub index: usize,
-    pub body: usize,
-    pub j: f64,
-    pub e: V3,
-    /// Bodies moved by the joints it is geared to; none if it is free.
-    pub geared: Vec<usize>,
-    /// For every pair a, b <= a of `geared` the place of the pair's entry in the rows of the mass matrix.
-    pub entries: Vec<[usize; 3]>,
-}
-
-/// What a rotor does at present.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Spin {
-    pub ratio: [f64; Rotor::JOINTS],
-    /// Part of `phi''` at q'' = 0.
-    pub bias: f64,
-    pub s: f64,
-    pub ds: f64,
-    pub torque: f64,
+    pub const JOINTS: usize = MOST_JOINTS;
 }
 
 impl Model {
@@ -85,6 +62,7 @@ impl Model {
                 return Err(ModelError::Duplicate(rotor.name.clone()));
             }
             let gyro = self.gyro(rotor).map_err(fault)?;
+            // A free rotor does not turn along about its axis: the stator's inertia loses that part.
             if gyro.geared.is_empty() {
                 let stator = &mut self.bodies[gyro.body];
                 stator.i += gyro.inertia() * -1.0;
@@ -136,6 +114,7 @@ impl Model {
         if let Some(j) = rotor.joints.iter().find(|&&j| j >= self.n()) {
             return Err(format!("joint {j} does not exist; name one below {}", self.n()));
         }
+        // Its joints hang on the stator: a rotor turns what lies beyond it.
         let geared: Vec<usize> = rotor.joints.iter().map(|j| j + 1).collect();
         if let Some(&k) = geared.iter().find(|&&k| k == link.body || !self.carries(link.body, k)) {
             return Err(format!(
@@ -207,7 +186,7 @@ impl Model {
         }
     }
 
-    /// What the rotors ask of their stators, between the sweeps of the inverse dynamics.
+    /// Adds the rotors' demands on their stators, between the sweeps of the inverse dynamics.
     #[inline(always)]
     pub(crate) fn load_stators(
         &self,
@@ -257,43 +236,6 @@ impl Model {
             };
             (g.body, g.momentum(spin, w), energy)
         })
-    }
-}
-
-impl Gyro {
-    /// j e e^T
-    fn inertia(&self) -> Sym3 {
-        let V3 { x, y, z } = self.e;
-        Sym3 { xx: x * x, yy: y * y, zz: z * z, xy: x * y, xz: x * z, yz: y * z } * self.j
-    }
-
-    /// What the transmission makes of the joints' speeds or accelerations, given by body.
-    #[inline(always)]
-    fn through(&self, spin: &Spin, joint: impl Fn(usize) -> f64) -> f64 {
-        self.geared.iter().zip(spin.ratio).map(|(&k, c)| c * joint(k)).sum()
-    }
-
-    /// Moment of momentum that the stator's inertia does not hold: of a free rotor all about its axis.
-    #[inline(always)]
-    fn momentum(&self, spin: &Spin, w: V3) -> V3 {
-        let locked = if self.geared.is_empty() { self.e.dot(w) } else { 0.0 };
-        self.e * (self.j * (spin.s + locked))
-    }
-
-    /// Adds the moment of momentum for unit speed of each joint that turns the rotor, in the stator's axes.
-    #[inline(always)]
-    pub(crate) fn add_momenta(&self, spin: &Spin, momenta: &mut [Twin]) {
-        for (&k, c) in self.geared.iter().zip(spin.ratio) {
-            momenta[k].add_second(self.e * (self.j * c));
-        }
-    }
-
-    /// Adds the entries j c_a c_b of the mass matrix.
-    #[inline(always)]
-    pub(crate) fn add_entries(&self, spin: &Spin, m: &mut [f64]) {
-        for &[a, b, at] in &self.entries {
-            m[at] += self.j * spin.ratio[a] * spin.ratio[b];
-        }
     }
 }
 

@@ -1,6 +1,6 @@
-//! Where the mass matrix has entries: the joints of different limbs do not meet.
+//! Sparsity of the mass matrix: the joints of different limbs do not meet.
 
-use crate::model::Body;
+use crate::body::Body;
 
 /// For every degree of freedom the degrees of freedom from the base to it, itself last.
 ///
@@ -12,7 +12,7 @@ pub(crate) struct Paths {
     /// First entry of each row; one more at the end.
     pub start: Vec<usize>,
     pub column: Vec<usize>,
-    /// Where an entry and its mirror image lie in the full matrix.
+    /// Places of an entry and its mirror image in the full matrix.
     pub full: Vec<[u32; 2]>,
 }
 

@@ -1,4 +1,4 @@
-//! What one joint does to vectors: the rotation from child to parent and the joint's axis.
+//! Turn of one joint: the rotation from child to parent and the joint's axis.
 //!
 //! Body frames are laid so that all of them are parallel to the base when every coordinate is zero. Then nearly all
 //! joints of a walking robot turn about x, y or z, and a change of frame is one plane rotation: 4 products in place of

@@ -48,6 +48,7 @@ impl<'a> Tree<'a> {
                 return Err(ModelError::Duplicate(link.name.clone()));
             }
         }
+        // Joints: names that are unique, links that exist, one joint above each.
         for (k, joint) in robot.joints.iter().enumerate() {
             if robot.joints[..k].iter().any(|j| j.name == joint.name) {
                 return Err(ModelError::Duplicate(joint.name.clone()));
@@ -68,6 +69,7 @@ impl<'a> Tree<'a> {
         if !tree.links.contains_key(base) {
             return Err(ModelError::UnknownLink(base.into()));
         }
+        // One tree: a second one, or a loop, would be left out without a word.
         for link in &robot.links {
             if !tree.hangs_on(base, &link.name) {
                 return Err(ModelError::Unreachable(link.name.clone()));

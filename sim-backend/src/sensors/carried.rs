@@ -1,4 +1,4 @@
-//! What a force/torque sensor carries: the wrench that moves the bodies below it and bears their weight.
+//! Load of a force/torque sensor: the wrench that moves the bodies below it and bears their weight.
 //!
 //! F_i = sum of m (a - g) over these bodies and T_i, its moment about the sensor: the share of inverse dynamics that
 //! passes the sensor, in the sensor's axes. While the robot hangs at rest with level feet it is F_0, T_0.

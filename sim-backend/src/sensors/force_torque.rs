@@ -54,7 +54,7 @@ impl ForceTorque {
         }
     }
 
-    /// Whether F_i, T_i matter.
+    /// True if F_i, T_i matter.
     pub fn needs_inertia(&self) -> bool {
         self.inertia
     }

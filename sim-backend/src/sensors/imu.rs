@@ -31,7 +31,7 @@ pub struct Imu {
     latency: Latency<Reading>,
 }
 
-/// How the orientation is spoilt.
+/// Errors of the orientation.
 #[derive(Clone, Debug)]
 struct Orientation {
     low_pass: OrientationLowPass,

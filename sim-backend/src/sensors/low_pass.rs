@@ -13,7 +13,7 @@
 
 use nalgebra::UnitQuaternion;
 
-/// What one step takes over.
+/// State handed from one step to the next.
 #[derive(Clone, Copy, Debug)]
 struct Step {
     /// \[1\] 1 - a: share of the old error that is made up for.

@@ -1,4 +1,4 @@
-//! What the sensors make of the truth (thesis 2.5).
+//! Sensors: from the truth to readings (thesis 2.5).
 //!
 //! | part | where |
 //! |---|---|
@@ -52,7 +52,7 @@ pub struct Truth {
     pub imu: messages::Imu,
 }
 
-/// What was wrong with one cycle's readings. Anything but zeros deserves an event.
+/// Faults of one cycle's readings. Anything but zeros deserves an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Report {
     /// Numbers that are not finite: they stand in the record as NaN, and their frames must not be sent.
@@ -104,7 +104,7 @@ impl SensorSet {
         }
     }
 
-    /// Whether the force sensors ask for [`Truth::inertial`]; it costs the caller an inverse dynamics.
+    /// True if the force sensors ask for [`Truth::inertial`]; it costs the caller an inverse dynamics.
     pub fn needs_inertia(&self) -> bool {
         self.feet.as_ref().is_some_and(|[right, _]| right.needs_inertia())
     }

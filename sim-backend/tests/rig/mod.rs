@@ -11,7 +11,7 @@ use multibody::{Data, Frame, Momentum};
 use nalgebra::Vector3;
 use sim_backend::drive::{Drive, Motion};
 use sim_backend::integrate::Stepper;
-use sim_backend::plant::{Outside, Plant, Snapshot, orientation};
+use sim_backend::plant::{Plant, PlantInputs, Snapshot, orientation};
 
 /// \[rad/s\] Speed over which explicit methods see dry friction change its sign.
 const SLOW: f64 = 1.0;
@@ -23,7 +23,7 @@ pub(crate) struct Rig {
     pub(crate) pose: Vec<f64>,
     pub(crate) x: Vec<f64>,
     pub(crate) drives: Vec<Drive>,
-    pub(crate) outside: Outside,
+    pub(crate) inputs: PlantInputs,
     data: Data,
 }
 
@@ -55,8 +55,8 @@ impl Rig {
         let x = plant.standing(&pose);
         let drives = pose.iter().map(|&q| Drive::resting(q)).collect();
         let data = Data::new(plant.model());
-        let outside = Outside { powered: true, ..Outside::default() };
-        Self { robot, plant, depth, pose, x, drives, outside, data }
+        let inputs = PlantInputs::POWERED;
+        Self { robot, plant, depth, pose, x, drives, inputs, data }
     }
 
     /// Lifts the robot by a metre, its contact layer at rest.
@@ -109,7 +109,7 @@ impl Rig {
 
     pub(crate) fn rate(&mut self, t: f64, x: &[f64]) -> Vec<f64> {
         let mut dx = vec![0.0; x.len()];
-        self.plant.rate(t, x, &self.drives, &self.outside, &mut dx);
+        self.plant.rate(t, x, &self.drives, &self.inputs, &mut dx);
         dx
     }
 
@@ -118,13 +118,13 @@ impl Rig {
         let mut stepper = Stepper::new(integrator, self.x.len());
         let h = (end - t0) / f64::from(steps);
         for i in 0..steps {
-            let Self { plant, x, drives, outside, .. } = self;
-            stepper.step(plant, t0 + f64::from(i) * h, h, x, drives, outside);
+            let Self { plant, x, drives, inputs, .. } = self;
+            stepper.step(plant, t0 + f64::from(i) * h, h, x, drives, inputs);
         }
     }
 
     pub(crate) fn snapshot(&mut self, t: f64) -> Snapshot {
-        self.plant.snapshot(t, &self.x, &self.drives, &self.outside)
+        self.plant.snapshot(t, &self.x, &self.drives, &self.inputs)
     }
 
     /// Drives whose gears are elastic in this type, in the order of their rotors.
@@ -209,11 +209,11 @@ impl Rig {
         let current = &x[self.plant.layout().current()];
         let mut sum = Flow::default();
         for ((d, i), (_, speed)) in self.robot.drives.iter().zip(current).zip(self.motors(t, x)) {
-            let driving = if self.outside.powered { d.motor.torque(*i) } else { 0.0 };
+            let driving = if self.inputs.switches.powered { d.motor.torque(*i) } else { 0.0 };
             sum.motors += driving * speed;
             sum.friction += d.friction.torque(speed, driving, SLOW).unwrap() * speed;
             sum.heat += d.motor.resistance * i * i;
-            if let Some(brake) = d.brake.filter(|_| self.outside.braked != 0) {
+            if let Some(brake) = d.brake.filter(|_| self.inputs.switches.braked != 0) {
                 sum.brakes -= brake.torque * (speed / SLOW).clamp(-1.0, 1.0) * speed;
             }
         }

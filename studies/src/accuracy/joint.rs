@@ -9,7 +9,7 @@ use std::error::Error;
 use config::Setup;
 use environment::Environment;
 use sim_backend::drive::Drive;
-use sim_backend::plant::{Outside, Plant};
+use sim_backend::plant::{Plant, PlantInputs};
 
 use super::system::{Method, Motion, System, Times, largest};
 use super::{Chart, Given, Part, Point};
@@ -70,7 +70,7 @@ fn extrapolated(finer: &Motion, coarser: &Motion) -> Motion {
 struct Hovering {
     plant: Plant,
     drives: Vec<Drive>,
-    outside: Outside,
+    inputs: PlantInputs,
     joint: usize,
     start: Vec<f64>,
 }
@@ -87,16 +87,16 @@ impl Hovering {
         start[layer].fill(0.0);
         let mut drives: Vec<Drive> = pose.iter().map(|q| Drive::resting(*q)).collect();
         drives[joint] = Drive::resting(pose[joint] + STEP);
-        Ok(Self { plant, drives, outside: Outside { powered: true, ..Outside::default() }, joint, start })
+        Ok(Self { plant, drives, inputs: PlantInputs::POWERED, joint, start })
     }
 }
 
 impl System for Hovering {
     fn rate(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.plant.rate(t, x, &self.drives, &self.outside, dx);
+        self.plant.rate(t, x, &self.drives, &self.inputs, dx);
     }
 
     fn own_step(&mut self, t: f64, h: f64, x: &mut [f64]) {
-        self.plant.implicit_step(t, h, x, &self.drives, &self.outside);
+        self.plant.implicit_step(t, h, x, &self.drives, &self.inputs);
     }
 }

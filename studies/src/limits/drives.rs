@@ -8,8 +8,8 @@ use ::drives::{
 use config::robot::Drive as Description;
 use nalgebra::Vector3;
 use sim_backend::drive::Drive;
-use sim_backend::plant::Outside;
-use sim_backend::train::Why;
+use sim_backend::plant::PlantInputs;
+use sim_backend::train::FaultCause;
 
 use super::{Bench, Finding, Findings, Rule, largest_stable, slope};
 
@@ -185,14 +185,15 @@ pub(super) fn dead_point(bench: &Bench) -> Findings {
     let mut fault = |q: f64| {
         let mut x = rest.clone();
         x[7 + drive.joints[0]] = q;
-        plant.rate(0.0, &x, &still, &Outside { powered: true, ..Outside::default() }, &mut rate);
+        plant.rate(0.0, &x, &still, &PlantInputs::POWERED, &mut rate);
         finite &= rate.iter().all(|r| r.is_finite());
         plant.take_fault()
     };
     let predicted = dead_angle(knee.geometry());
     let found = largest_stable(0.0, predicted + 1.0, |q| fault(q).is_none());
     let why = fault(predicted + 0.01).map(|f| f.why);
-    let told = matches!(why, Some(Why::Linkage(OutOfDomain::Lever { margin })) if margin < 0.0) && finite;
+    let told =
+        matches!(why, Some(FaultCause::Linkage(OutOfDomain::Lever { margin })) if margin < 0.0) && finite;
     let regime = "type 2, knee bent to the dead point of its screw";
     Ok(vec![
         Finding::new("D1", regime, "rad", [predicted, found], Rule::Within(1e-3))

@@ -22,7 +22,7 @@ use config::scene::Integrator;
 use environment::Environment;
 use sim_backend::drive::Drive;
 use sim_backend::integrate::Stepper;
-use sim_backend::plant::{Outside, Plant};
+use sim_backend::plant::{Plant, PlantInputs};
 
 use super::{Bench, Finding, Findings, Result, Rule};
 
@@ -95,17 +95,17 @@ impl Loop {
         x[2] += 1e3;
         x[l.layer()].fill(0.0);
         (x[l.speed()][6], x[l.rotor_speed()][0]) = (link, rotor);
-        let (drives, outside) = ([Drive::resting(0.0)], Outside { powered: true, ..Outside::default() });
+        let (drives, inputs) = ([Drive::resting(0.0)], PlantInputs::POWERED);
         let cycle = self.sampled.map_or(1e-3, |(period, _)| period);
         let longest = STEPS[usize::from(self.sampled.is_none())];
         let (cycles, steps) = ((self.seconds / cycle) as usize, (cycle / longest).ceil() as usize);
         let mut stepper = Stepper::new(Integrator::SemiImplicit, x.len());
         let mut most = [0.0_f64; 4];
         for i in 0..cycles {
-            plant.sample(cycle, &x, &drives, &outside);
+            plant.sample(cycle, &x, &drives, &inputs);
             for k in 0..steps {
                 let h = cycle / steps as f64;
-                stepper.step(&mut plant, k as f64 * h, h, &mut x, &drives, &outside);
+                stepper.step(&mut plant, k as f64 * h, h, &mut x, &drives, &inputs);
                 let speed = x[l.rotor_speed()][0].abs();
                 most[4 * i / cycles] = most[4 * i / cycles].max(speed);
             }

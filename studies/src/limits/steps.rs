@@ -8,7 +8,7 @@ use messages::EventCode;
 use nalgebra::Complex;
 use sim_backend::drive::Drive;
 use sim_backend::integrate::Stepper;
-use sim_backend::plant::{Outside, Plant};
+use sim_backend::plant::{Plant, PlantInputs};
 
 use super::held::Held;
 use super::linear::{eigenvalues, euler_limit, runge_kutta_limit};
@@ -96,7 +96,7 @@ struct Standing {
     drives: Vec<Drive>,
 }
 
-const POWERED: Outside = Outside { push: [0.0; 3], powered: true, off: 0, braked: 0, held: 0, rope: None };
+const POWERED: PlantInputs = PlantInputs::POWERED;
 
 impl Standing {
     /// Comes to rest in steps of `h` \[s\].

@@ -9,29 +9,31 @@ use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::Source;
 use nalgebra::{Matrix4, Point3};
 
-use super::{Fault, Soup, bytes, upright};
+use super::{FileFault, Soup, bytes, upright};
 
 /// Levels of nodes; more is a node that contains itself.
 const DEEPEST: usize = 64;
 
-pub(super) fn read(file: &[u8], folder: &Path) -> Result<Soup, Fault> {
+pub(super) fn read(file: &[u8], folder: &Path) -> Result<Soup, FileFault> {
     let (gltf, mut blob) = document(file)?;
+    // All bytes first: accessors of several meshes share them.
     let mut buffers = Vec::new();
     for buffer in gltf.buffers() {
         let place = format!("buffer {}", buffer.index());
         let data = match buffer.source() {
-            Source::Bin => blob.take().ok_or_else(|| Fault::at(&place, "the binary part is missing"))?,
-            Source::Uri(uri) => resource(uri, folder).map_err(|fault| Fault::at(&place, fault.text))?,
+            Source::Bin => blob.take().ok_or_else(|| FileFault::at(&place, "the binary part is missing"))?,
+            Source::Uri(uri) => resource(uri, folder).map_err(|fault| FileFault::at(&place, fault.text))?,
         };
         if data.len() < buffer.length() {
             let text =
                 format!("has {} bytes of the {} announced; export it again", data.len(), buffer.length());
-            return Err(Fault::at(place, text));
+            return Err(FileFault::at(place, text));
         }
         buffers.push(data);
     }
     let scene = gltf.default_scene().or_else(|| gltf.scenes().next());
-    let scene = scene.ok_or_else(|| Fault::whole("has no scene; export the objects with their scene"))?;
+    let scene = scene.ok_or_else(|| FileFault::whole("has no scene; export the objects with their scene"))?;
+    // Then the nodes of the scene, each once and placed by all above it.
     let mut seen = vec![false; gltf.nodes().len()];
     let mut soup = Soup::default();
     for node in scene.nodes() {
@@ -43,8 +45,8 @@ pub(super) fn read(file: &[u8], folder: &Path) -> Result<Soup, Fault> {
 }
 
 /// The checked JSON part, and the binary part of a .glb.
-fn document(file: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), Fault> {
-    let fault = |e: gltf::Error| Fault::whole(format!("{e}; export it again"));
+fn document(file: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), FileFault> {
+    let fault = |e: gltf::Error| FileFault::whole(format!("{e}; export it again"));
     let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(file).map_err(fault)?;
     let json = document.into_json();
     // The library's own check (gltf-json 1.4.1) looks an accessor up before it knows that there is one.
@@ -56,25 +58,27 @@ fn document(file: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), Fault> {
                 index.value(),
                 json.accessors.len()
             );
-            return Err(Fault::at(format!("mesh {i}"), text));
+            return Err(FileFault::at(format!("mesh {i}"), text));
         }
     }
     Ok((gltf::Document::from_json(json).map_err(fault)?, blob))
 }
 
 /// The bytes behind a URI: base64 in itself, or a file in `folder` or below it.
-fn resource(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
+fn resource(uri: &str, folder: &Path) -> Result<Vec<u8>, FileFault> {
     if let Some(data) = uri.strip_prefix("data:") {
         let text = data.split_once(";base64,").map(|(_, text)| text);
-        return text.and_then(base64).ok_or_else(|| Fault::whole("its data are no base64; export it again"));
+        return text
+            .and_then(base64)
+            .ok_or_else(|| FileFault::whole("its data are no base64; export it again"));
     }
     let below = Path::new(uri).components().all(|part| matches!(part, std::path::Component::Normal(_)));
     if !below || uri.contains(':') {
-        return Err(Fault::whole(format!(
+        return Err(FileFault::whole(format!(
             "`{uri}` is no file beside this one; export with buffers included"
         )));
     }
-    bytes(&folder.join(uri)).map_err(|fault| Fault::whole(format!("`{uri}` {}", fault.text)))
+    bytes(&folder.join(uri)).map_err(|fault| FileFault::whole(format!("`{uri}` {}", fault.text)))
 }
 
 fn base64(text: &str) -> Option<Vec<u8>> {
@@ -104,14 +108,14 @@ fn walk(
     above: Matrix4<f64>,
     depth: usize,
     seen: &mut [bool],
-    add: &mut impl FnMut(&gltf::Node<'_>, &Matrix4<f64>) -> Result<(), Fault>,
-) -> Result<(), Fault> {
+    add: &mut impl FnMut(&gltf::Node<'_>, &Matrix4<f64>) -> Result<(), FileFault>,
+) -> Result<(), FileFault> {
     let place = format!("node {}", node.index());
     if depth == 0 || std::mem::replace(&mut seen[node.index()], true) {
         let text = format!(
             "has several parents, itself among them, or more than {DEEPEST} above it; export it again"
         );
-        return Err(Fault::at(place, text));
+        return Err(FileFault::at(place, text));
     }
     let transform = above * Matrix4::from(node.transform().matrix()).map(f64::from);
     add(node, &transform)?;
@@ -124,14 +128,15 @@ fn add(
     transform: &Matrix4<f64>,
     buffers: &[Vec<u8>],
     soup: &mut Soup,
-) -> Result<(), Fault> {
+) -> Result<(), FileFault> {
     let place = format!("node {}", node.index());
     for primitive in node.mesh().iter().flat_map(|mesh| mesh.primitives()) {
         if primitive.mode() != gltf::mesh::Mode::Triangles {
-            return Err(Fault::at(place, format!("is made of {:?}; export triangles", primitive.mode())));
+            return Err(FileFault::at(place, format!("is made of {:?}; export triangles", primitive.mode())));
         }
         let positions = primitive.get(&gltf::Semantic::Positions);
-        let positions = positions.ok_or_else(|| Fault::at(&place, "has no positions; export it again"))?;
+        let positions =
+            positions.ok_or_else(|| FileFault::at(&place, "has no positions; export it again"))?;
         let first = soup.vertices.len() as u32;
         let places = accessor(&positions, buffers, Dimensions::Vec3, &[DataType::F32])?;
         let vertex = |bytes: &[u8]| {
@@ -164,8 +169,8 @@ fn accessor<'b>(
     buffers: &'b [Vec<u8>],
     dimensions: Dimensions,
     types: &[DataType],
-) -> Result<impl Iterator<Item = &'b [u8]> + use<'b>, Fault> {
-    let fault = |text: &str| Fault::at(format!("accessor {}", accessor.index()), text);
+) -> Result<impl Iterator<Item = &'b [u8]> + use<'b>, FileFault> {
+    let fault = |text: &str| FileFault::at(format!("accessor {}", accessor.index()), text);
     if accessor.sparse().is_some() {
         return Err(fault("is sparse, which is not read; export it without morph targets"));
     }
@@ -175,6 +180,7 @@ fn accessor<'b>(
     let view = accessor.view().ok_or_else(|| fault("has no data; export it without compression"))?;
     let outside = || fault("reaches beyond its buffer; export it again");
     let (size, count) = (accessor.size(), accessor.count());
+    // Bounds by checked arithmetic: offsets and counts are the file's.
     let stride = view.stride().unwrap_or(size).max(size);
     let data = buffers.get(view.buffer().index()).and_then(|data| {
         let view_end = view.offset().checked_add(view.length())?;

@@ -26,13 +26,13 @@ pub struct ReadError {
     pub file: PathBuf,
     /// Line or element; empty if the file as a whole is meant.
     pub place: String,
-    /// What is wrong and what would be right.
+    /// Fault, and what would be right.
     pub text: String,
 }
 
-/// What is wrong with a file, and where in it.
+/// Fault of a file, with its place.
 #[derive(Debug)]
-struct Fault {
+struct FileFault {
     place: String,
     text: String,
 }
@@ -57,19 +57,20 @@ impl Mesh {
 
     /// The same from the bytes of the file; buffers of a glTF file are read beside it.
     pub fn parse(file: &Path, bytes: &[u8], scale: f64) -> Result<Self, ReadError> {
-        let error = |fault: Fault| fault.of(file);
+        let error = |fault: FileFault| fault.of(file);
         let mut soup = match ending(file).as_str() {
             "stl" => stl::read(bytes),
             "obj" => obj::read(bytes),
             "gltf" | "glb" => gltf::read(bytes, file.parent().unwrap_or(Path::new("."))),
             "wrl" => vrml::read(bytes),
-            other => Err(Fault::whole(format!(
+            other => Err(FileFault::whole(format!(
                 "`.{other}` is no format of meshes; there are .stl, .obj, .gltf, .glb and .wrl"
             ))),
         }
         .map_err(error)?;
         soup.vertices.iter_mut().flatten().for_each(|x| *x *= scale);
-        Self::new(&soup.vertices, &soup.triangles).map_err(|e: MeshError| error(Fault::whole(e.to_string())))
+        Self::new(&soup.vertices, &soup.triangles)
+            .map_err(|e: MeshError| error(FileFault::whole(e.to_string())))
     }
 }
 
@@ -77,17 +78,17 @@ fn ending(file: &Path) -> String {
     file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
-fn bytes(file: &Path) -> Result<Vec<u8>, Fault> {
-    let cannot = |e| Fault::whole(format!("cannot be read: {e}"));
+fn bytes(file: &Path) -> Result<Vec<u8>, FileFault> {
+    let cannot = |e| FileFault::whole(format!("cannot be read: {e}"));
     let size = std::fs::metadata(file).map_err(cannot)?.len();
     if size > LARGEST_FILE {
         let most = LARGEST_FILE >> 20;
-        return Err(Fault::whole(format!("is larger than {most} MiB; export it coarser")));
+        return Err(FileFault::whole(format!("is larger than {most} MiB; export it coarser")));
     }
     std::fs::read(file).map_err(cannot)
 }
 
-impl Fault {
+impl FileFault {
     fn whole(text: impl Into<String>) -> Self {
         Self { place: String::new(), text: text.into() }
     }
@@ -103,9 +104,11 @@ impl Fault {
 
 impl Soup {
     /// Adds a triangle of vertices that are there; refuses more than a mesh may have.
-    fn push(&mut self, triangle: [u32; 3]) -> Result<(), Fault> {
+    fn push(&mut self, triangle: [u32; 3]) -> Result<(), FileFault> {
         if self.triangles.len() >= MOST_TRIANGLES {
-            return Err(Fault::whole(format!("has more than {MOST_TRIANGLES} triangles; export it coarser")));
+            return Err(FileFault::whole(format!(
+                "has more than {MOST_TRIANGLES} triangles; export it coarser"
+            )));
         }
         self.triangles.push(triangle);
         Ok(())

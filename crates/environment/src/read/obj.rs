@@ -1,9 +1,9 @@
 //! Wavefront OBJ: positions and faces; polygons are taken as convex. Materials, normals and texture are left out.
 
 use super::lines::Lines;
-use super::{Fault, Soup};
+use super::{FileFault, Soup};
 
-pub(super) fn read(bytes: &[u8]) -> Result<Soup, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<Soup, FileFault> {
     let options = tobj::LoadOptions {
         triangulate: true,
         ignore_lines: true,
@@ -19,7 +19,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, Fault> {
             FaceVertexOutOfBounds | FaceNormalOutOfBounds | FaceTexCoordOutOfBounds => "object up to line",
             _ => "line",
         };
-        Fault::at(format!("{place} {}", lines.line), format!("{e}; export it again"))
+        FileFault::at(format!("{place} {}", lines.line), format!("{e}; export it again"))
     })?;
     let mut soup = Soup::default();
     for model in models {
@@ -27,7 +27,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, Fault> {
         for v in model.mesh.positions.chunks_exact(3) {
             if !v.iter().all(|x| x.is_finite()) {
                 let place = format!("object `{}`", model.name);
-                return Err(Fault::at(
+                return Err(FileFault::at(
                     place,
                     format!("a vertex is at {v:?}, which is no place; export it again"),
                 ));

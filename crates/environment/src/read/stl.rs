@@ -4,13 +4,13 @@
 //! file is binary if its length is the one its header announces, text if it begins with `solid`, and refused otherwise.
 
 use super::lines::Lines;
-use super::{Fault, Soup};
+use super::{FileFault, Soup};
 
 /// \[byte\] Header with the number of triangles; one triangle.
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
-pub(super) fn read(bytes: &[u8]) -> Result<Soup, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<Soup, FileFault> {
     let announced =
         bytes.get(HEADER - 4..HEADER).map(|n| u32::from_le_bytes([n[0], n[1], n[2], n[3]]) as usize);
     if announced.is_some_and(|n| bytes.len() == HEADER + TRIANGLE * n) {
@@ -19,7 +19,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, Fault> {
     if bytes.starts_with(b"solid") {
         return text(bytes);
     }
-    Err(Fault::whole(match announced {
+    Err(FileFault::whole(match announced {
         Some(n) => format!(
             "is neither text (it does not begin with `solid`) nor binary: its header announces {n} triangles, {} bytes, \
              but it has {}; export it again",
@@ -30,7 +30,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, Fault> {
     }))
 }
 
-fn binary(bytes: &[u8]) -> Result<Soup, Fault> {
+fn binary(bytes: &[u8]) -> Result<Soup, FileFault> {
     let mut cursor = std::io::Cursor::new(bytes);
     // The library takes what begins with `solid ` for text; here that is known not to be so.
     let mut renamed;
@@ -39,11 +39,11 @@ fn binary(bytes: &[u8]) -> Result<Soup, Fault> {
         renamed[0] = b'S';
         cursor = std::io::Cursor::new(&renamed);
     }
-    let mut reader = stl_io::create_stl_reader(&mut cursor).map_err(|e| Fault::whole(e.to_string()))?;
-    collect(&mut *reader).map_err(|(triangle, e)| Fault::at(format!("triangle {triangle}"), e))
+    let mut reader = stl_io::create_stl_reader(&mut cursor).map_err(|e| FileFault::whole(e.to_string()))?;
+    collect(&mut *reader).map_err(|(triangle, e)| FileFault::at(format!("triangle {triangle}"), e))
 }
 
-fn text(bytes: &[u8]) -> Result<Soup, Fault> {
+fn text(bytes: &[u8]) -> Result<Soup, FileFault> {
     // A nameless solid lacks the space that the library looks for.
     let nameless = bytes.get(5).is_some_and(|b| matches!(b, b'\n' | b'\r'));
     let named = nameless.then(|| [b"solid mesh", &bytes[5..]].concat());
@@ -52,7 +52,7 @@ fn text(bytes: &[u8]) -> Result<Soup, Fault> {
         Ok(mut reader) => collect(&mut *reader).map_err(|(_, e)| e),
         Err(e) => Err(e.to_string()),
     };
-    result.map_err(|e| Fault::at(format!("line {}", lines.line), format!("{e}; export it again")))
+    result.map_err(|e| FileFault::at(format!("line {}", lines.line), format!("{e}; export it again")))
 }
 
 type Triangles<'a> = dyn stl_io::TriangleIterator<Item = std::io::Result<stl_io::Triangle>> + 'a;

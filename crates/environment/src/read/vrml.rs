@@ -6,19 +6,19 @@
 
 use nalgebra::{Matrix4, Point3, Rotation3, Unit, Vector3};
 
-use super::{Fault, Soup, upright};
+use super::{FileFault, Soup, upright};
 
 /// One word, bracket or string, with its line.
 type Token<'a> = (&'a str, usize);
 /// Levels of nodes.
 const DEEPEST: usize = 64;
 
-pub(super) fn read(bytes: &[u8]) -> Result<Soup, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<Soup, FileFault> {
     let text = String::from_utf8_lossy(bytes);
     if !text.starts_with("#VRML V2.0 utf8") {
-        return Err(Fault::at("line 1", "is not `#VRML V2.0 utf8`; export as VRML 97"));
+        return Err(FileFault::at("line 1", "is not `#VRML V2.0 utf8`; export as VRML 97"));
     }
-    let mut reader = Reader { tokens: tokens(&text), at: 0, soup: Soup::default() };
+    let mut reader = VrmlReader { tokens: tokens(&text), at: 0, soup: Soup::default() };
     while reader.peek().is_some() {
         reader.node(&Matrix4::identity(), DEEPEST)?;
     }
@@ -45,13 +45,13 @@ fn tokens(text: &str) -> Vec<Token<'_>> {
     tokens
 }
 
-struct Reader<'a> {
+struct VrmlReader<'a> {
     tokens: Vec<Token<'a>>,
     at: usize,
     soup: Soup,
 }
 
-/// What an `IndexedFaceSet` says.
+/// Content of an `IndexedFaceSet`.
 #[derive(Default)]
 struct FaceSet {
     points: Vec<f64>,
@@ -61,7 +61,7 @@ struct FaceSet {
     concave: bool,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> VrmlReader<'a> {
     fn peek(&self) -> Option<&'a str> {
         self.tokens.get(self.at).map(|t| t.0)
     }
@@ -70,17 +70,17 @@ impl<'a> Reader<'a> {
         self.tokens.get(self.at).or(self.tokens.last()).map_or(1, |t| t.1)
     }
 
-    fn fault(&self, text: impl Into<String>) -> Fault {
-        Fault::at(format!("line {}", self.line()), text)
+    fn fault(&self, text: impl Into<String>) -> FileFault {
+        FileFault::at(format!("line {}", self.line()), text)
     }
 
-    fn next(&mut self) -> Result<&'a str, Fault> {
+    fn next(&mut self) -> Result<&'a str, FileFault> {
         let token = self.peek().ok_or_else(|| self.fault("the file ends within a node; export it again"))?;
         self.at += 1;
         Ok(token)
     }
 
-    fn expect(&mut self, wanted: &str) -> Result<(), Fault> {
+    fn expect(&mut self, wanted: &str) -> Result<(), FileFault> {
         if self.peek() == Some(wanted) {
             self.at += 1;
             return Ok(());
@@ -89,7 +89,7 @@ impl<'a> Reader<'a> {
         Err(self.fault(format!("`{wanted}` must stand here, not `{found}`")))
     }
 
-    fn number(&mut self) -> Result<f64, Fault> {
+    fn number(&mut self) -> Result<f64, FileFault> {
         let text = self.peek().unwrap_or("the end of the file");
         match text.parse::<f64>() {
             Ok(x) if x.is_finite() => {
@@ -100,7 +100,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn numbers<const N: usize>(&mut self) -> Result<[f64; N], Fault> {
+    fn numbers<const N: usize>(&mut self) -> Result<[f64; N], FileFault> {
         let mut all = [0.0; N];
         for x in &mut all {
             *x = self.number()?;
@@ -109,7 +109,7 @@ impl<'a> Reader<'a> {
     }
 
     /// `[` numbers `]`, or one number.
-    fn list<T>(&mut self, item: impl Fn(&mut Self) -> Result<T, Fault>) -> Result<Vec<T>, Fault> {
+    fn list<T>(&mut self, item: impl Fn(&mut Self) -> Result<T, FileFault>) -> Result<Vec<T>, FileFault> {
         if self.peek() != Some("[") {
             return Ok(vec![item(self)?]);
         }
@@ -123,7 +123,7 @@ impl<'a> Reader<'a> {
     }
 
     /// TRUE or FALSE.
-    fn truth(&mut self) -> Result<bool, Fault> {
+    fn truth(&mut self) -> Result<bool, FileFault> {
         match self.next()? {
             "TRUE" => Ok(true),
             "FALSE" => Ok(false),
@@ -132,7 +132,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The type of the node that begins here, with its opening bracket.
-    fn open(&mut self) -> Result<&'a str, Fault> {
+    fn open(&mut self) -> Result<&'a str, FileFault> {
         if self.peek() == Some("DEF") {
             self.at += 2;
         }
@@ -146,7 +146,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Any node where a shape may stand; its triangles go through `transform`.
-    fn node(&mut self, transform: &Matrix4<f64>, depth: usize) -> Result<(), Fault> {
+    fn node(&mut self, transform: &Matrix4<f64>, depth: usize) -> Result<(), FileFault> {
         if depth == 0 {
             return Err(
                 self.fault(format!("more than {DEEPEST} nodes lie in one another; export it flatter"))
@@ -166,7 +166,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn group(&mut self, above: &Matrix4<f64>, depth: usize) -> Result<(), Fault> {
+    fn group(&mut self, above: &Matrix4<f64>, depth: usize) -> Result<(), FileFault> {
         let (mut moved, mut turned, mut scaled) = ([0.0; 3], [0.0, 0.0, 1.0, 0.0], [1.0; 3]);
         // Fields may come in any order, so children are read when all have been seen.
         let mut children = None;
@@ -207,7 +207,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn shape(&mut self, transform: &Matrix4<f64>) -> Result<(), Fault> {
+    fn shape(&mut self, transform: &Matrix4<f64>) -> Result<(), FileFault> {
         while self.peek() != Some("}") {
             if self.next()? != "geometry" {
                 self.skip_value()?;
@@ -226,7 +226,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn face_set(&mut self) -> Result<FaceSet, Fault> {
+    fn face_set(&mut self) -> Result<FaceSet, FileFault> {
         let mut set = FaceSet::default();
         while self.peek() != Some("}") {
             match self.next()? {
@@ -246,6 +246,7 @@ impl<'a> Reader<'a> {
                         Ok((reader.number()? as i64, line))
                     })?;
                 }
+                // Faces are counter-clockwise and convex unless the file says otherwise.
                 "ccw" => set.clockwise = !self.truth()?,
                 "convex" => set.concave = !self.truth()?,
                 _ => self.skip_value()?,
@@ -255,18 +256,19 @@ impl<'a> Reader<'a> {
         Ok(set)
     }
 
-    fn add(&mut self, set: &FaceSet, transform: &Matrix4<f64>) -> Result<(), Fault> {
+    fn add(&mut self, set: &FaceSet, transform: &Matrix4<f64>) -> Result<(), FileFault> {
         let first = self.soup.vertices.len() as u32;
         let count = set.points.len() / 3;
         for p in set.points.chunks_exact(3) {
             let p = transform.transform_point(&Point3::new(p[0], p[1], p[2]));
             self.soup.vertices.push(upright(p.into()));
         }
+        // A transform that mirrors turns every face round once more.
         let turn = set.clockwise != (transform.fixed_view::<3, 3>(0, 0).determinant() < 0.0);
         for face in set.numbers.split(|(i, _)| *i == -1) {
             if set.concave && face.len() > 3 {
                 let place = format!("line {}", face[0].1);
-                return Err(Fault::at(
+                return Err(FileFault::at(
                     place,
                     "a face of more than three corners may be concave; export triangles",
                 ));
@@ -274,9 +276,10 @@ impl<'a> Reader<'a> {
             for (i, line) in face {
                 if *i < 0 || *i >= count as i64 {
                     let text = format!("a face names point {i}, but there are only {count}; export it again");
-                    return Err(Fault::at(format!("line {line}"), text));
+                    return Err(FileFault::at(format!("line {line}"), text));
                 }
             }
+            // A fan: right for convex faces.
             for k in 2..face.len() {
                 let mut t = [face[0].0, face[k - 1].0, face[k].0].map(|i| first + i as u32);
                 if turn {
@@ -289,7 +292,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Everything up to the bracket that closes the node.
-    fn skip_fields(&mut self) -> Result<(), Fault> {
+    fn skip_fields(&mut self) -> Result<(), FileFault> {
         let mut open = 1;
         while open > 0 {
             match self.next()? {
@@ -302,7 +305,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The value of a field that is of no interest: a list, a node, or words up to the next field.
-    fn skip_value(&mut self) -> Result<(), Fault> {
+    fn skip_value(&mut self) -> Result<(), FileFault> {
         let plain = |t: &str| {
             t.starts_with(|c: char| c.is_ascii_digit() || "+-.\"".contains(c))
                 || matches!(t, "TRUE" | "FALSE" | "NULL")
@@ -310,6 +313,7 @@ impl<'a> Reader<'a> {
         match self.next()? {
             "[" => self.skip_fields(),
             "USE" => self.next().map(|_| ()),
+            // A name and its node: read as a node, name included.
             "DEF" => {
                 self.at -= 1;
                 self.open()?;
@@ -325,6 +329,7 @@ impl<'a> Reader<'a> {
                 }
                 Ok(())
             }
+            // The type of a node.
             _ => {
                 self.expect("{")?;
                 self.skip_fields()

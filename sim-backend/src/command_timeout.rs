@@ -1,22 +1,22 @@
-//! Which local controllers heard their targets, and what they do when they did not.
+//! Command timeout per node of the bus: extrapolate, then report a heartbeat fault.
 //!
-//! A node that misses a cycle carries its joints on at their last speed. After [`UNHEARD_CYCLES`] of them it is deaf: its
-//! drives have a fault. They bring their joints to rest by themselves, and only a reset leads back: whoever was silent for
-//! so long does not get a joint back in mid-motion.
+//! A node that misses a cycle carries its joints on at their last speed. After [`TIMEOUT_CYCLES`] of them it has timed out:
+//! its drives have a fault. They bring their joints to rest by themselves, and only a reset leads back: whoever was silent
+//! for so long does not get a joint back in mid-motion.
 
 use codec::frames::Received;
 use codec::layout::{Carries, Layout, MAX_NODES};
 use messages::MAX_JOINTS;
 
 /// Cycles without targets after which the drives of a local controller have a fault.
-pub const UNHEARD_CYCLES: u32 = 20;
+pub const TIMEOUT_CYCLES: u32 = 20;
 
 /// \[rad\] A target further from where the joint was to be than this ...
 const JUMP: f64 = 0.05;
-/// \[1\] ... plus its speed limit times this and the time since it heard the last one, is a bent bit, not a target.
+/// \[1\] ... plus its speed limit times this and the time since its node received the last one, is a bent bit, not a target.
 const JUMP_SPEED: f64 = 2.0;
 
-/// What a local controller does with a joint in this cycle.
+/// Motion of a joint in this cycle, as its local controller chooses it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Follows {
     /// The new target.
@@ -25,18 +25,18 @@ pub enum Follows {
     LastSpeed,
 }
 
-/// What the nodes of a robot heard.
+/// Cycles without commands, node by node.
 #[derive(Clone, Debug)]
-pub struct Hearing {
+pub struct CommandTimeout {
     node_of: [usize; MAX_JOINTS],
     nodes: usize,
-    /// Cycles since each node heard its targets.
-    unheard: [u32; MAX_NODES],
-    /// Cycles since each node heard its targets, before this one.
+    /// Cycles since each node received its targets.
+    silent: [u32; MAX_NODES],
+    /// The same before this cycle.
     before: [u32; MAX_NODES],
 }
 
-impl Hearing {
+impl CommandTimeout {
     /// Of a robot with this layout.
     pub fn new(layout: &Layout) -> Self {
         let mut node_of = [0; MAX_JOINTS];
@@ -47,35 +47,34 @@ impl Hearing {
                 }
             }
         }
-        Self { node_of, nodes: layout.nodes.len(), unheard: [0; MAX_NODES], before: [0; MAX_NODES] }
+        Self { node_of, nodes: layout.nodes.len(), silent: [0; MAX_NODES], before: [0; MAX_NODES] }
     }
 
-    /// One cycle: what came of it, none if nothing did; true if some node heard.
+    /// One cycle with the frames received, if any; true if some node has its targets.
     pub fn step(&mut self, received: Option<&Received>) -> bool {
         let mut any = false;
         for i in 0..self.nodes {
-            let heard = received.is_some_and(|received| received.complete(i));
-            any |= heard;
-            self.before[i] = self.unheard[i];
-            self.unheard[i] = if heard { 0 } else { self.unheard[i].saturating_add(1) };
+            let complete = received.is_some_and(|received| received.complete(i));
+            any |= complete;
+            self.before[i] = self.silent[i];
+            self.silent[i] = if complete { 0 } else { self.silent[i].saturating_add(1) };
         }
         any
     }
 
-    /// What the local controller of a joint does with it, if its new target is so far \[rad\] away; `reach` \[rad\] is
-    /// how far the joint gets in one cycle.
+    /// Motion of a joint whose new target is so far \[rad\] away; `reach` \[rad\] is how far the joint gets in one cycle.
     pub fn follows(&self, joint: usize, away: f64, reach: f64) -> Follows {
         let node = self.node_of[joint];
         let cycles = f64::from(self.before[node] + 1);
-        match self.unheard[node] {
+        match self.silent[node] {
             0 if away.abs() <= JUMP + JUMP_SPEED * reach * cycles => Follows::Target,
             _ => Follows::LastSpeed,
         }
     }
 
-    /// Whether the local controller of a joint has heard nothing for too long.
-    pub fn is_deaf(&self, joint: usize) -> bool {
-        self.unheard[self.node_of[joint]] > UNHEARD_CYCLES
+    /// True if the local controller of a joint has received nothing for too long.
+    pub fn is_timed_out(&self, joint: usize) -> bool {
+        self.silent[self.node_of[joint]] > TIMEOUT_CYCLES
     }
 
     /// The local controller of a joint.
@@ -109,7 +108,7 @@ mod tests {
         Layout::new(vec!["a".into(), "b".into()], vec![message(0), message(1)])
     }
 
-    /// Only the node `missing` did not hear all.
+    /// Only the node `missing` did not receive all.
     fn received(missing: usize) -> Received {
         let mut received = Received::default();
         if missing < 2 {
@@ -119,13 +118,13 @@ mod tests {
     }
 
     /// With a target that is near.
-    fn follows(h: &Hearing, joint: usize) -> Follows {
+    fn follows(h: &CommandTimeout, joint: usize) -> Follows {
         h.follows(joint, 0.001, 0.008)
     }
 
     #[test]
     fn a_target_that_no_joint_can_reach_is_none() {
-        let mut h = Hearing::new(&layout());
+        let mut h = CommandTimeout::new(&layout());
         h.step(Some(&received(9)));
         assert_eq!(h.follows(0, 0.06, 0.008), Follows::Target);
         assert_eq!([0.07, -0.07, f64::NAN].map(|away| h.follows(0, away, 0.008)), [Follows::LastSpeed; 3]);
@@ -137,21 +136,25 @@ mod tests {
     }
 
     #[test]
-    fn a_node_alone_carries_on_then_it_is_deaf_until_it_hears() {
-        let mut h = Hearing::new(&layout());
+    fn a_node_alone_carries_on_then_it_times_out_until_it_receives() {
+        let mut h = CommandTimeout::new(&layout());
         assert!(h.step(Some(&received(9))));
         for cycle in 1..=50 {
-            assert!(h.step(Some(&received(1))), "the other one hears");
+            assert!(h.step(Some(&received(1))), "the other one receives");
             assert_eq!((follows(&h, 0), follows(&h, 1)), (Follows::Target, Follows::LastSpeed));
-            assert_eq!([h.is_deaf(0), h.is_deaf(1)], [false, cycle > UNHEARD_CYCLES], "cycle {cycle}");
+            assert_eq!(
+                [h.is_timed_out(0), h.is_timed_out(1)],
+                [false, cycle > TIMEOUT_CYCLES],
+                "cycle {cycle}"
+            );
         }
         h.step(Some(&received(9)));
-        assert_eq!((follows(&h, 1), h.is_deaf(1)), (Follows::Target, false));
+        assert_eq!((follows(&h, 1), h.is_timed_out(1)), (Follows::Target, false));
     }
 
     #[test]
-    fn nothing_at_all_is_heard_by_nobody() {
-        let mut h = Hearing::new(&layout());
+    fn nothing_at_all_is_received_by_nobody() {
+        let mut h = CommandTimeout::new(&layout());
         h.step(Some(&received(9)));
         assert!(!h.step(None));
         assert_eq!([follows(&h, 0), follows(&h, 1)], [Follows::LastSpeed; 2]);

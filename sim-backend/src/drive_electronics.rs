@@ -1,8 +1,8 @@
 //! The drives' own electronics: states of CiA 402, references, protection; one power stage per drive.
 //!
 //! Row i of the drives drives joint i. States are always there; references and protection only where the scene asks for
-//! them by `[drives]`, and what needs motors only where the model has motors. A local controller that heard nothing for too
-//! long ([`crate::hearing`]) is a fault of its drives in every scene.
+//! them by `[drives]`, and what needs motors only where the model has motors. A local controller that received nothing for too
+//! long ([`crate::command_timeout`]) is a fault of its drives in every scene.
 
 use config::protection::Protection;
 use config::{Robot, Scene};
@@ -10,13 +10,13 @@ use drives::cia402::{self, Fault, Inputs, REFERENCED, WARNING, WORDS};
 use drives::homing::{HomeSwitch, Homing};
 use messages::{JointMode, MAX_JOINTS, Sensors};
 
+use crate::command_timeout::CommandTimeout;
 use crate::drive::Motion;
-use crate::hearing::Hearing;
 
 /// \[rad/s\] Speed of a reference below which it is at rest, but for rounding.
 const REST: f64 = 1e-9;
 
-/// What a joint does in this cycle.
+/// Action of a joint in this cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Action {
     /// No torque.
@@ -29,14 +29,14 @@ pub(crate) enum Action {
     Search(f64),
 }
 
-/// What the bus brought in this cycle.
-pub(crate) struct Told<'a> {
+/// Commands of the bus in this cycle.
+pub(crate) struct ReceivedCommand<'a> {
     /// The newest controlwords.
     pub control: &'a [u32; MAX_JOINTS],
-    /// What the joints shall do, a [`JointMode`].
+    /// Demanded of the joints, a [`JointMode`].
     pub mode: u64,
-    /// Who heard it.
-    pub hearing: &'a Hearing,
+    /// Nodes that received them.
+    pub timeout: &'a CommandTimeout,
 }
 
 /// A joint without absolute encoder.
@@ -45,13 +45,13 @@ struct Search {
     switch: HomeSwitch,
     homing: Homing,
     began_closed: bool,
-    /// \[rad\] What its encoder reads less than its angle.
+    /// \[rad\] Shortfall of its encoder's reading.
     origin: f64,
 }
 
-/// Power stages of all drives.
+/// Electronics of all drives.
 #[derive(Clone, Debug)]
-pub(crate) struct Stages {
+pub(crate) struct DriveElectronics {
     drives: Vec<cia402::Drive>,
     /// Joints that look for their references, or have found them.
     searches: Vec<Option<Search>>,
@@ -65,14 +65,16 @@ pub(crate) struct Stages {
     off_for: Vec<f64>,
 }
 
-impl Stages {
+impl DriveElectronics {
     /// The drives of a scene, whose joints begin at `pose` \[rad\]; self-tests passed.
     pub(crate) fn new(robot: &Robot, scene: &Scene, pose: &[f64]) -> Self {
+        // Self-tests take one cycle, and are over.
         let start = scene.drives.as_ref();
         let mut drives = vec![cia402::Drive::default(); robot.joints.len()];
         for drive in &mut drives {
             drive.step(&Inputs::default());
         }
+        // A joint without absolute encoder counts from where it is, and knows on which side of its switch that is.
         let search = |(switch, angle): (&Option<HomeSwitch>, &f64)| {
             let switch = switch.filter(|_| start.is_some_and(|start| start.homing))?;
             let began_closed = *angle >= switch.angle;
@@ -94,15 +96,15 @@ impl Stages {
         }
     }
 
-    /// One bus cycle of `dt` \[s\]: states, and what every joint does. `goals` and `now` are where the joints were to be
+    /// One bus cycle of `dt` \[s\]: states, and actions of the joints. `goals` and `now` are where the joints were to be
     /// and are; `current` \[A\], if there are motors with protection to look after. Returns the first joint whose drive
-    /// has stopped in this cycle because it hears nothing.
+    /// has stopped in this cycle because its commands timed out.
     ///
     /// A controlword that no master sends is a bent one: the one before holds. From the one that enables operation, and
     /// from a fault, no single bit leads to another that is sent.
     pub(crate) fn step(
         &mut self,
-        told: &Told<'_>,
+        command: &ReceivedCommand<'_>,
         supply: bool,
         dt: f64,
         goals: &[Motion],
@@ -110,21 +112,22 @@ impl Stages {
         current: Option<&[f64]>,
     ) -> Option<usize> {
         let mut stopped = None;
-        let home = told.mode == JointMode::Home as u64;
+        let home = command.mode == JointMode::Home as u64;
         for j in 0..self.drives.len() {
             let drive = self.drives[j];
-            let deaf = drive.drives() && told.hearing.is_deaf(j);
-            let word = told.control[j] as u16;
+            let silent = drive.drives() && command.timeout.is_timed_out(j);
+            let word = command.control[j] as u16;
             let inputs = Inputs {
                 control: WORDS.contains(&word).then_some(word),
                 supply,
                 permit: home || self.knows(j),
                 fault: self
                     .fault(j, &drive, dt, goals[j], now[j], current)
-                    .or(deaf.then_some(Fault::Heartbeat)),
+                    .or(silent.then_some(Fault::Heartbeat)),
                 still: goals[j].speed.abs() < REST,
             };
             self.drives[j].step(&inputs);
+            // Reported once, as its error begins.
             if drive.error().is_none() && self.drives[j].error() == Some(Fault::Heartbeat) {
                 stopped = stopped.or(Some(j));
             }
@@ -134,7 +137,7 @@ impl Stages {
         stopped
     }
 
-    /// What a joint does in this cycle.
+    /// Action of a joint in this cycle.
     pub(crate) fn action(&self, j: usize) -> Action {
         self.actions[j]
     }
@@ -144,12 +147,12 @@ impl Stages {
         self.off_for[j]
     }
 
-    /// Whether a joint knows its angle.
+    /// True if a joint knows its angle.
     fn knows(&self, j: usize) -> bool {
         self.searches[j].is_none_or(|search| search.homing == Homing::Found)
     }
 
-    /// What is wrong with a drive.
+    /// Fault of a drive that its protection finds.
     fn fault(
         &mut self,
         j: usize,
@@ -213,8 +216,7 @@ impl Stages {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hearing::UNHEARD_CYCLES;
-    use codec::frames::Received;
+    use crate::command_timeout::TIMEOUT_CYCLES;
     use config::{Setup, root};
     use drives::cia402::{DISABLE_VOLTAGE, ENABLE_OPERATION, FAULT_RESET, SHUTDOWN, State};
 
@@ -224,15 +226,15 @@ mod tests {
 
     /// The drives of the scene `startup`, with what they see.
     struct Rig {
-        stages: Stages,
+        electronics: DriveElectronics,
         goals: Vec<Motion>,
         now: Vec<Motion>,
         current: [f64; MAX_JOINTS],
         mode: JointMode,
         supply: bool,
         word: u16,
-        hearing: Hearing,
-        hears: bool,
+        timeout: CommandTimeout,
+        receives: bool,
         stopped: Option<usize>,
     }
 
@@ -244,15 +246,15 @@ mod tests {
             let goals: Vec<Motion> =
                 pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect();
             let mut rig = Self {
-                stages: Stages::new(&setup.robot, &setup.scene, pose),
+                electronics: DriveElectronics::new(&setup.robot, &setup.scene, pose),
                 now: goals.clone(),
                 goals,
                 current: [0.0; MAX_JOINTS],
                 mode: JointMode::Hold,
                 supply: true,
                 word: 0x06,
-                hearing: Hearing::new(&setup.robot.layout),
-                hears: true,
+                timeout: CommandTimeout::new(&setup.robot.layout),
+                receives: true,
                 stopped: None,
             };
             rig.step();
@@ -262,12 +264,12 @@ mod tests {
         }
 
         fn step(&mut self) {
-            let heard = Received::default();
-            self.hearing.step(self.hears.then_some(&heard));
+            let received = Received::default();
+            self.timeout.step(self.receives.then_some(&received));
             let control = &[u32::from(self.word); MAX_JOINTS];
-            let told = Told { control, mode: self.mode as u64, hearing: &self.hearing };
+            let command = ReceivedCommand { control, mode: self.mode as u64, timeout: &self.timeout };
             let (goals, now, current) = (&self.goals, &self.now, Some(&self.current[..]));
-            self.stopped = self.stages.step(&told, self.supply, DT, goals, now, current);
+            self.stopped = self.electronics.step(&command, self.supply, DT, goals, now, current);
         }
 
         fn steps(&mut self, count: u32) {
@@ -275,34 +277,37 @@ mod tests {
         }
 
         fn state(&self, j: usize) -> State {
-            self.stages.drives[j].state()
+            self.electronics.drives[j].state()
         }
 
         fn error(&self, j: usize) -> Option<Fault> {
-            self.stages.drives[j].error()
+            self.electronics.drives[j].error()
         }
     }
 
     #[test]
     fn a_joint_without_reference_is_enabled_only_to_find_it() {
         let mut rig = Rig::new(true);
-        assert_eq!((rig.state(HEAD), rig.stages.action(HEAD)), (State::SwitchedOn, Action::Off));
-        assert_eq!((rig.state(KNEE), rig.stages.action(KNEE)), (State::OperationEnabled, Action::Follow));
-        assert_eq!(rig.stages.origin(HEAD), rig.now[HEAD].angle, "its encoder counts from zero");
+        assert_eq!((rig.state(HEAD), rig.electronics.action(HEAD)), (State::SwitchedOn, Action::Off));
+        assert_eq!(
+            (rig.state(KNEE), rig.electronics.action(KNEE)),
+            (State::OperationEnabled, Action::Follow)
+        );
+        assert_eq!(rig.electronics.origin(HEAD), rig.now[HEAD].angle, "its encoder counts from zero");
         rig.mode = JointMode::Home;
         let mut cycles = 0;
-        while !rig.stages.knows(HEAD) && cycles < 20_000 {
+        while !rig.electronics.knows(HEAD) && cycles < 20_000 {
             rig.step();
-            if let Action::Search(speed) = rig.stages.action(HEAD) {
+            if let Action::Search(speed) = rig.electronics.action(HEAD) {
                 rig.now[HEAD].angle += speed * DT;
                 rig.goals[HEAD] = rig.now[HEAD];
             }
             cycles += 1;
         }
-        assert!(rig.stages.origin(HEAD).abs() < 2e-5, "{} rad", rig.stages.origin(HEAD));
+        assert!(rig.electronics.origin(HEAD).abs() < 2e-5, "{} rad", rig.electronics.origin(HEAD));
         rig.mode = JointMode::Hold;
         rig.step();
-        assert_eq!(rig.stages.action(HEAD), Action::Follow);
+        assert_eq!(rig.electronics.action(HEAD), Action::Follow);
     }
 
     /// From 25 degrees at twice the continuous current the limit is reached after tau ln(4/3); then it brakes, and lets go.
@@ -314,17 +319,17 @@ mod tests {
         while rig.state(KNEE) == State::OperationEnabled {
             rig.step();
             cycles += 1;
-            rig.stages.report(&mut out);
+            rig.electronics.report(&mut out);
             warned += u32::from(out.drive_status[KNEE] & u32::from(WARNING) != 0);
         }
         let expected = 60.0 * (4.0_f64 / 3.0).ln() / DT;
         assert!((f64::from(cycles) - expected).abs() < 5.0, "{cycles} cycles, not {expected}");
         assert!(warned > 1000 && (out.temperature[KNEE] - 120.0).abs() < 0.01);
         assert_eq!(rig.error(KNEE), Some(Fault::OverTemperature));
-        assert_eq!(rig.stages.action(KNEE), Action::Ramp);
+        assert_eq!(rig.electronics.action(KNEE), Action::Ramp);
         rig.step();
         assert_eq!(rig.state(KNEE), State::Fault, "no reset while it is hot");
-        rig.stages.report(&mut out);
+        rig.electronics.report(&mut out);
         assert_eq!(out.drive_error[KNEE], 0x4310);
         assert_eq!(rig.state(KNEE + 1), State::OperationEnabled);
     }
@@ -337,7 +342,7 @@ mod tests {
         assert_eq!(rig.state(KNEE), State::OperationEnabled);
         rig.current[KNEE] = -61.0;
         rig.step();
-        assert_eq!((rig.error(KNEE), rig.stages.action(KNEE)), (Some(Fault::OverCurrent), Action::Off));
+        assert_eq!((rig.error(KNEE), rig.electronics.action(KNEE)), (Some(Fault::OverCurrent), Action::Off));
         rig.current[HEAD] = f64::NAN;
         rig.step();
         assert_eq!(rig.error(HEAD), Some(Fault::OverCurrent), "no number is no small one");
@@ -352,28 +357,31 @@ mod tests {
         assert_eq!(rig.state(KNEE), State::OperationEnabled);
         rig.goals[KNEE].speed = 0.0;
         rig.step();
-        assert_eq!((rig.error(KNEE), rig.stages.action(KNEE)), (Some(Fault::FollowingError), Action::Ramp));
+        assert_eq!(
+            (rig.error(KNEE), rig.electronics.action(KNEE)),
+            (Some(Fault::FollowingError), Action::Ramp)
+        );
     }
 
     /// Its reference comes to rest, its torque goes; frames alone do not wake it, nor does an old reset.
     #[test]
-    fn a_drive_that_hears_nothing_stops_by_itself_and_only_a_reset_leads_back() {
+    fn a_drive_without_commands_stops_by_itself_and_only_a_reset_leads_back() {
         let mut rig = Rig::new(false);
-        (rig.goals[KNEE].speed, rig.hears) = (1.0, false);
-        rig.steps(UNHEARD_CYCLES);
+        (rig.goals[KNEE].speed, rig.receives) = (1.0, false);
+        rig.steps(TIMEOUT_CYCLES);
         assert_eq!((rig.state(KNEE), rig.stopped), (State::OperationEnabled, None));
         rig.step();
         assert_eq!((rig.state(KNEE), rig.stopped), (State::FaultReaction, Some(0)));
-        assert_eq!((rig.error(KNEE), rig.stages.action(KNEE)), (Some(Fault::Heartbeat), Action::Ramp));
+        assert_eq!((rig.error(KNEE), rig.electronics.action(KNEE)), (Some(Fault::Heartbeat), Action::Ramp));
         rig.step();
         assert_eq!((rig.state(KNEE), rig.stopped), (State::FaultReaction, None), "not yet at rest");
         rig.goals[KNEE].speed = 0.0;
         rig.steps(2);
-        assert_eq!((rig.state(KNEE), rig.stages.action(KNEE)), (State::Fault, Action::Off));
-        rig.hears = true;
+        assert_eq!((rig.state(KNEE), rig.electronics.action(KNEE)), (State::Fault, Action::Off));
+        rig.receives = true;
         rig.steps(100);
         let mut out = Sensors::default();
-        rig.stages.report(&mut out);
+        rig.electronics.report(&mut out);
         assert_eq!((rig.state(KNEE), out.drive_error[KNEE]), (State::Fault, 0x8130));
         rig.word = FAULT_RESET;
         rig.step();
@@ -381,11 +389,11 @@ mod tests {
     }
 
     #[test]
-    fn a_drive_without_torque_may_hear_nothing() {
+    fn a_drive_without_torque_needs_no_commands() {
         let mut rig = Rig::new(false);
         rig.word = SHUTDOWN;
         rig.step();
-        rig.hears = false;
+        rig.receives = false;
         rig.steps(1000);
         assert_eq!((rig.state(KNEE), rig.error(KNEE)), (State::Ready, None));
     }
@@ -414,6 +422,6 @@ mod tests {
         let mut rig = Rig::new(false);
         rig.supply = false;
         rig.step();
-        assert!((0..24).all(|j| rig.stages.action(j) == Action::Off && rig.error(j).is_none()));
+        assert!((0..24).all(|j| rig.electronics.action(j) == Action::Off && rig.error(j).is_none()));
     }
 }

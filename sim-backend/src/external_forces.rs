@@ -1,30 +1,21 @@
-//! What acts on the robot besides the ground.
+//! External forces on the torso: pushes and the crane's rope; the ground is in `ground.rs`.
 
-use multibody::{Data, Model};
+use multibody::Model;
 use nalgebra::{Vector3, Vector6};
 
 use crate::crane::Rope;
-use crate::feet::Feet;
-use crate::plant::orientation;
+use crate::layout::orientation;
 
-/// What acts on the robot besides the ground.
+/// Forces on the torso besides those of gravity and ground.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Outside {
+pub struct ExternalForces {
     /// \[N\] @world Push at the torso's own centre of gravity.
     pub push: [f64; 3],
-    /// Motor supply.
-    pub powered: bool,
-    /// Drives whose power stage is off all the same, one bit each.
-    pub off: u64,
-    /// Drives whose brakes are closed, one bit each; one without a brake does not care.
-    pub braked: u64,
-    /// Drives that have not had torque yet, one bit each: until then somebody holds their joints in the start pose.
-    pub held: u64,
     /// Rope that holds the torso.
     pub rope: Option<Rope>,
 }
 
-impl Outside {
+impl ExternalForces {
     /// Sum of push and rope in a state x with these speeds: force \[N\], and moment about the world's origin \[N m\],
     /// world axes.
     pub(crate) fn total(&self, model: &Model, x: &[f64], speed: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
@@ -39,25 +30,16 @@ impl Outside {
         }
         (force, moment)
     }
-}
 
-/// Generalized force of ground, push and rope (2.40) in a state x with these speeds.
-pub(crate) fn outside_force(
-    model: &Model,
-    data: &Data,
-    feet: &Feet,
-    outside: &Outside,
-    (x, speed): (&[f64], &[f64]),
-    force: &mut [f64],
-) {
-    force.fill(0.0);
-    feet.add_to(model, data, force);
-    if outside.push == [0.0; 3] && outside.rope.is_none() {
-        return;
-    }
-    let (total, moment) = outside.total(model, x, speed);
-    for (f, b) in force.iter_mut().zip(at_base(x, &total, &moment).iter()) {
-        *f += b;
+    /// Adds push and rope in a state x with these speeds to a generalized force (2.40).
+    pub(crate) fn add_to(&self, model: &Model, x: &[f64], speed: &[f64], force: &mut [f64]) {
+        if self.push == [0.0; 3] && self.rope.is_none() {
+            return;
+        }
+        let (total, moment) = self.total(model, x, speed);
+        for (f, b) in force.iter_mut().zip(at_base(x, &total, &moment).iter()) {
+            *f += b;
+        }
     }
 }
 

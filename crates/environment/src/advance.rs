@@ -1,0 +1,45 @@
+//! Objects in time: they appear, move along a polyline of poses and vanish, but only while nothing touches them.
+//!
+//! Each object has a clock of its own. It stands still while the next change would reach something that touches the
+//! object, or would put the object where a node of the robot is; so what is planned happens late, in the same order and
+//! at the same speed, and never by a jump.
+
+use crate::query::{Environment, Event};
+
+impl Environment {
+    /// Moves every object to where its schedule has it at `time` \[s\], except those that `touched` says something
+    /// touches, and those that would enclose one of the `nodes` \[m\] @world there. Returns what happened. An object
+    /// that has to wait loses the whole step, so steps should be short: a bus cycle.
+    pub fn advance(&mut self, time: f64, touched: &[bool], nodes: &[[f64; 3]]) -> &[Event] {
+        self.events.clear();
+        let step = (time - self.time).max(0.0);
+        self.time += step;
+        for (i, object) in self.objects.iter_mut().enumerate() {
+            let clock = object.clock + step;
+            let (present, pose) = (object.schedule.is_present(clock), object.schedule.pose(clock));
+            let changes = present != object.present || (present && pose != *object.pose());
+            if !changes {
+                object.clock = clock;
+                continue;
+            }
+            // Neither torn away from under a foot, nor put around one.
+            let held = object.present && touched.get(i).copied().unwrap_or(false);
+            if held || (present && !object.moved_clear_of(nodes, pose)) {
+                if !object.refused {
+                    self.events.push(Event::Refused(i));
+                }
+                object.refused = true;
+                continue;
+            }
+            // Nothing is in the way any more.
+            if std::mem::take(&mut object.refused) {
+                self.events.push(Event::Resumed(i));
+            }
+            if present != object.present {
+                self.events.push(if present { Event::Appeared(i) } else { Event::Vanished(i) });
+            }
+            (object.clock, object.present) = (clock, present);
+        }
+        &self.events
+    }
+}

@@ -1,0 +1,155 @@
+//! Bodies of the simulated robot in motion: equations of motion, their state, and the method that takes it on.
+
+use std::error::Error;
+
+use config::{Robot, Scene};
+use messages::EventCode;
+
+use crate::drive::{Drive, Motion};
+use crate::integrate::Stepper;
+use crate::layout::orientation;
+use crate::plant::{Plant, PlantInputs, Snapshot};
+use crate::terrain;
+
+/// Plant with its state and the method of its time steps.
+#[derive(Clone)]
+pub(crate) struct SimulatedBody {
+    plant: Plant,
+    stepper: Stepper,
+    state: Vec<f64>,
+    /// State at the begin of the cycle.
+    last_good: Vec<f64>,
+    /// Length of a cycle \[s\], and steps in it.
+    cycle: f64,
+    substeps: u32,
+}
+
+impl SimulatedBody {
+    /// The robot of a scene in its start pose: standing, or hanging on a crane.
+    ///
+    /// # Errors
+    /// The robot's data do not fit together or do not allow the depth of the scene, or an object cannot be read.
+    pub(crate) fn new(robot: &Robot, scene: &Scene) -> Result<Self, Box<dyn Error>> {
+        let pose = &robot.poses[&scene.start_pose];
+        let real = with_plant_mismatch(robot, scene);
+        let mut plant = Plant::new(&real, terrain::environment(scene)?, scene.depth, pose)?;
+        let state = match &scene.crane {
+            None => plant.standing(pose),
+            Some(crane) => plant.hanging(pose, crane.height),
+        };
+        Ok(Self {
+            stepper: stepper(scene, state.len()),
+            last_good: state.clone(),
+            state,
+            plant,
+            cycle: scene.cycle,
+            substeps: scene.substeps,
+        })
+    }
+
+    /// The equations of motion.
+    pub(crate) fn plant(&self) -> &Plant {
+        &self.plant
+    }
+
+    /// State of the equations of motion, as [`crate::layout`] has it.
+    pub(crate) fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// The same, to be disturbed.
+    pub(crate) fn state_mut(&mut self) -> &mut [f64] {
+        &mut self.state
+    }
+
+    /// \[m\] Height of the torso.
+    pub(crate) fn height(&self) -> f64 {
+        self.state[2]
+    }
+
+    /// One cycle of time passes. Returns the first state that is not finite, if there is one: then the state is that of
+    /// the begin of the cycle.
+    pub(crate) fn advance(&mut self, references: &[Drive], inputs: &PlantInputs) -> Option<usize> {
+        let Self { plant, stepper, state, last_good, .. } = self;
+        last_good.copy_from_slice(state);
+        plant.sample(self.cycle, state, references, inputs);
+        let h = self.cycle / f64::from(self.substeps);
+        for i in 0..self.substeps {
+            stepper.step(plant, f64::from(i) * h, h, state, references, inputs);
+        }
+        let lost = state.iter().position(|x| !x.is_finite());
+        if lost.is_some() {
+            state.copy_from_slice(last_good);
+        }
+        lost
+    }
+
+    /// The ground takes all motion.
+    pub(crate) fn come_to_rest(&mut self) {
+        let layout = self.plant.layout();
+        for moving in [layout.speed(), layout.rotor_speed(), layout.current()] {
+            self.state[moving].fill(0.0);
+        }
+    }
+
+    /// Makes the quaternion of the torso a unit one again.
+    pub(crate) fn normalize(&mut self) {
+        let unit = orientation(&self.state);
+        self.state[3..7].copy_from_slice(unit.coords.as_slice());
+    }
+
+    /// Moves the objects to `time` \[s\], and reports what went wrong or changed in this cycle, the gravest first.
+    pub(crate) fn finish(&mut self, time: f64, mut report: impl FnMut(EventCode, u64)) {
+        if let Some(gave_up) = self.stepper.take_gave_up() {
+            report(EventCode::IntegratorGaveUp, gave_up.state as u64);
+        }
+        if let Some(fault) = self.plant.take_fault() {
+            report(EventCode::DriveFault, fault.drive as u64);
+        }
+        let contact = self.plant.take_contact_report();
+        if !contact.converged {
+            report(EventCode::ContactNotConverged, contact.sweeps.into());
+        }
+        for event in self.plant.advance(time) {
+            match *event {
+                environment::Event::Refused(i) => report(EventCode::ObjectHeld, i as u64),
+                environment::Event::Resumed(i) => report(EventCode::ObjectResumed, i as u64),
+                environment::Event::Appeared(_) | environment::Event::Vanished(_) => {}
+            }
+        }
+    }
+
+    /// Forces and accelerations at the end of a cycle of `dt` \[s\].
+    pub(crate) fn snapshot(&mut self, dt: f64, references: &[Drive], inputs: &PlantInputs) -> Snapshot {
+        self.plant.snapshot(dt, &self.state, references, inputs)
+    }
+
+    /// Motions of the joints; `goals`: of those that follow.
+    pub(crate) fn joints(&self, goals: &[Motion], motions: &mut [Motion]) {
+        self.plant.joints(&self.state, goals, motions);
+    }
+
+    /// Plant and state, for sensors that ask for more than a snapshot.
+    pub(crate) fn parts(&mut self) -> (&mut Plant, &[f64]) {
+        (&mut self.plant, &self.state)
+    }
+}
+
+/// The robot as it is, where that is not what its software believes.
+fn with_plant_mismatch(robot: &Robot, scene: &Scene) -> Robot {
+    let (mut robot, factor) = (robot.clone(), scene.unknown.contact_stiffness);
+    robot.contact.normal_stiffness *= factor;
+    robot.contact.tangential_stiffness *= factor;
+    if let Some(pads) = &mut robot.contact.pads {
+        pads.modulus *= factor;
+    }
+    robot
+}
+
+fn stepper(scene: &Scene, states: usize) -> Stepper {
+    let stepper = Stepper::new(scene.integrator, states);
+    match scene.tolerance {
+        Some(tolerance) => stepper.with_tolerance(tolerance),
+        None => stepper,
+    }
+}

@@ -1,0 +1,171 @@
+//! Instruments of the simulated robot: from its true motion to the readings on the bus, and the truth beside them.
+
+use std::error::Error;
+
+use config::{Robot, Scene};
+use codec::frames::encode_sensors;
+use messages::{BusFrames, EventCode, Header, Imu, Sensors, SimState, Wrench};
+use multibody::Frame;
+use nalgebra::Vector3;
+
+use crate::body::SimulatedBody;
+use crate::joints::SimulatedJoints;
+use crate::layout::orientation;
+use crate::plant::{Plant, PlantInputs, Snapshot};
+use crate::sensors::{SensorSet, Truth, carried};
+
+/// Sensors of one robot, with the records that they fill.
+#[derive(Clone)]
+pub(crate) struct Instruments {
+    sensors: SensorSet,
+    /// Frames of the force sensors; right, left.
+    force_frames: [Frame; 2],
+    /// \[m\] @torso Inertial measurement unit.
+    imu: Vector3<f64>,
+    readings: Sensors,
+    frames: BusFrames,
+    state: SimState,
+}
+
+impl Instruments {
+    /// Sensors of a robot in a scene, on which nothing was measured yet.
+    ///
+    /// # Errors
+    /// A force sensor is on no link of the robot.
+    pub(crate) fn new(robot: &Robot, scene: &Scene, plant: &Plant) -> Result<Self, Box<dyn Error>> {
+        let frame = |i: usize| plant.model().frame(&robot.feet[i].sensor_link, robot.feet[i].sensor);
+        let force_frames = [frame(0)?, frame(1)?];
+        let hanging = carried::hanging(plant.model(), &force_frames, &robot.poses[&scene.start_pose]);
+        Ok(Self {
+            sensors: SensorSet::new(&scene.sensors, robot, &hanging, scene.seed, scene.cycle),
+            force_frames,
+            imu: Vector3::from(robot.imu),
+            readings: Sensors::default(),
+            frames: BusFrames::default(),
+            state: SimState::default(),
+        })
+    }
+
+    /// Newest readings.
+    pub(crate) fn readings(&self) -> &Sensors {
+        &self.readings
+    }
+
+    /// Readings as frames of the bus.
+    pub(crate) fn frames(&self) -> &BusFrames {
+        &self.frames
+    }
+
+    /// The same, for faults of the bus.
+    pub(crate) fn frames_mut(&mut self) -> &mut BusFrames {
+        &mut self.frames
+    }
+
+    /// The truth beside them.
+    pub(crate) fn state(&self) -> &SimState {
+        &self.state
+    }
+
+    /// Begins the records of a cycle.
+    pub(crate) fn stamp(&mut self, header: Header) {
+        self.readings.header = header;
+        self.state.header = header;
+    }
+
+    /// Writes the readings on the bus.
+    pub(crate) fn encode(&mut self, robot: &Robot) {
+        encode_sensors(&robot.layout, &self.readings, &mut self.frames);
+    }
+
+    /// Writes readings and truth at `time` \[s\]. An event says what was wrong with the readings;
+    /// [`EventCode::SensorNotFinite`]: they must not go on the bus.
+    pub(crate) fn measure(
+        &mut self,
+        time: f64,
+        body: &mut SimulatedBody,
+        joints: &SimulatedJoints,
+        snapshot: &Snapshot,
+        inputs: &PlantInputs,
+    ) -> Option<(EventCode, u64)> {
+        let (plant, x) = body.parts();
+        let mut seen = Truth { motor_current: [f64::NAN; messages::MAX_JOINTS], ..Truth::default() };
+        self.see_joints(plant, x, joints, &mut seen);
+        self.see_forces(plant, snapshot, &mut seen);
+        seen.imu = self.see_imu(plant, x, snapshot);
+        let report = self.sensors.measure(&seen, &mut self.readings);
+        joints.electronics().report(&mut self.readings);
+        self.write_truth(time, plant, x, snapshot, inputs);
+        let invalid = (report.invalid > 0).then_some((EventCode::SensorNotFinite, report.invalid.into()));
+        invalid.or((report.clipped > 0).then_some((EventCode::SensorClipped, report.clipped.into())))
+    }
+
+    /// Encoders and current sensors of the drives.
+    fn see_joints(&mut self, plant: &Plant, x: &[f64], joints: &SimulatedJoints, seen: &mut Truth) {
+        for (j, m) in joints.motions().iter().enumerate() {
+            (seen.joint_angle[j], seen.joint_speed[j]) = (m.angle, m.speed);
+            self.state.joint_angle[j] = m.angle;
+        }
+        // A motor turns as its joint, but where an elastic gear has a rotor of its own.
+        (seen.motor_angle, seen.motor_speed) = (seen.joint_angle, seen.joint_speed);
+        plant.motors(x, &mut seen.motor_angle, &mut seen.motor_speed, &mut seen.motor_current);
+        self.state.motor_angle = seen.motor_angle;
+        for j in 0..joints.motions().len() {
+            let error = joints.reading_error(j);
+            if error != 0.0 {
+                seen.joint_angle[j] += error;
+                seen.motor_angle[j] += error;
+            }
+        }
+    }
+
+    /// Wrenches on the force sensors: of the ground, moved there from the soles, and of the bodies below.
+    fn see_forces(&self, plant: &mut Plant, snapshot: &Snapshot, seen: &mut Truth) {
+        for i in 0..2 {
+            let pose = plant.frame_pose(&self.force_frames[i]);
+            let force = Vector3::from(snapshot.foot_wrench[i].force);
+            let sole = Vector3::new(snapshot.feet[i][0], snapshot.feet[i][1], snapshot.feet[i][2]);
+            let lever = sole - pose.translation.vector;
+            let moment = Vector3::from(snapshot.foot_wrench[i].moment) + lever.cross(&force);
+            let back = pose.rotation.inverse();
+            seen.contact[i] = Wrench { force: (back * force).into(), moment: (back * moment).into() };
+        }
+        if self.sensors.needs_inertia() {
+            seen.inertial = plant.carried(&self.force_frames);
+        }
+    }
+
+    /// Motion of the inertial measurement unit, which is not at the torso's origin.
+    fn see_imu(&self, plant: &Plant, x: &[f64], snapshot: &Snapshot) -> Imu {
+        let speed = &x[plant.layout().speed()];
+        let omega = Vector3::from_column_slice(&speed[3..6]);
+        Imu {
+            orientation: orientation(x).coords.into(),
+            angular_velocity: omega.into(),
+            acceleration: (snapshot.specific_force
+                + snapshot.angular_acceleration.cross(&self.imu)
+                + omega.cross(&omega.cross(&self.imu)))
+            .into(),
+        }
+    }
+
+    fn write_truth(&mut self, time: f64, plant: &Plant, x: &[f64], s: &Snapshot, inputs: &PlantInputs) {
+        let speed = &x[plant.layout().speed()];
+        let truth = &mut self.state;
+        truth.time = time;
+        truth.position = [x[0], x[1], x[2]];
+        truth.orientation = orientation(x).coords.into();
+        truth.velocity = [speed[0], speed[1], speed[2]];
+        truth.angular_velocity = [speed[3], speed[4], speed[5]];
+        truth.com = s.com.into();
+        truth.foot_wrench = s.foot_wrench;
+        truth.feet = s.feet;
+        truth.push = inputs.forces.push;
+        truth.rope = inputs.forces.rope.map_or(0.0, |rope| rope.tension(x, speed));
+    }
+
+    /// Writes whether the motors have power, and whether the robot has fallen.
+    pub(crate) fn note(&mut self, powered: bool, fallen: bool) {
+        (self.readings.power, self.state.power) = (u64::from(powered), u64::from(powered));
+        self.state.fallen = u64::from(fallen);
+    }
+}

@@ -1,0 +1,139 @@
+//! Joints of the simulated robot: commands of the bus, electronics of the drives, references of one cycle.
+
+use config::{Robot, Scene};
+use codec::frames::{DriveCommand, decode_targets};
+use messages::{BusFrames, Sensors};
+
+use crate::command_timeout::{CommandTimeout, Follows};
+use crate::depth::JointModel;
+use crate::drive::{Drive, Motion};
+use crate::drive_electronics::{Action, DriveElectronics, ReceivedCommand};
+use crate::inputs::DriveSwitches;
+
+/// Joints of one robot, from the frames of the bus to references.
+#[derive(Clone)]
+pub(crate) struct SimulatedJoints {
+    electronics: DriveElectronics,
+    timeout: CommandTimeout,
+    command: DriveCommand,
+    /// Tick of the newest targets followed.
+    followed: u64,
+    /// \[rad\] Excess of each joint's encoders.
+    offset: Vec<f64>,
+    /// References in this cycle, and where they end.
+    references: Vec<Drive>,
+    goals: Vec<Motion>,
+    /// Motions of the joints themselves.
+    motions: Vec<Motion>,
+}
+
+impl SimulatedJoints {
+    /// Joints of a robot at rest in the start pose of a scene.
+    pub(crate) fn new(robot: &Robot, scene: &Scene) -> Self {
+        let pose = &robot.poses[&scene.start_pose];
+        let resting = |&angle: &f64| Motion { angle, ..Motion::default() };
+        let offset = |joint: &config::robot::Joint| scene.unknown.joint_offset.of(&joint.name).unwrap_or(0.0);
+        Self {
+            electronics: DriveElectronics::new(robot, scene, pose),
+            timeout: CommandTimeout::new(&robot.layout),
+            command: DriveCommand::default(),
+            followed: 0,
+            offset: robot.joints.iter().map(offset).collect(),
+            references: pose.iter().map(|&q| Drive::resting(q)).collect(),
+            goals: pose.iter().map(resting).collect(),
+            motions: pose.iter().map(resting).collect(),
+        }
+    }
+
+    /// References of this cycle.
+    pub(crate) fn references(&self) -> &[Drive] {
+        &self.references
+    }
+
+    /// Motions of the joints.
+    pub(crate) fn motions(&self) -> &[Motion] {
+        &self.motions
+    }
+
+    /// Ends of the references, and the motions of the joints to be written.
+    pub(crate) fn goals_and_motions(&mut self) -> (&[Motion], &mut [Motion]) {
+        (&self.goals, &mut self.motions)
+    }
+
+    /// Electronics of the drives.
+    pub(crate) fn electronics(&self) -> &DriveElectronics {
+        &self.electronics
+    }
+
+    /// \[rad\] Excess of the readings of joint `j`, by its offset and by where its encoder began to count.
+    pub(crate) fn reading_error(&self, j: usize) -> f64 {
+        self.offset[j] - self.electronics.origin(j)
+    }
+
+    /// Begins a cycle of `dt` \[s\]: takes the commands, and chooses the reference of each joint. Returns which drives have
+    /// torque, and the first node of the bus whose drives have just stopped because its commands timed out.
+    pub(crate) fn begin_cycle(
+        &mut self,
+        robot: &Robot,
+        model: JointModel,
+        frames: Option<&BusFrames>,
+        powered: bool,
+        sensors: &Sensors,
+        dt: f64,
+    ) -> (DriveSwitches, Option<usize>) {
+        // Commands, node by node; an older cycle is nobody's command.
+        let new = frames.filter(|f| f.header.tick > self.followed);
+        let received = new.map(|f| decode_targets(&robot.layout, f, &mut self.command));
+        if self.timeout.step(received.as_ref()) {
+            self.followed = self.command.targets.header.tick;
+        }
+        // States of the drives; the current that a winding is warmed by is what its own sensor says.
+        let DriveCommand { control, targets } = &self.command;
+        let command = ReceivedCommand { control, mode: targets.mode, timeout: &self.timeout };
+        let current = (model == JointModel::Motors).then_some(&sensors.motor_current[..]);
+        let stopped = self.electronics.step(&command, powered, dt, &self.goals, &self.motions, current);
+        let stopped = stopped.map(|joint| self.timeout.node_of(joint));
+        // References by action.
+        let mut switches = DriveSwitches { powered, ..DriveSwitches::default() };
+        for (j, joint) in robot.joints.iter().enumerate() {
+            let (from, action) = (self.goals[j], self.electronics.action(j));
+            let angle = targets.angle[j] - self.offset[j] + self.electronics.origin(j);
+            let follows = self.timeout.follows(j, angle - from.angle, joint.speed_limit * dt);
+            self.references[j] = match (action, follows) {
+                // A limp joint with a motor moves as it will; one that only follows comes to rest and stays.
+                (Action::Off, _) if model == JointModel::Motors => Drive::resting(self.motions[j].angle),
+                (Action::Off | Action::Ramp, _) => Drive::brake(joint, from, dt),
+                (Action::Search(speed), _) => {
+                    let change = joint.braking * dt;
+                    let speed = from.speed + (speed - from.speed).clamp(-change, change);
+                    Drive::follow(from, from.angle + 0.5 * (from.speed + speed) * dt, speed, dt)
+                }
+                (Action::Follow, Follows::Target) => Drive::follow(from, angle, targets.speed[j], dt),
+                (Action::Follow, Follows::LastSpeed) => {
+                    Drive::follow(from, from.angle + from.speed * dt, from.speed, dt)
+                }
+            };
+            // Brakes close some time after the torque has gone, and are open until a drive has had torque once.
+            switches.off |= u64::from(action == Action::Off) << j;
+            let (brake, off_for) = (robot.drives.get(j).and_then(|d| d.brake), self.electronics.off_for(j));
+            switches.braked |= u64::from(brake.is_some_and(|brake| off_for > brake.delay)) << j;
+            switches.held |= u64::from(off_for == f64::INFINITY) << j;
+        }
+        (switches, stopped)
+    }
+
+    /// Ends a cycle of `dt` \[s\]: the references have come to their goals.
+    pub(crate) fn end_cycle(&mut self, dt: f64) {
+        for (goal, reference) in self.goals.iter_mut().zip(&self.references) {
+            *goal = reference.at(dt);
+        }
+    }
+
+    /// References stay where they are.
+    pub(crate) fn come_to_rest(&mut self) {
+        for (goal, reference) in self.goals.iter_mut().zip(&mut self.references) {
+            goal.speed = 0.0;
+            *reference = Drive::resting(goal.angle);
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Loads on the torso: pushes of the scene and by command, and the crane.
+
+use config::Scene;
+use messages::command::{LowerCommand, PushCommand};
+use nalgebra::Vector3;
+
+use crate::crane::Crane;
+use crate::drive::Drive;
+use crate::external_forces::ExternalForces;
+use crate::plant::{Plant, PlantInputs};
+
+/// Loads on the torso of one robot.
+#[derive(Clone)]
+pub(crate) struct Loads {
+    /// Pushes of the scene: begin \[s\], and what is pushed.
+    scripted: Vec<(f64, PushCommand)>,
+    /// The newest push by command, and when it ends \[s\].
+    commanded: Option<(PushCommand, f64)>,
+    crane: Option<Crane>,
+}
+
+impl Loads {
+    /// Loads of a scene, whose robot is in this state at rest.
+    pub(crate) fn new(scene: &Scene, plant: &mut Plant, state: &[f64], references: &[Drive]) -> Self {
+        Self {
+            scripted: scene.pushes.clone(),
+            commanded: None,
+            crane: scene.crane.map(|crane| hooked(&crane, plant, state, references)),
+        }
+    }
+
+    /// Begins a push at `time` \[s\].
+    pub(crate) fn push(&mut self, push: &PushCommand, time: f64) {
+        self.commanded = Some((*push, time + push.duration));
+    }
+
+    /// Lowers the crane from now on; whether there is one.
+    pub(crate) fn lower(&mut self, way: &LowerCommand) -> bool {
+        self.crane.as_mut().map(|crane| crane.lower(way.distance)).is_some()
+    }
+
+    /// Forces during the cycle of `dt` \[s\] that begins at `time` \[s\] in this state.
+    pub(crate) fn step(&mut self, time: f64, dt: f64, state: &[f64]) -> ExternalForces {
+        let push = self.push_at(time + 0.5 * dt); // mid-cycle: rounding adds no cycle and takes none
+        ExternalForces { push, rope: self.crane.as_mut().map(|crane| crane.step(state, dt)) }
+    }
+
+    /// Sum of the pushes at t \[s\] \[N\].
+    fn push_at(&self, t: f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        let scripted = self.scripted.iter().filter(|(at, p)| *at <= t && t < at + p.duration).map(|(_, p)| p);
+        let commanded = self.commanded.iter().filter(|(_, until)| t < *until).map(|(p, _)| p);
+        for p in scripted.chain(commanded) {
+            for k in 0..3 {
+                sum[k] += p.force[k];
+            }
+        }
+        sum
+    }
+}
+
+/// The crane of a scene with its hook above the centre of gravity, which hangs in balance.
+fn hooked(crane: &config::crane::Crane, plant: &mut Plant, state: &[f64], references: &[Drive]) -> Crane {
+    let snapshot = plant.snapshot(0.0, state, references, &PlantInputs::default());
+    let torso = Vector3::from_column_slice(&state[..3]);
+    let mut hook = snapshot.com - torso;
+    hook.z = crane.hook;
+    Crane::new(crane, hook, torso + hook, plant.model().mass())
+}
