@@ -3,8 +3,8 @@
 use std::error::Error;
 use std::time::Duration;
 
-use fieldbus::{End, Lines};
 use codec::frames::{self, DriveCommand, Received, encode_targets};
+use fieldbus::{End, Lines};
 use messages::{BusFrames, MAX_FRAMES};
 use realtime::clock;
 

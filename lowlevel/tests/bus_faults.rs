@@ -8,8 +8,6 @@ use drives::cia402::{self, REFERENCED, status_of};
 use fieldbus::{ErrorFrame, ErrorState, Injector};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::LoopState;
-use codec::frames::{DriveCommand, decode_targets, encode_sensors};
-use codec::layout::Carries;
 use messages::{BusFrames, EventCode, Frame, JointMode, JointTargets, Sensors};
 use proptest::prelude::*;
 

@@ -3,12 +3,12 @@
 use std::cell::Cell;
 use std::error::Error;
 
+use codec::frames::{DriveCommand, decode_targets, encode_sensors};
+use codec::layout::Layout;
 use config::{Robot, System};
 use drives::cia402::{self, REFERENCED, status_of};
 use lowlevel::joint_loop::LoopState;
 use lowlevel::{Fieldbus, JointLoop, RunControl};
-use codec::frames::{DriveCommand, decode_targets, encode_sensors};
-use codec::layout::Layout;
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Sensors};
 
 const DT: f64 = 1e-3;

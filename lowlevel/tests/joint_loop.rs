@@ -5,7 +5,6 @@ use config::{Robot, System};
 use drives::cia402::{self, REFERENCED, status_of};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::LoopState;
-use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Sensors};
 use proptest::prelude::*;
 

@@ -6,8 +6,6 @@ use config::{Robot, System};
 use drives::cia402::{self, Fault, Inputs, REFERENCED};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::LoopState;
-use codec::frames::{DriveCommand, decode_targets, encode_sensors};
-use codec::layout::Carries;
 use messages::{BusFrames, Command, EventCode, JointMode, JointTargets, Reason, Sensors, StartUp, Verdict};
 
 /// \[N\] Lola's weight.

@@ -2,8 +2,8 @@
 
 use std::error::Error;
 
-use daemon::Daemon;
 use config::BusAddress;
+use daemon::Daemon;
 
 use crate::can_end::CanEnd;
 use crate::far_end::FarEnd;

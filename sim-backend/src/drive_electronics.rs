@@ -217,6 +217,7 @@ impl DriveElectronics {
 mod tests {
     use super::*;
     use crate::command_timeout::TIMEOUT_CYCLES;
+    use codec::frames::Received;
     use config::{Setup, root};
     use drives::cia402::{DISABLE_VOLTAGE, ENABLE_OPERATION, FAULT_RESET, SHUTDOWN, State};
 

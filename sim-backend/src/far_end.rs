@@ -3,7 +3,6 @@
 use std::error::Error;
 use std::time::Duration;
 
-use config::BusAddress;
 use daemon::Daemon;
 use messages::BusFrames;
 

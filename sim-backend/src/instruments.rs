@@ -2,8 +2,8 @@
 
 use std::error::Error;
 
-use config::{Robot, Scene};
 use codec::frames::encode_sensors;
+use config::{Robot, Scene};
 use messages::{BusFrames, EventCode, Header, Imu, Sensors, SimState, Wrench};
 use multibody::Frame;
 use nalgebra::Vector3;

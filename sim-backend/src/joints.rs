@@ -1,7 +1,7 @@
 //! Joints of the simulated robot: commands of the bus, electronics of the drives, references of one cycle.
 
-use config::{Robot, Scene};
 use codec::frames::{DriveCommand, decode_targets};
+use config::{Robot, Scene};
 use messages::{BusFrames, Sensors};
 
 use crate::command_timeout::{CommandTimeout, Follows};

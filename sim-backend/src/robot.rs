@@ -8,7 +8,6 @@
 
 use std::error::Error;
 
-use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use config::bus_fault::{BusFault, Way};
 use config::{Robot, Scene};
 use fieldbus::Injector;
