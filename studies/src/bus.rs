@@ -71,6 +71,7 @@ impl Study for BusCost {
             buses.push(bus(&robot, "classic CAN, 1 Mbit/s", &robot.classic, CLASSIC, cycle));
             buses.push(bus(&robot, "CAN FD, 1 and 5 Mbit/s", &robot.layout, FD, FD_CYCLE));
         }
+        // What the resolution and the cycle of each kind of bus do to the walk.
         let mut walks = Vec::new();
         for (scene, cycles) in WALKS {
             for &cycle in cycles {

@@ -169,6 +169,7 @@ fn compare(root: &Path, case: &Case, order: &Thesis, sheet: &mut Sheet) -> Resul
         format!("{}, {:.1} km/h, model type {}", setup.robot.name, 3.6 * case.forward, setup.scene.depth);
     sheet.line(format!("{}: {about}", case.figure));
     sheet.table(COLUMNS, &walks);
+    // The verdict in words: a figure of a robot that fell would be none.
     let change = match reduction {
         Some(r) if r < 0.0 => format!("{:.0} % larger", -100.0 * r),
         Some(r) => format!("{:.0} % smaller", 100.0 * r),

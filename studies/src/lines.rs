@@ -140,6 +140,7 @@ fn sheet(f: &Found) -> Sheet {
     ));
     let [near, far] = f.allocations;
     sheet.line(format!("allocations and frees: near end {near:?}; far end {far:?}"));
+    // cyclictest beside what it measures; where it could not run, why.
     let mut rows = vec![
         json!(["wake-up after its time", f.lateness_us]),
         json!(["targets and SYNC sent", f.sent_us]),

@@ -67,6 +67,7 @@ impl Study for Push {
             let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
             mass = multibody::Model::from_urdf(&robot.urdf, &robot.torso, &order)?.mass();
             let starts = at_instants(&setup, instants)?;
+            // Every direction at every instant is a search of its own.
             let impulses = parallel::map(DIRECTIONS.len() * instants, |k| {
                 largest(&starts[k % instants], DIRECTIONS[k / instants].1, 1.0)
             });

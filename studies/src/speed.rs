@@ -67,6 +67,7 @@ impl Study for Speed {
             all.gait.arm_swing = Some(1.0);
             all.scene.name += ", arms swinging";
         }
+        // Each part alone, from its own recording of the walk.
         let simulation = simulation_speed::run(&stand, &walk)?;
         let recording = Recording::new(&walk)?;
         let plans = [0.75, 1.0, 1.5, 2.0, 3.0]

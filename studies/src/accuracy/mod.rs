@@ -199,6 +199,7 @@ impl Study for Accuracy {
             let names: Vec<_> = PARTS.iter().map(|(name, _)| *name).collect();
             return Err(format!("no part {}; there are {}", only.unwrap_or(""), names.join(", ")).into());
         }
+        // A place that cannot be written is told before hours of work, not after.
         sheet::make(&self.out)?;
         let mut charts = Vec::new();
         for (done, (name, part)) in wanted.iter().enumerate() {

@@ -138,11 +138,13 @@ impl Study for Floquet {
         sheet.rows("rows", GAIT, &rows);
         for row in &rows {
             sheet.line(format!("\n{}", row.scene));
+            // By group of states: what a step of it leaves, and its share of the mode that leaves most.
             let share = |name| row.made_of.iter().find(|made| made.0 == name).map(|made| made.1);
             sheet.table(
                 LEFT,
                 &row.left.iter().map(|left| (left.0, left.1, share(left.0))).collect::<Vec<_>>(),
             );
+            // Stride by stride, for who wants to see the decay itself.
             let size: Vec<f64> = row.multipliers.iter().map(|[a, b]| a.hypot(*b)).collect();
             let push = format!("a push of {PUSH} N s leaves, stride by stride");
             sheet.table(

@@ -142,6 +142,7 @@ impl Study for Viability {
         let done = AtomicUsize::new(0);
         let tick = || (given.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, sides + cases, "");
 
+        // Errors: both sides of each, by bisection over whole scenes.
         let found = parallel::map(sides, |k| {
             let found = side(&setup, &kinds[k / 2], k % 2, fine);
             tick();
@@ -150,6 +151,7 @@ impl Study for Viability {
         let found = found.into_iter().collect::<Result<Vec<_>, _>>()?;
         let errors: Vec<_> =
             kinds.iter().zip(found.chunks(2)).map(|(kind, pair)| survived(kind, pair)).collect();
+        // Pushes: every direction at every instant.
         let impulses = parallel::map(cases, |k| {
             let turn = std::f64::consts::TAU * (k % DIRECTIONS) as f64 / DIRECTIONS as f64;
             let found = push::largest(&starts[k / DIRECTIONS], [turn.cos(), turn.sin()], fine);
@@ -161,6 +163,7 @@ impl Study for Viability {
         let least = |d: usize| impulse_n_s.iter().map(|at| at[d]).fold(f64::INFINITY, f64::min);
         let pushes = Pushes { always_n_s: (0..DIRECTIONS).map(least).collect(), impulse_n_s };
 
+        // All of it for people, with the picture.
         let mut sheet = Sheet::titled(format!("{scene}: what is survived, each alone"));
         sheet.fact("scene", scene);
         sheet.fact("errors", &errors);
