@@ -1,6 +1,8 @@
 //! The same work on many cases, on all cores.
 
+use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::ScopedJoinHandle;
 
 /// `work` of 0 to n - 1, in this order whoever does it.
 pub fn map<T: Send>(n: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
@@ -18,7 +20,8 @@ pub fn map<T: Send>(n: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
             }
         };
         let threads: Vec<_> = (0..workers).map(|_| scope.spawn(each)).collect();
-        threads.into_iter().flat_map(|t| t.join().unwrap_or_default()).collect()
+        let join = |t: ScopedJoinHandle<'_, _>| t.join().unwrap_or_else(|panic| resume_unwind(panic));
+        threads.into_iter().flat_map(join).collect()
     });
     found.sort_by_key(|(k, _)| *k);
     found.into_iter().map(|(_, x)| x).collect()

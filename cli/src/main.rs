@@ -170,17 +170,15 @@ enum Task {
         /// Coefficient of friction; default: that of the log's robot in the configuration.
         #[arg(long, value_name = "MU")]
         friction: Option<f64>,
-        /// One JSON object on standard output instead of a table.
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        form: study::Form,
     },
     /// Speed against accuracy, and where methods fail.
     Study {
         #[command(subcommand)]
         what: study::Task,
-        /// End with one JSON object on standard output instead of a table.
-        #[arg(long, global = true)]
-        json: bool,
+        #[command(flatten)]
+        form: study::Form,
     },
     /// Walk everything the robots are to be able to do, and hold it against what is demanded and what others reached.
     Scorecard {
@@ -348,11 +346,11 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         }
         Task::Log { what } => log_command::run(what),
         Task::Replay { log, process } => cli::replay::main(&log, process.as_deref()),
-        Task::Stability { log, out, friction, json } => {
+        Task::Stability { log, out, friction, form } => {
             let out = out.unwrap_or_else(|| log.with_extension(""));
-            study::stability(&config()?, &log, &out, friction, json)
+            study::stability(&config()?, &log, &out, friction, &form)
         }
-        Task::Study { what, json } => study::run(&config()?, what, json),
+        Task::Study { what, form } => study::run(&config()?, &what, &form),
         Task::Scorecard { only, quick, seed, json, out } => {
             let config = config()?;
             let order = cli::scorecard::Order { config: &config, only: only.as_deref(), quick, seed };

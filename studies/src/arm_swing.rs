@@ -3,7 +3,7 @@
 //! The moment is that of the ground on the foot that carries more, about its own centre of pressure: the one that friction
 //! alone has to bear. Both come from the simulated robot itself, not from its sensors.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use config::Setup;
 use drawing::color::{BLACK, GREY, VERMILION};
@@ -12,6 +12,9 @@ use messages::{Command, GaitState, SimState};
 use serde::Serialize;
 
 use chain::Chain;
+
+use crate::sheet::{self, Column, fixed, plain};
+use crate::{Error, Given, Sheet, Study};
 
 /// Scenes that are walked, and their speeds for people \[km/h\].
 const SCENES: [(&str, f64); 2] = [("walk_2kmh", 2.0), ("walk_3kmh", 3.0)];
@@ -22,67 +25,79 @@ const DRAWN: f64 = 1.0;
 /// \[s\] The gait is periodic by then, and is looked at for that long, of which the last ones are drawn.
 const TIMES: (f64, f64, f64) = (10.0, 10.0, 3.0);
 
-type Error = Box<dyn std::error::Error>;
+/// A walk as a row; one that fell has nothing else.
+const COLUMNS: &[Column] = &[
+    plain("/scene", "scene"),
+    fixed("/swing", "arm swing", 1),
+    fixed("/moment_nm/0", "moment, rms [N m]", 2),
+    fixed("/moment_nm/1", "max [N m]", 2),
+    fixed("/turned_mrad", "sole turned [mrad/step]", 1),
+    fixed("/inclination_mrad/0", "phi_x [mrad]", 1),
+    fixed("/inclination_mrad/1", "phi_y [mrad]", 1),
+    fixed("/shoulder_rad", "shoulder [rad]", 2),
+    plain("/fell", "fell"),
+];
 
-/// All walks.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Scene by scene, swing by swing.
-    pub walks: Vec<Walk>,
-    /// A picture per scene.
-    pub pictures: Vec<PathBuf>,
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct ArmSwing {
+    /// Type of the model: 1, reduced; 2, with motors; 3, with elastic gears.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
+    pub depth: u8,
+    /// Where the pictures go.
+    #[arg(long, value_name = "DIR", default_value = "runs/study/arm_swing")]
+    pub out: PathBuf,
+}
+
+impl Study for ArmSwing {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        sheet::make(&self.out)?;
+        let mut sheet =
+            Sheet::titled("Vertical moment of the stance foot, turn of its sole, inclination error");
+        let (mut all, mut figures) = (Vec::new(), Vec::new());
+        for (scene, speed) in SCENES {
+            let mut setup = Setup::load(given.config, scene)?;
+            crate::figures_of_thesis::deepen(&mut setup, self.depth);
+            setup.scene.duration = TIMES.0 + TIMES.1;
+            setup.scene.commands.retain(|(_, command)| *command != Command::Stop);
+            let mut of_swing = |swing: f64| {
+                setup.gait.arm_swing = (swing > 0.0).then_some(swing);
+                walk(&setup, speed, swing)
+            };
+            let walks = SWINGS.into_iter().map(&mut of_swing).collect::<Result<Vec<Walk>, _>>()?;
+            figures.push((format!("arm_swing_{scene}.png"), draw(&setup, &walks)));
+            all.extend(walks);
+        }
+        sheet.rows("walks", COLUMNS, &all);
+        for (name, figure) in figures {
+            sheet.draw(&self.out, &name, &figure)?;
+        }
+        Ok(sheet)
+    }
 }
 
 /// One walk.
 #[derive(Clone, Debug, Serialize)]
-pub struct Walk {
+struct Walk {
     /// Name of the scene.
-    pub scene: String,
+    scene: String,
     /// \[km/h\]
-    pub speed_kmh: f64,
+    speed_kmh: f64,
     /// Arm's over leg's motion.
-    pub swing: f64,
+    swing: f64,
     /// Whether the robot fell: then nothing else counts.
-    pub fell: bool,
+    fell: bool,
     /// \[N m\] Vertical moment of the stance foot about its centre of pressure: root mean square, largest.
-    pub moment_nm: [f64; 2],
+    moment_nm: [f64; 2],
     /// \[mrad\] How far a sole turns on the ground while it carries more than the other: mean of all steps.
-    pub turned_mrad: f64,
+    turned_mrad: f64,
     /// \[mrad\] Largest inclination errors phi_x, phi_y.
-    pub inclination_mrad: [f64; 2],
+    inclination_mrad: [f64; 2],
     /// \[rad\] Amplitude of the shoulders.
-    pub shoulder_rad: f64,
+    shoulder_rad: f64,
     /// (time, moment)
     #[serde(skip)]
     trace: Vec<[f64; 2]>,
-}
-
-/// Walks every scene with every swing and draws into `out`.
-///
-/// # Errors
-/// A configuration is wrong, or a picture cannot be written.
-pub fn run(root: &Path, depth: u8, out: &Path) -> Result<Report, Error> {
-    std::fs::create_dir_all(out)
-        .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
-    let mut report = Report { walks: Vec::new(), pictures: Vec::new() };
-    for (scene, speed) in SCENES {
-        let mut setup = Setup::load(root, scene)?;
-        crate::figures_of_thesis::deepen(&mut setup, depth);
-        setup.scene.duration = TIMES.0 + TIMES.1;
-        setup.scene.commands.retain(|(_, command)| *command != Command::Stop);
-        let walks: Vec<Walk> = SWINGS
-            .iter()
-            .map(|&swing| {
-                setup.gait.arm_swing = (swing > 0.0).then_some(swing);
-                walk(&setup, speed, swing)
-            })
-            .collect::<Result<_, _>>()?;
-        let picture = out.join(format!("arm_swing_{scene}.png"));
-        draw(&setup, &walks).save(&picture)?;
-        report.pictures.push(picture);
-        report.walks.extend(walks);
-    }
-    Ok(report)
 }
 
 /// \[N m\] Moment of the ground on a foot about its centre of pressure, vertical.
@@ -155,25 +170,4 @@ fn draw(setup: &Setup, walks: &[Walk]) -> Figure {
         draw(&mut chart, &name, points, color);
     }
     Figure::new("Arm swing (thesis 4.9)", &about).with(chart)
-}
-
-/// The report as lines for people.
-pub fn table(report: &Report) -> String {
-    let mut text = String::from(
-        "                 arm     vertical moment [N m]   sole turned   inclination error [mrad]   shoulder\n\
-         scene          swing       rms         max       [mrad/step]      phi_x       phi_y     amplitude [rad]",
-    );
-    for w in &report.walks {
-        text += &format!("\n{:14}{:6.1}", w.scene, w.swing);
-        if w.fell {
-            text += "   fell";
-            continue;
-        }
-        let ([rms, max], [x, y]) = (w.moment_nm, w.inclination_mrad);
-        text += &format!("{rms:11.2}{max:12.2}{:16.1}{x:13.1}{y:12.1}{:14.2}", w.turned_mrad, w.shoulder_rad);
-    }
-    for picture in &report.pictures {
-        text += &format!("\n{}", picture.display());
-    }
-    text
 }

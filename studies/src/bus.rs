@@ -12,9 +12,11 @@ use config::{Robot, Setup};
 use fieldbus::load::{BIT_RATE, DATA_BIT_RATE, Rates, cycle_time};
 use messages::{BusFrames, Sensors};
 use realtime::clock::thread_time;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::scorecard::walk;
+use crate::sheet::{Column, fixed, plain};
+use crate::{Error, Given, Sheet, Study};
 
 /// Robots, and the cycle of their CAN lines \[s\]: Lola's of the thesis (8.2), Johnnie's control cycle (5.5.1); Archie's is what
 /// one line per leg leaves room for.
@@ -32,105 +34,78 @@ const STEP: f64 = 1e-4;
 /// Cycles that are timed together, and how often; the median counts.
 const TIMED: (usize, usize) = (1000, 51);
 
-type Error = Box<dyn std::error::Error>;
+/// One robot's frames over one kind of bus: load of the fullest line with the worst stuffing, median time of encoding and
+/// decoding all frames of a cycle at either end, smallest steps of targets and measured angles.
+const BUSES: &[Column] = &[
+    plain("/robot", "robot"),
+    plain("/kind", "bus"),
+    fixed("/cycle_s", "cycle [ms]", 1).times(1e3),
+    plain("/frames/0", "frames to"),
+    plain("/frames/1", "from"),
+    plain("/fullest", "fullest line"),
+    fixed("/load", "load [%]", 1).times(100.0),
+    fixed("/near_us", "lowlevel [us]", 2),
+    fixed("/far_us", "far end [us]", 2),
+    fixed("/target_step", "target [urad]", 3).times(1e6),
+    fixed("/angle_step", "angle [urad]", 3).times(1e6),
+];
+/// One walk over one kind of bus: largest inclination errors phi_x, phi_y and tracking error, what ended it before its time.
+const WALKED: &[Column] = &[
+    plain("/scene", "walk"),
+    plain("/kind", "bus"),
+    fixed("/cycle_s", "cycle [ms]", 1).times(1e3),
+    fixed("/inclination_mrad", "inclination [mrad]", 1),
+    fixed("/tracking_mrad", "hips, knees [mrad]", 2),
+    plain("/ended", "ended"),
+];
 
-/// Everything that was found.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Per robot and kind of bus.
-    pub buses: Vec<Bus>,
-    /// Per walk and kind of bus.
-    pub walks: Vec<Walk>,
-}
+/// The study; it has no arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct BusCost {}
 
-/// One robot's frames.
-#[derive(Clone, Debug, Serialize)]
-pub struct Bus {
-    /// Name of the robot.
-    pub robot: String,
-    /// Kind of bus.
-    pub kind: String,
-    /// \[s\]
-    pub cycle_s: f64,
-    /// Frames of one cycle: to the drives, from them.
-    pub frames: [usize; 2],
-    /// The fullest line.
-    pub fullest: String,
-    /// \[1\] Its load by the frames of one cycle with the worst stuffing.
-    pub load: f64,
-    /// \[us\] Encoding and decoding all frames of one cycle at lowlevel: median.
-    pub near_us: f64,
-    /// \[us\] The same at the far end.
-    pub far_us: f64,
-    /// \[rad\] Smallest step of a target.
-    pub target_step: f64,
-    /// \[rad\] Smallest step of a measured angle.
-    pub angle_step: f64,
-}
-
-/// One walk over one kind of bus.
-#[derive(Clone, Debug, Serialize)]
-pub struct Walk {
-    /// Name of the scene.
-    pub scene: String,
-    /// Kind of bus.
-    pub kind: String,
-    /// \[s\]
-    pub cycle_s: f64,
-    /// What ended it before its time.
-    pub ended: Option<String>,
-    /// \[mrad\] Largest inclination errors phi_x, phi_y.
-    pub inclination_mrad: [f64; 2],
-    /// \[mrad\] Largest tracking error of hip flexion and knees.
-    pub tracking_mrad: f64,
-}
-
-/// Computes loads, measures costs, walks.
-///
-/// # Errors
-/// A configuration is wrong.
-pub fn run(root: &Path) -> Result<Report, Error> {
-    let mut buses = Vec::new();
-    for (name, cycle) in ROBOTS {
-        let robot = Robot::load(&root.join("robots").join(name))?;
-        buses.push(bus(
-            &robot,
-            "classic CAN, 1 Mbit/s",
-            robot.classic.as_ref().map_err(String::as_str)?,
-            CLASSIC,
-            cycle,
-        ));
-        buses.push(bus(&robot, "CAN FD, 1 and 5 Mbit/s", &robot.layout, FD, FD_CYCLE));
-    }
-    let mut walks = Vec::new();
-    for (scene, cycles) in WALKS {
-        for &cycle in cycles {
-            for classic in [true, false] {
-                walks.push(one_walk(root, scene, cycle, classic)?);
+impl Study for BusCost {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        let mut buses = Vec::new();
+        for (name, cycle) in ROBOTS {
+            let robot = Robot::load(&given.config.join("robots").join(name))?;
+            buses.push(bus(&robot, "classic CAN, 1 Mbit/s", robot.classic.as_ref().map_err(String::as_str)?, CLASSIC, cycle));
+            buses.push(bus(&robot, "CAN FD, 1 and 5 Mbit/s", &robot.layout, FD, FD_CYCLE));
+        }
+        // What the resolution and the cycle of each kind of bus do to the walk.
+        let mut walks = Vec::new();
+        for (scene, cycles) in WALKS {
+            for &cycle in cycles {
+                for classic in [true, false] {
+                    walks.push(one_walk(given.config, scene, cycle, classic)?);
+                }
             }
         }
+        let mut sheet = Sheet::default();
+        sheet.rows("buses", BUSES, &buses);
+        sheet.line("");
+        sheet.rows("walks", WALKED, &walks);
+        Ok(sheet)
     }
-    Ok(Report { buses, walks })
 }
 
-fn one_walk(root: &Path, scene: &str, cycle: f64, classic: bool) -> Result<Walk, Error> {
+fn one_walk(root: &Path, scene: &str, cycle: f64, classic: bool) -> Result<Value, Error> {
     let mut setup = Setup::load(root, scene)?.on_bus(classic)?;
     let substeps = (cycle / STEP).round() as u32;
     setup.scene.choose(Method { depth: 3, integrator: Integrator::SemiImplicit, substeps });
     setup.scene.cycle = cycle;
     let walked = walk::walk(&setup)?;
     let f = &walked.figures;
-    Ok(Walk {
-        scene: scene.into(),
-        kind: if classic { "classic CAN" } else { "CAN FD" }.into(),
-        cycle_s: cycle,
-        inclination_mrad: f.inclination_error_max_rad.map(|x| 1e3 * x),
-        tracking_mrad: 1e3 * f.hip_knee_tracking_error_max_rad,
-        ended: walked.ended,
-    })
+    Ok(json!({
+        "scene": scene,
+        "kind": if classic { "classic CAN" } else { "CAN FD" },
+        "cycle_s": cycle,
+        "inclination_mrad": f.inclination_error_max_rad.map(|x| 1e3 * x),
+        "tracking_mrad": 1e3 * f.hip_knee_tracking_error_max_rad,
+        "ended": walked.ended,
+    }))
 }
 
-fn bus(robot: &Robot, kind: &str, layout: &Layout, rates: Rates, cycle: f64) -> Bus {
+fn bus(robot: &Robot, kind: &str, layout: &Layout, rates: Rates, cycle: f64) -> Value {
     let times = cycle_time(layout, rates);
     let (line, time) =
         times.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).expect("a robot has a node");
@@ -139,18 +114,18 @@ fn bus(robot: &Robot, kind: &str, layout: &Layout, rates: Rates, cycle: f64) -> 
         all.map(|s| s.scale).fold(0.0, f64::max)
     };
     let (near_us, far_us) = costs(layout);
-    Bus {
-        robot: robot.name.clone(),
-        kind: kind.into(),
-        cycle_s: cycle,
-        frames: [layout.sent(true).count(), layout.sent(false).count()],
-        fullest: layout.nodes[line].clone(),
-        load: time / cycle,
-        near_us,
-        far_us,
-        target_step: step(|c| matches!(c, Carries::Target(_))),
-        angle_step: step(|c| matches!(c, Carries::Angle(_))),
-    }
+    json!({
+        "robot": robot.name,
+        "kind": kind,
+        "cycle_s": cycle,
+        "frames": [layout.sent(true).count(), layout.sent(false).count()],
+        "fullest": layout.nodes[line],
+        "load": time / cycle,
+        "near_us": near_us,
+        "far_us": far_us,
+        "target_step": step(|c| matches!(c, Carries::Target(_))),
+        "angle_step": step(|c| matches!(c, Carries::Angle(_))),
+    })
 }
 
 /// Median times \[us\] of one cycle at lowlevel and at the far end.
@@ -191,45 +166,6 @@ fn median(mut work: impl FnMut()) -> f64 {
         .collect();
     times.sort_by(f64::total_cmp);
     times[TIMED.1 / 2]
-}
-
-/// The report for people.
-pub fn table(report: &Report) -> String {
-    let mut text = String::from(
-        "robot    bus                     cycle  frames   fullest line       load   lowlevel  far end  target  angle\n\
-         \x20                                  ms  to from                             us       us    urad   urad\n",
-    );
-    for b in &report.buses {
-        text += &format!(
-            "{:8} {:23} {:5.1} {:4} {:4}   {:14} {:6.1} %  {:8.2} {:8.2} {:7.3} {:6.3}\n",
-            b.robot,
-            b.kind,
-            1e3 * b.cycle_s,
-            b.frames[0],
-            b.frames[1],
-            b.fullest,
-            100.0 * b.load,
-            b.near_us,
-            b.far_us,
-            1e6 * b.target_step,
-            1e6 * b.angle_step
-        );
-    }
-    text += "\nwalk              bus           cycle   inclination    hips, knees\n\
-             \x20                                 ms   mrad            mrad\n";
-    for w in &report.walks {
-        text += &format!(
-            "{:17} {:12} {:6.1}   {:4.1}  {:4.1}     {:6.2}   {}\n",
-            w.scene,
-            w.kind,
-            1e3 * w.cycle_s,
-            w.inclination_mrad[0],
-            w.inclination_mrad[1],
-            w.tracking_mrad,
-            w.ended.as_deref().unwrap_or("")
-        );
-    }
-    text
 }
 
 #[cfg(test)]

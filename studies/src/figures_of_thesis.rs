@@ -17,9 +17,12 @@ use drawing::color::{BLACK, GREY, VERMILION};
 use drawing::{Chart, Figure};
 use messages::Command;
 use multibody::{Data, Model};
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use chain::Chain;
+
+use crate::sheet::{self, Column, fixed, plain, scientific};
+use crate::{Error, Given, Sheet, Study};
 
 /// \[s\] The gait is periodic by then ...
 const SETTLED: f64 = 10.0;
@@ -34,7 +37,6 @@ const MOTOR_STEP: f64 = 1e-4;
 /// \[kg\], \[m\] The torus of figure 9.1.
 const TORUS: (f64, f64) = (10.0, 0.25);
 
-type Error = Box<dyn std::error::Error>;
 /// What makes one walk of a figure differ from the other.
 type Change = fn(&mut Setup) -> Result<(), Error>;
 
@@ -90,71 +92,70 @@ const CASES: [Case; 3] = [
     },
 ];
 
-/// What was found.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// One row per figure.
-    pub figures: Vec<Comparison>,
+/// A walk of a figure.
+const COLUMNS: &[Column] = &[
+    plain("/name", "walk"),
+    plain("/fell", "fell"),
+    fixed("/peak_rad", "peak x, y [mrad]", 2).times(1e3),
+    fixed("/sway_rad", "sway x, y [mrad]", 2).times(1e3),
+    scientific("/cost_rad2_s", "cost [rad² s]", 2),
+];
+
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Thesis {
+    /// Only this figure.
+    #[arg(long)]
+    pub figure: Option<String>,
+    /// Type of the model: 1, reduced; 2, with motors; 3, with elastic gears.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
+    pub depth: u8,
+    /// Where the pictures go.
+    #[arg(long, value_name = "DIR", default_value = "runs/thesis")]
+    pub out: PathBuf,
 }
 
-/// One figure.
-#[derive(Clone, Debug, Serialize)]
-pub struct Comparison {
-    /// Number in the thesis.
-    pub figure: String,
-    /// Robot, speed and model.
-    pub about: String,
-    /// With what the thesis proposes, and without it.
-    pub walks: [Walk; 2],
-    /// What is compared.
-    pub judged: String,
-    /// \[1\] 1 - with/without; none if the robot falls in either walk, of which there is no figure then.
-    pub reduction: Option<f64>,
-    /// \[1\] What the text promises at least.
-    pub promised: f64,
-    /// Whether it is kept.
-    pub kept: bool,
-    /// The picture.
-    pub picture: PathBuf,
+impl Study for Thesis {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        let only = self.figure.as_deref();
+        let chosen: Vec<&Case> =
+            CASES.iter().filter(|case| only.is_none_or(|figure| figure == case.figure)).collect();
+        if chosen.is_empty() {
+            let known = CASES.map(|case| case.figure).join(", ");
+            return Err(format!("there is no figure `{}`; choose one of {known}", only.unwrap_or("")).into());
+        }
+        sheet::make(&self.out)?;
+        let mut sheet = Sheet::default();
+        let mut figures: Vec<Value> = Vec::new();
+        for case in chosen {
+            figures.push(compare(given.config, case, self, &mut sheet)?);
+        }
+        sheet.fact("figures", figures);
+        Ok(sheet)
+    }
 }
 
 /// One walk. Pairs are (φ_x, φ_y): forwards and backwards, to the sides; nothing but `fell` is known of one that fell.
-#[derive(Clone, Debug, Serialize)]
-pub struct Walk {
+#[derive(Clone, Debug, serde::Serialize)]
+struct Walk {
     /// Which one.
-    pub name: String,
+    name: String,
     /// Whether the robot fell.
-    pub fell: bool,
+    fell: bool,
     /// \[rad\] Largest inclination error.
-    pub peak_rad: [f64; 2],
+    peak_rad: [f64; 2],
     /// \[rad\] Half of its range.
-    pub sway_rad: [f64; 2],
+    sway_rad: [f64; 2],
     /// \[rad^2 s\] Cost (5.54) over ten seconds.
-    pub cost_rad2_s: f64,
+    cost_rad2_s: f64,
     /// Time \[s\] and errors \[rad\].
     #[serde(skip)]
     trace: Vec<[f64; 3]>,
 }
 
-/// Walks for all figures, or for `only` one, with models of type `depth`, and draws them into `out`.
-///
-/// # Errors
-/// There is no such figure, a configuration is wrong, or a picture cannot be written.
-pub fn run(root: &Path, only: Option<&str>, depth: u8, out: &Path) -> Result<Report, Error> {
-    let chosen: Vec<&Case> =
-        CASES.iter().filter(|case| only.is_none_or(|figure| figure == case.figure)).collect();
-    if chosen.is_empty() {
-        let known = CASES.map(|case| case.figure).join(", ");
-        return Err(format!("there is no figure `{}`; choose one of {known}", only.unwrap_or("")).into());
-    }
-    std::fs::create_dir_all(out)
-        .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
-    let figures = chosen.into_iter().map(|case| compare(root, case, depth, out)).collect::<Result<_, _>>()?;
-    Ok(Report { figures })
-}
-
-fn compare(root: &Path, case: &Case, depth: u8, out: &Path) -> Result<Comparison, Error> {
-    let setup = periodic(root, case, depth)?;
+/// One figure, onto the sheet and as an object. There is no reduction if the robot falls in either walk.
+fn compare(root: &Path, case: &Case, order: &Thesis, sheet: &mut Sheet) -> Result<Value, Error> {
+    let setup = periodic(root, case, order.depth)?;
     let walk = |k: usize| -> Result<Walk, Error> {
         let mut setup = setup.clone();
         case.changes[k](&mut setup)?;
@@ -163,20 +164,29 @@ fn compare(root: &Path, case: &Case, depth: u8, out: &Path) -> Result<Comparison
     let walks = [walk(0)?, walk(1)?];
     let [with, without] = [&walks[0], &walks[1]].map(case.judged);
     let reduction = (!walks.iter().any(|w| w.fell)).then_some(1.0 - with / without);
-    let picture = out.join(format!("figure_{}.png", case.figure.replace('.', "_")));
+    let kept = reduction.is_some_and(|r| r > case.promised);
     let about =
         format!("{}, {:.1} km/h, model type {}", setup.robot.name, 3.6 * case.forward, setup.scene.depth);
-    draw(case, &about, &walks).save(&picture)?;
-    Ok(Comparison {
-        figure: case.figure.into(),
-        about,
-        judged: case.judged_name.into(),
-        reduction,
-        promised: case.promised,
-        kept: reduction.is_some_and(|r| r > case.promised),
-        picture,
-        walks,
-    })
+    sheet.line(format!("{}: {about}", case.figure));
+    sheet.table(COLUMNS, &walks);
+    // The verdict in words: a figure of a robot that fell would be none.
+    let change = match reduction {
+        Some(r) if r < 0.0 => format!("{:.0} % larger", -100.0 * r),
+        Some(r) => format!("{:.0} % smaller", 100.0 * r),
+        None => {
+            let fell: Vec<&str> = walks.iter().filter(|w| w.fell).map(|w| w.name.as_str()).collect();
+            format!("not measured: falls {}", fell.join(" and "))
+        }
+    };
+    let promised = 100.0 * case.promised;
+    let verdict = if kept { "kept" } else { "NOT kept" };
+    sheet.line(format!("{} {change}, promised more than {promised:.0} %: {verdict}", case.judged_name));
+    let name = format!("figure_{}.png", case.figure.replace('.', "_"));
+    let picture = sheet.draw(&order.out, &name, &draw(case, &about, &walks))?;
+    Ok(json!({
+        "figure": case.figure, "about": about, "walks": walks, "judged": case.judged_name,
+        "reduction": reduction, "promised": case.promised, "kept": kept, "picture": picture,
+    }))
 }
 
 /// Simulates a scene of type 1 with models of type `depth`.
@@ -303,50 +313,6 @@ fn draw(case: &Case, about: &str, walks: &[Walk; 2]) -> Figure {
     figure
 }
 
-/// The report as lines for people.
-pub fn table(report: &Report) -> String {
-    let mut text = format!(
-        "{:8}{:20}{:>7}{:>19}{:>19}{:>14}",
-        "figure", "walk", "fell", "peak x, y [mrad]", "sway x, y [mrad]", "cost [rad² s]"
-    );
-    for f in &report.figures {
-        text += &format!("\n{}", f.about);
-        for w in &f.walks {
-            let pair = |x: [f64; 2]| format!("{:.2}, {:.2}", 1e3 * x[0], 1e3 * x[1]);
-            text += &format!(
-                "\n{:8}{:20}{:>7}{:>19}{:>19}{:>14.2e}",
-                f.figure,
-                w.name,
-                if w.fell { "yes" } else { "no" },
-                pair(w.peak_rad),
-                pair(w.sway_rad),
-                w.cost_rad2_s
-            );
-        }
-        text += &format!(
-            "\n        {} {}, promised more than {:.0} %: {}; {}",
-            f.judged,
-            change(f),
-            100.0 * f.promised,
-            if f.kept { "kept" } else { "NOT kept" },
-            f.picture.display()
-        );
-    }
-    text
-}
-
-/// What became of the figure that is compared.
-fn change(f: &Comparison) -> String {
-    match f.reduction {
-        Some(r) if r < 0.0 => format!("{:.0} % larger", -100.0 * r),
-        Some(r) => format!("{:.0} % smaller", 100.0 * r),
-        None => {
-            let fell: Vec<&str> = f.walks.iter().filter(|w| w.fell).map(|w| w.name.as_str()).collect();
-            format!("not measured: falls {}", fell.join(" and "))
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -359,12 +325,13 @@ mod tests {
     #[test]
     fn figure_4_17() {
         let out = std::env::temp_dir().join(format!("gangwerk-4-17-{}", std::process::id()));
-        let report = run(&config::root(None), Some("4.17"), 1, &out).unwrap();
-        let f = &report.figures[0];
-        assert!(f.walks.iter().all(|walk| !walk.fell), "{f:#?}");
-        assert!(f.kept && f.reduction.is_some_and(|r| r > 0.45), "{f:#?}");
-        assert!(f.walks[0].cost_rad2_s < f.walks[1].cost_rad2_s);
-        assert!(f.picture.is_file());
+        let given = Given { config: &config::root(None), progress: &|_, _, _| () };
+        let study = Thesis { figure: Some("4.17".into()), depth: 1, out: out.clone() };
+        let f = &study.run(&given).unwrap().json()["figures"][0];
+        assert!((0..2).all(|k| f["walks"][k]["fell"] == false), "{f:#?}");
+        assert!(f["kept"] == true && f["reduction"].as_f64() > Some(0.45), "{f:#?}");
+        assert!(f["walks"][0]["cost_rad2_s"].as_f64() < f["walks"][1]["cost_rad2_s"].as_f64());
+        assert!(Path::new(f["picture"].as_str().unwrap()).is_file());
         std::fs::remove_dir_all(out).unwrap();
     }
 
@@ -404,7 +371,9 @@ mod tests {
 
     #[test]
     fn an_unknown_figure_is_named_with_the_known_ones() {
-        let error = run(&config::root(None), Some("5.3"), 1, Path::new("nowhere")).unwrap_err().to_string();
+        let given = Given { config: &config::root(None), progress: &|_, _, _| () };
+        let study = Thesis { figure: Some("5.3".into()), depth: 1, out: "nowhere".into() };
+        let error = study.run(&given).unwrap_err().to_string();
         assert_eq!(error, "there is no figure `5.3`; choose one of 5.2, 4.17, 9.1");
     }
 }

@@ -1,23 +1,10 @@
 //! Speed against accuracy, and where methods fail: `gangwerk study ...`.
 //!
-//! | study | question |
-//! |---|---|
-//! | [`accuracy`] | which method is cheapest for a given accuracy? |
-//! | [`push`] | which impulse does the walking robot survive? |
-//! | [`stability`] | how near to falling is a walk, how fast does it forget, what does it survive? |
-//! | [`limits`] | where do methods fail, and is it told? |
-//! | [`speed`], [`simulation_speed`] | how fast is each part, and how accurate is it at that speed? |
-//! | [`bus`] | what does the field bus cost, in time, room on its lines and accuracy of the walk? |
-//! | [`lines`] | how punctual is a cycle over CAN lines, beside cyclictest? |
-//! | [`tables`] | what do look-up tables, counts and a slower bus cost the joints? |
-//! | [`arm_swing`] | what do swinging arms take from the soles? |
-//! | [`figures_of_thesis`] | are the figures of the thesis found again? |
-//! | [`scorecard`] | does everything walk that is to walk, and how well beside what others reached? |
-//! | [`stalls`] | what does a walking robot do when a process is stopped and goes on? |
-//! | [`bus_faults`] | what does a walking robot do when the bus fails? |
-//! | [`cycles`] | how well did the processes of a run keep real time? |
+//! The table of studies is [`Task`]; beside it stand the [`scorecard`], which walks everything that is to walk, and
+//! [`stability::log`], which judges a log.
 //!
-//! They work on [`chain`], a whole robot in one process; [`second`] replays a part of it.
+//! They work on [`chain`], a whole robot in one process; [`second`] replays a part of it. A study is a struct of its arguments
+//! that implements [`Study`], and a row in [`Task`]; what it finds is a [`Sheet`].
 
 pub mod accuracy;
 pub mod arm_swing;
@@ -29,9 +16,83 @@ pub mod limits;
 pub mod lines;
 pub mod push;
 pub mod scorecard;
+mod search;
 pub mod second;
+pub mod sheet;
 pub mod simulation_speed;
 pub mod speed;
 pub mod stability;
 pub mod stalls;
 pub mod tables;
+
+use std::path::Path;
+
+pub use sheet::Sheet;
+
+/// Why a study could not be carried out.
+pub type Error = Box<dyn std::error::Error>;
+
+/// What a study is given besides its arguments.
+pub struct Given<'a> {
+    /// Directory of the configuration.
+    pub config: &'a Path,
+    /// Told how many pieces of work are done, of how many (0: unknown), and which one is next.
+    pub progress: &'a (dyn Fn(usize, usize, &str) + Sync),
+}
+
+/// A question with its arguments.
+pub trait Study {
+    /// Finds the answer.
+    ///
+    /// # Errors
+    /// A configuration or an argument is wrong, a robot falls that should not, or a picture cannot be written.
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error>;
+}
+
+/// The table of studies: what `gangwerk study --help` says, name, type.
+macro_rules! studies {
+    ($($(#[$about:meta])* $name:ident: $study:ty,)*) => {
+        /// All studies.
+        #[derive(clap::Subcommand, Debug)]
+        pub enum Task {
+            $($(#[$about])* $name($study),)*
+        }
+
+        impl Study for Task {
+            fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+                match self {
+                    $(Self::$name(study) => study.run(given),)*
+                }
+            }
+        }
+    };
+}
+
+studies! {
+    /// Which impulse the walking robot survives.
+    Push: push::Push,
+    /// Which disturbances and errors a gait survives: pushes, wrong sensors, wrong ground, delay.
+    Viability: stability::viability::Viability,
+    /// How fast a gait forgets a small disturbance: eigenvalues of its Poincaré map.
+    Floquet: stability::floquet::Floquet,
+    /// Which method is cheapest for a given accuracy: charts of processor time against error.
+    Accuracy: accuracy::Accuracy,
+    /// How fast simulation, planner and stabilizer are, and how accurate at that speed.
+    Speed: speed::Speed,
+    /// Where methods fail: predicted and measured limits, and how each failure is reported.
+    Limits: limits::Limits,
+    /// Look-up tables of the local controllers: error over size, time, and what a walk loses by them.
+    Tables: tables::Tables,
+    /// Figures of the thesis that compare two walks: 5.2, 4.17, 9.1.
+    Thesis: figures_of_thesis::Thesis,
+    /// Vertical moments of the soles and how far they turn, with arms that swing and with arms that do not.
+    ArmSwing: arm_swing::ArmSwing,
+    /// What the field bus costs: load of its lines, time of its frames, accuracy of the walk.
+    Bus: bus::BusCost,
+    /// How punctual a bus cycle over CAN lines is, beside cyclictest in the same run: both ends on this machine.
+    Lines: lines::Punctuality,
+    /// What the walking robot does when the bus fails: lost, late, corrupted frames, silent nodes, cables.
+    BusFaults: bus_faults::BusFaults,
+    /// Processes of a walking robot that are stopped for 2 to 1000 ms and go on.
+    Stalls: stalls::Stalls,
+}

@@ -3,18 +3,20 @@
 //! Both ends of the lines and nothing else: the near end does in each cycle what the joint loop does with its lines, the
 //! far end answers each SYNC with all frames of its line. So what is measured is the cost of the lines themselves.
 
-use std::error::Error;
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use codec::frames::{DriveCommand, decode_sensors, encode_sensors, encode_targets};
 use codec::layout::Layout;
-use config::Robot;
+use config::{BusAddress, Robot};
 use fieldbus::{End, Lines};
 use messages::{BusFrames, Frame, MAX_FRAMES, Sensors};
 use realtime::{Histogram, Period, Schedule, allocations, clock, prepare_thread};
 use serde::Serialize;
+use serde_json::json;
+
+use crate::sheet::{Column, fixed, plain};
+use crate::{Error, Given, Sheet, Study};
 
 use realtime::cyclictest;
 
@@ -27,85 +29,140 @@ const ANSWER: (u64, u64) = (7, 10);
 /// The far end looks this often whether to end.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// What is to be measured.
-#[derive(Clone, Debug)]
-pub struct Order {
-    /// Whose frames.
+/// Microseconds: p50, p99, p99.9, max.
+const COLUMNS: &[Column] = &[
+    plain("/0", "[us]"),
+    fixed("/1/0", "p50", 1),
+    fixed("/1/1", "p99", 1),
+    fixed("/1/2", "p99.9", 1),
+    fixed("/1/3", "max", 1),
+];
+
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Punctuality {
+    /// The lines, classic CAN or CAN FD.
+    #[arg(long, default_value = "can:vcan0-8")]
+    pub bus: BusAddress,
+    /// Whose frames they carry.
+    #[arg(long, default_value = "lola")]
     pub robot: String,
-    /// One interface per line, or one for all.
-    pub interfaces: Vec<String>,
-    /// Whether they carry CAN FD.
-    pub fd: bool,
-    /// \[s\] Bus cycle.
+    /// Bus cycle, in ms.
+    #[arg(long, value_name = "MS", default_value_t = 3.5)]
     pub cycle: f64,
-    /// \[s\] Duration, and that of `cyclictest` alone before it.
+    /// How long, in s; cyclictest runs as long before, and again beside it.
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub seconds: u64,
 }
 
 /// What was found.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+struct Found {
     /// Whose frames.
-    pub robot: String,
+    robot: String,
     /// \[s\] Bus cycle.
-    pub cycle: f64,
+    cycle: f64,
     /// Cycles counted.
-    pub cycles: u64,
+    cycles: u64,
     /// Whole periods skipped, because a cycle had not ended.
-    pub skipped: u64,
+    skipped: u64,
     /// Cycles whose answers were not there after 70 % of it.
-    pub late: u64,
+    late: u64,
     /// Frames that should have come, and those that had not by the next cycle.
-    pub frames: [u64; 2],
+    frames: [u64; 2],
     /// Frames that could not be sent, by near and far end.
-    pub unsent: [u32; 2],
+    unsent: [u32; 2],
     /// Allocations and frees in the cycles, of near and far end.
-    pub allocations: [[u64; 2]; 2],
+    allocations: [[u64; 2]; 2],
     /// \[us\] Wake-up after its time: p50, p99, p99.9, max.
-    pub lateness_us: [f64; 4],
+    lateness_us: [f64; 4],
     /// \[us\] Targets encoded and sent, up to the last SYNC: likewise.
-    pub sent_us: [f64; 4],
+    sent_us: [f64; 4],
     /// \[us\] From the last SYNC until the last answer was read: likewise; no more than 70 % of the cycle are waited for.
-    pub answered_us: [f64; 4],
+    answered_us: [f64; 4],
     /// \[us\] Lateness of `cyclictest` alone and beside this, at the same priority; or why it did not run.
-    pub cyclictest_us: [Result<[u64; 4], String>; 2],
+    cyclictest_us: [Result<[u64; 4], String>; 2],
     /// What real time was asked for and not granted.
-    pub missing: Vec<String>,
+    missing: Vec<String>,
 }
 
-/// Runs `cyclictest` alone, then both ends of the lines beside it.
-///
-/// # Errors
-/// The robot's files are wrong, or an interface cannot be used.
-pub fn run(config: &Path, order: &Order) -> Result<Report, Box<dyn Error>> {
-    let robot = Robot::load(&config.join("robots").join(&order.robot))?;
-    let layout = if order.fd { robot.layout } else { robot.classic? };
-    let open = |end| Lines::open(&order.interfaces, &layout, order.fd, end);
-    let (near, far) = (open(End::Near)?, open(End::Far)?);
-    let beside = || cyclictest(None, PRIORITY[0], order.seconds);
-    let alone = beside();
-    let stop = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        // Each thread takes its priority by itself; cyclictest would inherit it.
-        let other = scope.spawn(beside);
-        let far = scope.spawn(|| answer(far, &layout, &stop));
-        let near = scope.spawn(|| drive(near, &layout, order));
-        let report = near.join();
-        stop.store(true, Ordering::Relaxed);
-        let (far, other) = (far.join(), other.join());
-        let died = |_| "a thread has died";
-        let (mut report, (allocated, unsent)) = (report.map_err(died)?, far.map_err(died)?);
-        (report.allocations[1], report.unsent[1]) = (allocated, unsent);
-        report.cyclictest_us = [alone, other.map_err(died)?];
-        Ok(report)
-    })
+impl Study for Punctuality {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        let BusAddress::Can { fd, interfaces } = &self.bus else {
+            return Err(format!("--bus {}: must be can:INTERFACES or canfd:INTERFACES", self.bus).into());
+        };
+        if !(0.1..=1000.0).contains(&self.cycle) {
+            return Err(format!("--cycle {}: must be 0.1 to 1000 ms", self.cycle).into());
+        }
+        let robot = Robot::load(&given.config.join("robots").join(&self.robot))?;
+        let layout = if *fd { robot.layout } else { robot.classic? };
+        let open = |end| Lines::open(interfaces, &layout, *fd, end);
+        let (near, far) = (open(End::Near)?, open(End::Far)?);
+        Ok(sheet(&self.measure(near, far, &layout)?))
+    }
+}
+
+impl Punctuality {
+    /// Runs `cyclictest` alone, then both ends of the lines beside it.
+    fn measure(&self, near: Lines, far: Lines, layout: &Layout) -> Result<Found, Error> {
+        let beside = || cyclictest(None, PRIORITY[0], self.seconds);
+        let alone = beside();
+        let stop = AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            // Each thread takes its priority by itself; cyclictest would inherit it.
+            let other = scope.spawn(beside);
+            let far = scope.spawn(|| answer(far, layout, &stop));
+            let near = scope.spawn(|| drive(near, layout, self));
+            let found = near.join();
+            stop.store(true, Ordering::Relaxed);
+            let (far, other) = (far.join(), other.join());
+            let died = |_| "a thread has died";
+            let (mut found, (allocated, unsent)) = (found.map_err(died)?, far.map_err(died)?);
+            (found.allocations[1], found.unsent[1]) = (allocated, unsent);
+            found.cyclictest_us = [alone, other.map_err(died)?];
+            Ok(found)
+        })
+    }
+}
+
+fn sheet(f: &Found) -> Sheet {
+    let mut sheet = Sheet::titled(format!(
+        "{}, cycle {} ms: {} cycles, {} skipped; {} with late answers; {} of {} frames lost, {} and {} unsent",
+        f.robot,
+        f.cycle * 1e3,
+        f.cycles,
+        f.skipped,
+        f.late,
+        f.frames[1],
+        f.frames[0],
+        f.unsent[0],
+        f.unsent[1]
+    ));
+    let [near, far] = f.allocations;
+    sheet.line(format!("allocations and frees: near end {near:?}; far end {far:?}"));
+    // cyclictest beside what it measures; where it could not run, why.
+    let mut rows = vec![
+        json!(["wake-up after its time", f.lateness_us]),
+        json!(["targets and SYNC sent", f.sent_us]),
+        json!(["last SYNC to last answer", f.answered_us]),
+    ];
+    for (name, found) in [("beside it", &f.cyclictest_us[1]), ("alone", &f.cyclictest_us[0])] {
+        match found {
+            Ok(us) => rows.push(json!([format!("cyclictest {name}"), us.map(|us| us as f64)])),
+            Err(why) => sheet.line(format!("cyclictest {name}: {why}")),
+        }
+    }
+    sheet.table(COLUMNS, &rows);
+    f.missing.iter().for_each(|missing| sheet.line(format!("degraded: {missing}")));
+    sheet.facts(f);
+    sheet
 }
 
 /// The near end: one cycle after the other.
-fn drive(mut lines: Lines, layout: &Layout, order: &Order) -> Report {
+fn drive(mut lines: Lines, layout: &Layout, order: &Punctuality) -> Found {
     let granted = prepare_thread(&Schedule { priority: PRIORITY[0], core: None });
     let answers = layout.sent(false).count().min(MAX_FRAMES);
-    let cycle_ns = (order.cycle * 1e9) as u64;
+    let cycle_ns = (order.cycle * 1e-3 * 1e9) as u64;
     let [mut lateness, mut sent, mut answered] = [(); 3].map(|()| Histogram::new());
     let mut command = DriveCommand::default();
     let (mut tx, mut rx, mut sensors) = (BusFrames::default(), BusFrames::default(), Sensors::default());
@@ -146,9 +203,9 @@ fn drive(mut lines: Lines, layout: &Layout, order: &Order) -> Report {
     allocations::disarm();
     let cycles = tick - WARM_UP;
     let us = |histogram: &Histogram| histogram.percentiles().map(|ns| ns as f64 * 1e-3);
-    Report {
+    Found {
         robot: order.robot.clone(),
-        cycle: order.cycle,
+        cycle: order.cycle * 1e-3,
         cycles,
         skipped: period.skipped() - skipped_before,
         late,
@@ -211,41 +268,4 @@ fn sync(layout: &Layout, frame: &Frame) -> Option<u64> {
     let message = layout.find(frame.line, frame.id).map(|i| &layout.messages[i])?;
     let counter = message.counter().filter(|_| message.is_sync() && message.len == frame.len)?;
     Some(counter.get(&frame.data) as u64)
-}
-
-/// As a table.
-pub fn table(r: &Report) -> String {
-    let row =
-        |name: &str, v: [f64; 4]| format!("{name:24}{:10.1}{:10.1}{:10.1}{:10.1}\n", v[0], v[1], v[2], v[3]);
-    let beside = |name: &str, v: &Result<[u64; 4], String>| match v {
-        Ok(v) => row(name, v.map(|us| us as f64)),
-        Err(why) => format!("{name:24} {why}\n"),
-    };
-    let mut text = format!(
-        "{}, cycle {} ms: {} cycles, {} skipped; {} with late answers; {} of {} frames lost, {} and {} unsent\n",
-        r.robot,
-        r.cycle * 1e3,
-        r.cycles,
-        r.skipped,
-        r.late,
-        r.frames[1],
-        r.frames[0],
-        r.unsent[0],
-        r.unsent[1]
-    );
-    let [near, far] = r.allocations;
-    text += &format!(
-        "allocations and frees: near end {}, {}; far end {}, {}\n",
-        near[0], near[1], far[0], far[1]
-    );
-    text += &format!("{:24}{:>10}{:>10}{:>10}{:>10}\n", "[us]", "p50", "p99", "p99.9", "max");
-    text += &row("wake-up after its time", r.lateness_us);
-    text += &row("targets and SYNC sent", r.sent_us);
-    text += &row("last SYNC to last answer", r.answered_us);
-    text += &beside("cyclictest beside it", &r.cyclictest_us[1]);
-    text += &beside("cyclictest alone", &r.cyclictest_us[0]);
-    for missing in &r.missing {
-        text += &format!("degraded: {missing}\n");
-    }
-    text
 }

@@ -3,15 +3,17 @@
 //! A push of 0.1 s at the torso's origin. Survived: `AFTER` later the robot has not fallen, and no process has stopped
 //! it. The way it walks repeats with every stride of two steps, so the instants are spread over one stride.
 
-use std::path::Path;
-
 use config::Setup;
 use messages::command::PushCommand;
 use messages::{EventCode, GaitState, LEFT, RIGHT};
-use serde::Serialize;
+use serde_json::json;
 
 use chain::parallel;
 use chain::{Chain, Cycle};
+
+use crate::search::{Width, border};
+use crate::sheet::{Column, fixed, plain};
+use crate::{Error, Given, Sheet, Study};
 
 /// \[s\] Length of a push.
 const DURATION: f64 = 0.1;
@@ -30,68 +32,66 @@ const SCENES: [&str; 2] = ["push", "walk_1kmh"];
 const DIRECTIONS: [(&str, [f64; 2]); 4] =
     [("forward", [1.0, 0.0]), ("backward", [-1.0, 0.0]), ("left", [0.0, 1.0]), ("right", [0.0, -1.0])];
 
-/// What was found.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// \[kg\] Mass of the robot.
-    pub mass_kg: f64,
-    /// \[s\] Length of a push.
-    pub push_duration_s: f64,
-    /// One row per scene and direction.
-    pub rows: Vec<Row>,
+/// Pushes of one scene in one direction; the least one is survived whenever it comes.
+const COLUMNS: &[Column] = &[
+    plain("/scene", "scene"),
+    plain("/direction", "push"),
+    fixed("/always_n_s", "always [N s]", 2),
+    fixed("/always_n_s_per_kg", "[N s/kg]", 3),
+    fixed("/impulse_n_s", "at each instant [N s]", 2),
+];
+
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Push {
+    /// Only this scene; default: walking in place and at 1 km/h.
+    #[arg(long)]
+    pub scene: Option<String>,
+    /// How many instants of a stride are tried.
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub instants: u64,
 }
 
-/// Pushes of one scene in one direction.
-#[derive(Clone, Debug, Serialize)]
-pub struct Row {
-    /// Name of the scene; its own pushes are left out.
-    pub scene: String,
-    /// World axes.
-    pub direction: String,
-    /// \[N s\] Largest impulse survived, at instants spread evenly over a stride; a stride begins with the single
-    /// support of the right foot.
-    pub impulse_n_s: Vec<f64>,
-    /// \[N s\] The least of them: survived whenever it comes.
-    pub always_n_s: f64,
-    /// \[N s/kg\] The same over the robot's mass.
-    pub always_n_s_per_kg: f64,
-}
-
-/// Pushes at `instants` of a stride, of all scenes, or of `only`.
-///
-/// # Errors
-/// A configuration or robot is wrong, or a robot falls without a push.
-pub fn run(config: &Path, only: Option<&str>, instants: usize) -> Result<Report, Box<dyn std::error::Error>> {
-    let mut report = Report { mass_kg: 0.0, push_duration_s: DURATION, rows: Vec::new() };
-    for scene in SCENES.into_iter().chain(only.filter(|s| !SCENES.contains(s))) {
-        if only.is_some_and(|only| only != scene) {
-            continue;
-        }
-        let mut setup = Setup::load(config, scene)?;
-        setup.scene.pushes.clear();
-        let robot = &setup.robot;
-        let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-        report.mass_kg = multibody::Model::from_urdf(&robot.urdf, &robot.torso, &order)?.mass();
-        let starts = at_instants(&setup, instants)?;
-        let impulses = parallel::map(DIRECTIONS.len() * instants, |k| {
-            largest(&starts[k % instants], DIRECTIONS[k / instants].1, 1.0)
-        });
-        for ((direction, _), impulse_n_s) in DIRECTIONS.iter().zip(impulses.chunks(instants)) {
-            let always = impulse_n_s.iter().copied().fold(f64::INFINITY, f64::min);
-            report.rows.push(Row {
-                scene: scene.into(),
-                direction: (*direction).into(),
-                impulse_n_s: impulse_n_s.to_vec(),
-                always_n_s: always,
-                always_n_s_per_kg: always / report.mass_kg,
+impl Study for Push {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        let (only, instants) = (self.scene.as_deref(), self.instants as usize);
+        let (mut mass, mut rows) = (0.0, Vec::new());
+        for scene in SCENES.into_iter().chain(only.filter(|s| !SCENES.contains(s))) {
+            if only.is_some_and(|only| only != scene) {
+                continue;
+            }
+            let mut setup = Setup::load(given.config, scene)?;
+            // The scene's own pushes are left out.
+            setup.scene.pushes.clear();
+            let robot = &setup.robot;
+            let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
+            mass = multibody::Model::from_urdf(&robot.urdf, &robot.torso, &order)?.mass();
+            let starts = at_instants(&setup, instants)?;
+            // Every direction at every instant is a search of its own.
+            let impulses = parallel::map(DIRECTIONS.len() * instants, |k| {
+                largest(&starts[k % instants], DIRECTIONS[k / instants].1, 1.0)
             });
+            let impulses = impulses.into_iter().collect::<Result<Vec<f64>, _>>()?;
+            for ((direction, _), each) in DIRECTIONS.iter().zip(impulses.chunks(instants)) {
+                let always = each.iter().copied().fold(f64::INFINITY, f64::min);
+                rows.push(json!({
+                    "scene": scene, "direction": direction, "impulse_n_s": each,
+                    "always_n_s": always, "always_n_s_per_kg": always / mass,
+                }));
+            }
         }
+        let mut sheet = Sheet::titled(format!(
+            "Largest impulse survived: {DURATION} s at the torso, {mass:.3} kg, instants spread over one stride"
+        ));
+        sheet.fact("mass_kg", mass);
+        sheet.fact("push_duration_s", DURATION);
+        sheet.rows("rows", COLUMNS, &rows);
+        Ok(sheet)
     }
-    Ok(report)
 }
 
 /// The walk of a scene at instants spread evenly over the first stride after [`SETTLED`].
-pub(crate) fn at_instants(setup: &Setup, instants: usize) -> Result<Vec<Chain>, Box<dyn std::error::Error>> {
+pub(crate) fn at_instants(setup: &Setup, instants: usize) -> Result<Vec<Chain>, Error> {
     let (begin, end) = stride(setup, SETTLED)?;
     let (mut chain, mut tick, mut found) = (Chain::new(setup)?, 0, Vec::new());
     for k in 0..instants as u64 {
@@ -105,7 +105,7 @@ pub(crate) fn at_instants(setup: &Setup, instants: usize) -> Result<Vec<Chain>, 
 }
 
 /// Ticks in which the first stride after `settled` \[s\] and the one after it begin.
-pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<(u64, u64), Box<dyn std::error::Error>> {
+pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<(u64, u64), Error> {
     let mut chain = Chain::new(setup)?;
     let (mut stance, mut begins) = (LEFT, Vec::new());
     for tick in 1..=(setup.scene.duration / setup.scene.cycle) as u64 {
@@ -133,18 +133,22 @@ pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<(u64, u64), Box<dyn 
 }
 
 /// Largest impulse \[N s\] in a direction that is known to be survived; brackets are `coarse` times as wide as [`RESOLUTION`].
-pub(crate) fn largest(start: &Chain, direction: [f64; 2], coarse: f64) -> f64 {
-    bisect(MOST, RESOLUTION * coarse, |impulse| survives(start, direction, impulse))
+///
+/// # Errors
+/// [`MOST`] is survived.
+pub(crate) fn largest(start: &Chain, direction: [f64; 2], coarse: f64) -> Result<f64, String> {
+    survived(MOST, RESOLUTION * coarse, |impulse| survives(start, direction, impulse))
 }
 
-/// Largest value from 0 to `most` that is known to be survived when the bracket is as narrow as `resolution`.
-pub(crate) fn bisect(most: f64, resolution: f64, survives: impl Fn(f64) -> bool) -> f64 {
-    let (mut low, mut high) = (0.0, most);
-    while high - low > resolution {
-        let middle = 0.5 * (low + high);
-        if survives(middle) { low = middle } else { high = middle }
-    }
-    low
+/// Largest value from 0, which the undisturbed walk survives, to `most` that is known to be survived when the bracket is as
+/// narrow as `resolution`.
+///
+/// # Errors
+/// `most` is survived.
+pub(crate) fn survived(most: f64, resolution: f64, survives: impl Fn(f64) -> bool) -> Result<f64, String> {
+    let [good, _] =
+        border([0.0, most], Width::Absolute(resolution), |x| Ok::<_, String>(x == 0.0 || survives(x)))?;
+    Ok(good)
 }
 
 /// Whether the robot goes on after a push now.
@@ -163,32 +167,16 @@ pub(crate) fn ended(cycle: &Cycle) -> bool {
     cycle.sim_state.fallen == 1 || cycle.events.iter().any(|&(_, code, _)| ends(code))
 }
 
-/// The report as lines for people.
-pub fn table(r: &Report) -> String {
-    let mut text = format!(
-        "Largest impulse survived [N s]: {} s at the torso, {:.3} kg, instants spread over one stride\n\
-         {:12}{:10}{:>8}{:>10}   at each instant",
-        r.push_duration_s, r.mass_kg, "scene", "push", "always", "N s/kg"
-    );
-    for row in &r.rows {
-        let each: String = row.impulse_n_s.iter().map(|x| format!("{x:7.2}")).collect();
-        text += &format!(
-            "\n{:12}{:10}{:8.2}{:10.3}   {each}",
-            row.scene, row.direction, row.always_n_s, row.always_n_s_per_kg
-        );
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn bisection_finds_the_edge_from_below() {
-        let found = bisect(MOST, RESOLUTION, |x| x < 17.3);
+        let found = survived(MOST, RESOLUTION, |x| x < 17.3).unwrap();
         assert!(found < 17.3 && found > 17.3 - RESOLUTION, "{found}");
-        assert_eq!(bisect(MOST, RESOLUTION, |_| false), 0.0);
+        assert_eq!(survived(MOST, RESOLUTION, |_| false), Ok(0.0));
+        assert!(survived(MOST, RESOLUTION, |_| true).unwrap_err().contains("still holds at 128"));
     }
 
     /// What is said to be survived is, and twice as much is not.

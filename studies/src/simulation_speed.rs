@@ -8,12 +8,13 @@ use config::scene::Integrator;
 use environment::Environment;
 use messages::RIGHT;
 use realtime::clock::processor_time;
-use serde::Serialize;
+use serde_json::{Value, json};
 use sim_backend::drive::Drive;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, orientation};
 
 use crate::second::{POWERED, Second};
+use crate::sheet::{Column, fixed, plain, scientific};
 
 /// Runs of which the fastest counts; one for what takes longer than real time.
 const REPEATS: usize = 5;
@@ -24,26 +25,19 @@ const CYCLES: usize = 1000;
 /// \[N\] A foot that carries less is in the air.
 const AIR: f64 = 1.0;
 
-/// One second of a model with recorded joint targets.
-#[derive(Clone, Debug, Serialize)]
-pub struct Simulation {
-    /// Type of the model.
-    pub depth: u8,
-    /// What the robot does.
-    pub motion: String,
-    /// Integrator, and its steps per cycle.
-    pub method: String,
-    /// Simulated time over processor time, sensors once per cycle.
-    pub real_time_factor: f64,
-    /// The same for the cycles with one foot in the air.
-    pub single_support_factor: Option<f64>,
-    /// \[m\] Largest error of the torso's position.
-    pub position_error_m: f64,
-    /// \[rad\] Largest error of the torso's orientation.
-    pub orientation_error_rad: f64,
-    /// \[N\] Root mean square error of the normal force of the right foot.
-    pub force_error_rms_n: f64,
-}
+/// One second of a model with recorded joint targets: integrator and steps per cycle, simulated time over processor time with
+/// sensors once per cycle, the same for cycles with one foot in the air; largest errors of the torso's position and
+/// orientation, root mean square error of the right foot's normal force.
+pub(crate) const COLUMNS: &[Column] = &[
+    plain("/depth", "type"),
+    plain("/motion", "motion"),
+    plain("/method", "steps per cycle"),
+    fixed("/real_time_factor", "real time [1]", 1),
+    fixed("/single_support_factor", "one foot [1]", 1),
+    scientific("/position_error_m", "position [m]", 1),
+    scientific("/orientation_error_rad", "orientation [rad]", 1),
+    scientific("/force_error_rms_n", "normal force, rms [N]", 1),
+];
 
 use Integrator::{Euler, RungeKutta4, SemiImplicit};
 
@@ -63,7 +57,7 @@ const METHODS: [(u8, &[Method], u32); 5] = [
 ///
 /// # Errors
 /// A configuration or robot is wrong.
-pub fn run(stand: &Setup, walk: &Setup) -> Result<Vec<Simulation>, Box<dyn Error>> {
+pub fn run(stand: &Setup, walk: &Setup) -> Result<Vec<Value>, Box<dyn Error>> {
     let mut rows = Vec::new();
     for (depth, methods, reference) in METHODS {
         for (motion, setup) in [("standing", stand), ("walking at 1 km/h", walk)] {
@@ -118,7 +112,7 @@ fn row(
     (second, plant): (&Second, &mut Plant),
     (method, steps): Method,
     reference: &[Instant],
-) -> Simulation {
+) -> Value {
     let mut best = simulate(second, plant, method, steps);
     let repeats = if duration(&best) > 1.0 { 1 } else { REPEATS };
     for _ in 1..repeats {
@@ -133,17 +127,18 @@ fn row(
     let square: f64 = pairs().map(|(a, b)| (a.force[RIGHT] - b.force[RIGHT]).powi(2)).sum();
     let on_one = best.iter().filter(|i| i.force.iter().any(|f| *f < AIR));
     let single: Vec<f64> = on_one.map(|i| i.took).collect();
-    Simulation {
-        depth,
-        motion: motion.into(),
-        method: format!("{method:?} x {steps}"),
-        real_time_factor: CYCLES as f64 * second.cycle / duration(&best),
-        single_support_factor: (single.len() > CYCLES / 10)
-            .then(|| single.len() as f64 * second.cycle / single.iter().sum::<f64>()),
-        position_error_m: largest(position),
-        orientation_error_rad: largest(turned),
-        force_error_rms_n: (square / CYCLES as f64).sqrt(),
-    }
+    let single_support =
+        (single.len() > CYCLES / 10).then(|| single.len() as f64 * second.cycle / single.iter().sum::<f64>());
+    json!({
+        "depth": depth,
+        "motion": motion,
+        "method": format!("{method:?} x {steps}"),
+        "real_time_factor": CYCLES as f64 * second.cycle / duration(&best),
+        "single_support_factor": single_support,
+        "position_error_m": largest(position),
+        "orientation_error_rad": largest(turned),
+        "force_error_rms_n": (square / CYCLES as f64).sqrt(),
+    })
 }
 
 /// \[s\] Processor time.
@@ -158,27 +153,4 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 /// The largest, and infinity where the numbers were lost.
 fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |a, b| if b.is_finite() { a.max(b) } else { f64::INFINITY })
-}
-
-/// The rows as lines for people.
-pub fn table(rows: &[Simulation]) -> String {
-    let mut text = String::from(
-        "Models alone, 1 s with recorded joint targets, sensors every cycle; errors against fine Runge-Kutta steps\n\
-         type  motion              steps per cycle      real time  one foot   position [m]   orientation [rad]   normal force, rms [N]",
-    );
-    for s in rows {
-        let single = s.single_support_factor.map_or("-".into(), |f| format!("{f:.1} x"));
-        text += &format!(
-            "\n{:4}  {:20}{:18}{:10.1} x{:>10}{:15.1e}{:20.1e}{:24.1e}",
-            s.depth,
-            s.motion,
-            s.method,
-            s.real_time_factor,
-            single,
-            s.position_error_m,
-            s.orientation_error_rad,
-            s.force_error_rms_n
-        );
-    }
-    text
 }

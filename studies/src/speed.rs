@@ -4,9 +4,7 @@
 //! processor time of this process, which does nothing else meanwhile; reading it costs a few tenths of a microsecond,
 //! which stay in the figures.
 
-use std::error::Error;
 use std::hint::black_box;
-use std::path::Path;
 
 use config::{Gait, Setup, Timeline};
 use controller::Controller;
@@ -14,93 +12,87 @@ use messages::{Command, ControllerState, GaitState, JointTargets, Plan, Process,
 use planner::Planner;
 use realtime::clock::processor_time;
 use serde::Serialize;
+use serde_json::{Value, json};
 
-use crate::simulation_speed::{self, Simulation};
+use crate::sheet::{Column, fixed, plain};
+use crate::{Error, Given, Sheet, Study, simulation_speed};
 use chain::Chain;
 
 /// Runs of which the fastest counts, where the work is the same each time.
 const REPEATS: usize = 5;
 
-/// Everything that was measured.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Models of the robot alone.
-    pub simulation: Vec<Simulation>,
-    /// Whole chain in one process.
-    pub chain: Vec<WholeChain>,
-    /// Planner and stabilizer.
-    pub cycles: Vec<Cycle>,
-    /// Plans.
-    pub plans: Vec<Plans>,
-}
-
+/// A walk's control cycles: processor times, median, p99 and largest.
+const CYCLES: &[Column] = &[
+    plain("/walk", "control cycle, processor time [us]"),
+    plain("/cycles", "cycles"),
+    plain("/same_targets", "replay is the chain's, bit for bit"),
+    fixed("/both_us", "planner + stabilizer: median, p99, max", 2),
+    fixed("/stabilizer_us", "stabilizer", 2),
+    fixed("/planner_us", "planner", 2),
+];
+/// Plans of a walk with knots at most `spacing` apart.
+const PLANS: &[Column] = &[
+    fixed("/spacing_s", "a new walking plan: spacing [s]", 3),
+    plain("/points", "points"),
+    fixed("/time_us", "median, p99, max [us]", 2),
+    fixed("/zmp_error_m", "error of its zero-moment point [mm]", 3).times(1e3),
+];
 /// A scene with everything in the loop.
-#[derive(Clone, Debug, Serialize)]
-pub struct WholeChain {
-    /// Name of the scene.
-    pub scene: String,
-    /// Simulated time over processor time.
-    pub real_time_factor: f64,
-}
-
-/// Processor time of control cycles over a walk.
-#[derive(Clone, Debug, Serialize)]
-pub struct Cycle {
-    /// What was walked.
-    pub walk: String,
-    /// Cycles with a plan.
-    pub cycles: usize,
-    /// Whether the replayed joint targets were those of the chain, bit for bit.
-    pub same_targets: bool,
-    /// \[us\] Planner and stabilizer: median, p99, largest.
-    pub both_us: [f64; 3],
-    /// \[us\] Stabilizer alone.
-    pub stabilizer_us: [f64; 3],
-    /// \[us\] Planner alone.
-    pub planner_us: [f64; 3],
-}
+const CHAIN: &[Column] =
+    &[plain("/scene", "whole chain in one process"), fixed("/real_time_factor", "real time [1]", 0)];
 
 /// Plans of a walk with knots at most `spacing` apart.
 #[derive(Clone, Debug, Serialize)]
-pub struct Plans {
+pub(crate) struct Plans {
     /// \[s\]
-    pub spacing_s: f64,
+    spacing_s: f64,
     /// Collocation points of head and tail of a walking plan, the most that occurred.
-    pub points: u64,
+    pub(crate) points: u64,
     /// \[us\] The planner's cycle in which a walking plan is made: median, p99, largest.
-    pub time_us: [f64; 3],
+    pub(crate) time_us: [f64; 3],
     /// \[m\] How far three masses that move as planned miss the planned zero-moment point: largest over the plan.
-    pub zmp_error_m: f64,
+    pub(crate) zmp_error_m: f64,
 }
 
-/// Measures everything with the scenes `stand` and `walk_1kmh`.
-///
-/// # Errors
-/// A configuration or robot is wrong.
-pub fn run(config: &Path) -> Result<Report, Box<dyn Error>> {
-    let stand = Setup::load(config, "stand")?;
-    let walk = Setup::load(config, "walk_1kmh")?;
-    let simulation = simulation_speed::run(&stand, &walk)?;
-    let recording = Recording::new(&walk)?;
-    let spacing = walk.gait.model.spacing;
-    let mut plans = Vec::new();
-    for times in [0.75, 1.0, 1.5, 2.0, 3.0] {
-        plans.push(plan_times(&walk, &recording, times * spacing));
+/// The study; it has no arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Speed {}
+
+impl Study for Speed {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        let [stand, walk, fast, mut all] =
+            ["stand", "walk_1kmh", "walk_2kmh", "gaze"].map(|scene| Setup::load(given.config, scene));
+        let (stand, walk, fast) = (stand?, walk?, fast?);
+        if let Ok(all) = &mut all {
+            all.gait.arm_swing = Some(1.0);
+            all.scene.name += ", arms swinging";
+        }
+        // Each part alone, from its own recording of the walk.
+        let simulation = simulation_speed::run(&stand, &walk)?;
+        let recording = Recording::new(&walk)?;
+        let plans = [0.75, 1.0, 1.5, 2.0, 3.0]
+            .map(|times| plan_times(&walk, &recording, times * walk.gait.model.spacing));
+        let mut cycles = vec![cycle_times(&walk, &recording)?];
+        for setup in [fast, all?] {
+            cycles.push(cycle_times(&setup, &Recording::new(&setup)?)?);
+        }
+        let mut sheet = Sheet::titled(
+            "Models alone, 1 s with recorded joint targets, sensors every cycle; errors against fine Runge-Kutta steps",
+        );
+        sheet.rows("simulation", simulation_speed::COLUMNS, &simulation);
+        sheet.line("");
+        sheet.rows("chain", CHAIN, &[whole_chain(&stand)?, whole_chain(&walk)?]);
+        sheet.line("");
+        sheet.rows("cycles", CYCLES, &cycles);
+        sheet.line("");
+        sheet.rows("plans", PLANS, &plans);
+        Ok(sheet)
     }
-    let fast = Setup::load(config, "walk_2kmh")?;
-    let mut all = Setup::load(config, "gaze")?;
-    all.gait.arm_swing = Some(1.0);
-    all.scene.name += ", arms swinging";
-    let mut cycles = vec![cycle_times(&walk, &recording)?];
-    for setup in [fast, all] {
-        cycles.push(cycle_times(&setup, &Recording::new(&setup)?)?);
-    }
-    Ok(Report { simulation, chain: vec![whole_chain(&stand)?, whole_chain(&walk)?], cycles, plans })
 }
 
 // ---------------------------------------------------------------------------------------------------- whole chain
 
-fn whole_chain(setup: &Setup) -> Result<WholeChain, Box<dyn Error>> {
+fn whole_chain(setup: &Setup) -> Result<Value, Error> {
     let cycles = (setup.scene.duration / setup.scene.cycle) as usize;
     let mut best = f64::INFINITY;
     for _ in 0..REPEATS {
@@ -112,7 +104,7 @@ fn whole_chain(setup: &Setup) -> Result<WholeChain, Box<dyn Error>> {
         best = best.min((processor_time() - begun) as f64 * 1e-9);
     }
     let real_time_factor = cycles as f64 * setup.scene.cycle / best;
-    Ok(WholeChain { scene: setup.scene.name.clone(), real_time_factor })
+    Ok(json!({ "scene": setup.scene.name, "real_time_factor": real_time_factor }))
 }
 
 // --------------------------------------------------------------------------------------------- planner, stabilizer
@@ -125,7 +117,7 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
-    pub(crate) fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn new(setup: &Setup) -> Result<Self, Error> {
         let mut chain = Chain::new(setup)?;
         let mut r = Self { sensors: Vec::new(), states: Vec::new(), targets: Vec::new() };
         for _ in 0..(setup.scene.duration / setup.scene.cycle) as usize {
@@ -160,7 +152,7 @@ impl Recording {
     }
 }
 
-fn cycle_times(setup: &Setup, recording: &Recording) -> Result<Cycle, Box<dyn Error>> {
+fn cycle_times(setup: &Setup, recording: &Recording) -> Result<Value, Error> {
     let mut controller = Controller::new(&setup.robot, &setup.gait, setup.scene.cycle)?;
     let mut plan = Box::new(Plan::default());
     let (mut planning, mut stabilizing, mut both) = (Vec::new(), Vec::new(), Vec::new());
@@ -182,14 +174,14 @@ fn cycle_times(setup: &Setup, recording: &Recording) -> Result<Cycle, Box<dyn Er
             both.push(done - begun);
         }
     });
-    Ok(Cycle {
-        walk: setup.scene.name.clone(),
-        cycles: both.len(),
-        same_targets,
-        both_us: spread(both),
-        stabilizer_us: spread(stabilizing),
-        planner_us: spread(planning),
-    })
+    Ok(json!({
+        "walk": setup.scene.name,
+        "cycles": both.len(),
+        "same_targets": same_targets,
+        "both_us": spread(both),
+        "stabilizer_us": spread(stabilizing),
+        "planner_us": spread(planning),
+    }))
 }
 
 /// Median, p99 and largest of durations \[ns\], in microseconds.
@@ -255,35 +247,4 @@ fn zmp_error(plan: &Plan, gait: &Gait) -> f64 {
         miss[0].hypot(miss[1])
     };
     (0..(plan.com.end() / INSTANT) as usize).map(|k| at(k as f64 * INSTANT)).fold(0.0, f64::max)
-}
-
-/// The report as lines for people.
-pub fn table(r: &Report) -> String {
-    let mut text = simulation_speed::table(&r.simulation);
-    text += "\n\nWhole chain in one process";
-    for c in &r.chain {
-        text += &format!("\n{:20}{:26.0} x", c.scene, c.real_time_factor);
-    }
-    let three = |[median, p99, max]: [f64; 3]| format!("{median:9.2}{p99:9.2}{max:9.2}");
-    text += "\n\nControl cycle, processor time [us]   median      p99      max";
-    for c in &r.cycles {
-        let same = if c.same_targets { "bit for bit the chain's" } else { "DIFFERS from the chain" };
-        text += &format!("\n{}: {} cycles, replay {same}", c.walk, c.cycles);
-        for (what, times) in
-            [("planner + stabilizer", c.both_us), ("stabilizer", c.stabilizer_us), ("planner", c.planner_us)]
-        {
-            text += &format!("\n  {what:32}{}", three(times));
-        }
-    }
-    text += "\n\nA new walking plan: spacing, points       median      p99      max [us]   error of its zero-moment point";
-    for p in &r.plans {
-        let error = 1e3 * p.zmp_error_m;
-        text += &format!(
-            "\n{:18.3} s {:4} points      {}        {error:7.3} mm",
-            p.spacing_s,
-            p.points,
-            three(p.time_us)
-        );
-    }
-    text
 }

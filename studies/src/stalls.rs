@@ -4,14 +4,16 @@
 //! the supply has not come on by itself, no joint is faster and no foot carries more than in the undisturbed walk, and
 //! nobody was blamed who did nothing.
 
-use std::error::Error;
-
 use config::Setup;
 use messages::{EventCode, Process, SimState};
 use serde::Serialize;
 
 use chain::Chain;
 use chain::parallel;
+use serde_json::json;
+
+use crate::sheet::{Column, fixed, plain};
+use crate::{Error, Given, Sheet, Study};
 
 /// Processes whose stop the chain can feel.
 pub const PROCESSES: [Process; 5] =
@@ -25,6 +27,40 @@ const WALKS: f64 = 5.0;
 const INSTANTS: f64 = 10.0;
 /// \[s\] Time from the resumption to the end of a trial.
 const AFTERMATH: f64 = 2.0;
+
+/// Stops of one process for one duration, and the worst of them; of what was reported, in how many.
+const COLUMNS: &[Column] = &[
+    plain("/process", "stopped"),
+    plain("/cycles", "cycles"),
+    plain("/trials", "trials"),
+    plain("/came_back", "back by itself"),
+    plain("/power_off", "power off"),
+    plain("/fell", "fell"),
+    fixed("/joint_speed", "joint speed", 2),
+    fixed("/force", "force", 2),
+    plain("/reported", "reported"),
+];
+
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Stalls {
+    /// The walk.
+    #[arg(long, default_value = "walk_1kmh")]
+    pub scene: String,
+    /// Random instants for each process and duration.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub instants: u64,
+    /// Seed of the instants.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+}
+
+impl Study for Stalls {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        let trials = run(given.config, &self.scene, &MILLIS, self.instants as usize, self.seed)?;
+        Ok(sheet(&trials))
+    }
+}
 
 /// Largest numbers of a piece of a walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -86,7 +122,7 @@ pub fn run(
     millis: &[f64],
     instants: usize,
     seed: u64,
-) -> Result<Vec<Trial>, Box<dyn Error>> {
+) -> Result<Vec<Trial>, Error> {
     let mut setup = Setup::load(config, scene)?;
     // The walk goes on to the end of the last trial.
     setup.scene.commands.retain(|(at, _)| *at < WALKS);
@@ -192,36 +228,30 @@ fn trial(mut chain: Chain, process: Process, cycles: u64, undisturbed: &Peaks) -
     }
 }
 
-/// A line per process and duration: how many trials, and the worst of them.
-pub fn table(trials: &[Trial]) -> String {
-    let mut text = String::from(
-        "stopped      cycles trials  back by itself  power off  fell  joint speed  force  reported (in how many)\n",
-    );
-    for group in trials.chunk_by(|a, b| (a.process, a.cycles) == (b.process, b.cycles)) {
+/// All trials; for people a row per process and duration.
+pub fn sheet(trials: &[Trial]) -> Sheet {
+    let same = |a: &Trial, b: &Trial| (a.process, a.cycles) == (b.process, b.cycles);
+    let row = |group: &[Trial]| {
         let count = |f: fn(&Trial) -> bool| group.iter().filter(|t| f(t)).count();
         let most = |f: fn(&Trial) -> f64| group.iter().map(f).fold(0.0, f64::max);
         // Each event with the number of trials that reported it.
-        let mut told: Vec<(String, usize)> = Vec::new();
+        let mut reported: Vec<(String, usize)> = Vec::new();
         for (process, code) in group.iter().flat_map(|t| &t.events) {
             let name = format!("{}: {code:?}", process.name());
-            match told.iter_mut().find(|(n, _)| *n == name) {
+            match reported.iter_mut().find(|(n, _)| *n == name) {
                 Some((_, n)) => *n += 1,
-                None => told.push((name, 1)),
+                None => reported.push((name, 1)),
             }
         }
-        let told: Vec<String> = told.iter().map(|(name, n)| format!("{name} {n}")).collect();
-        text += &format!(
-            "{:12} {:6} {:6} {:15} {:10} {:5} {:12.2} {:6.2}  {}\n",
-            group[0].process,
-            group[0].cycles,
-            group.len(),
-            count(|t| t.came_back),
-            count(|t| t.power_off),
-            count(|t| t.fell),
-            most(|t| t.joint_speed),
-            most(|t| t.force),
-            told.join(", ")
-        );
-    }
-    text
+        json!({
+            "process": group[0].process, "cycles": group[0].cycles, "trials": group.len(),
+            "came_back": count(|t| t.came_back), "power_off": count(|t| t.power_off), "fell": count(|t| t.fell),
+            "joint_speed": most(|t| t.joint_speed), "force": most(|t| t.force),
+            "reported": reported.iter().map(|(name, n)| format!("{name} {n}")).collect::<Vec<_>>(),
+        })
+    };
+    let mut sheet = Sheet::default();
+    sheet.fact("trials", trials);
+    sheet.table(COLUMNS, &trials.chunk_by(same).map(row).collect::<Vec<_>>());
+    sheet
 }

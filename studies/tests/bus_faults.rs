@@ -13,7 +13,7 @@ const INSTANTS: usize = 2;
 fn faults_are_named_and_answered_in_time() {
     let report = bus_faults::run(&config::root(None), bus_faults::SCENE, INSTANTS)
         .expect("the robot of scene `walk_2kmh`");
-    println!("{}", bus_faults::table(&report));
+    println!("{}", report.sheet().markdown());
     let failed: Vec<_> = report.failed().map(|row| format!("{}: {}", row.fault, row.unmet)).collect();
     assert!(failed.is_empty(), "not as demanded: {failed:#?}");
     let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/bus_faults.md"))
@@ -25,7 +25,7 @@ fn faults_are_named_and_answered_in_time() {
     for burst in report.bursts.iter().filter(|burst| burst.cycles <= 10) {
         assert_eq!(burst.walked_on, [INSTANTS; 2], "walks on through {} cycles", burst.cycles);
     }
-    assert!(serde_json::to_string(&report).is_ok_and(|json| json.contains("\"noticed_cycles\"")));
+    assert!(report.sheet().json().to_string().contains("\"noticed_cycles\""));
 }
 
 /// Lola stands; a cable is shorted for a while. When the supply is on, by tick, and what was told of it.

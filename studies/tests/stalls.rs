@@ -44,7 +44,7 @@ fn deserved(trial: &Trial, code: EventCode) -> bool {
 fn who_was_stopped_goes_on_without_a_jump() {
     let trials =
         stalls::run(&root(None), "walk_1kmh", &stalls::MILLIS, INSTANTS, 7).expect("the scene walk_1kmh");
-    println!("{}", stalls::table(&trials));
+    println!("{}", stalls::sheet(&trials).text());
     assert_eq!(trials.len(), stalls::PROCESSES.len() * stalls::MILLIS.len() * INSTANTS);
     for t in &trials {
         let what = format!("{} stopped for {} cycles at {:.3} s", t.process, t.cycles, t.at);

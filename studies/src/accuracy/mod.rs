@@ -22,11 +22,14 @@ pub mod system;
 mod touchdown;
 pub mod walking;
 
-use std::error::Error;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use serde_json::json;
 
+use crate::search::slope;
+use crate::sheet::{self, Column, fixed, plain};
+use crate::{Error, Sheet, Study};
 pub use order::Order;
 pub use peers::Peers;
 
@@ -39,7 +42,7 @@ pub struct Given<'a> {
 }
 
 /// A part's charts.
-pub type Part = fn(&Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>>;
+pub type Part = fn(&Given<'_>) -> Result<Vec<Chart>, Error>;
 
 /// All parts, with their names for `--only`.
 pub const PARTS: &[(&str, Part)] = &[
@@ -157,69 +160,76 @@ impl Chart {
     /// Measures the order of a method by its points with steps in `steps` \[s\], beside the predicted one.
     pub fn expect_order(&mut self, method: &str, predicted: f64, steps: std::ops::RangeInclusive<f64>) {
         let of_method = self.points.iter().filter(|p| p.method == method && !p.diverged);
-        let pairs = of_method.filter_map(|p| Some((p.step.filter(|h| steps.contains(h))?, p.error)));
-        let measured = order::slope(&pairs.collect::<Vec<_>>());
+        let pairs = of_method.filter_map(|p| Some([p.step.filter(|h| steps.contains(h))?, p.error]));
+        let measured = slope(&pairs.collect::<Vec<_>>());
         self.orders.push(Order { chart: self.name.clone(), method: method.into(), predicted, measured });
     }
 }
 
-/// Everything that was found.
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct Report {
-    /// All charts' points.
-    pub points: Vec<Point>,
-    /// All charts' orders.
-    pub orders: Vec<Order>,
-    /// Pictures that were drawn.
-    pub pictures: Vec<String>,
+/// Points that were lost.
+const LOST: &[Column] =
+    &[plain("/chart", "lost"), plain("/model", "model"), plain("/method", "method"), plain("/note", "")];
+const ORDERS: &[Column] = &[
+    plain("/chart", "orders of convergence"),
+    plain("/method", "method"),
+    fixed("/measured", "measured", 2),
+    fixed("/predicted", "predicted", 2),
+];
+
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Accuracy {
+    /// Only these charts: flight, touchdown, slip, stiction, joint, solver, ...
+    #[arg(long, value_name = "PART")]
+    pub only: Option<String>,
+    /// What MuJoCo found in the same scenes; `sh tests/peers/mujoco.sh --points FILE` writes it.
+    #[arg(long, value_name = "FILE")]
+    pub peers: Option<PathBuf>,
+    /// Where pictures and accuracy.json go.
+    #[arg(long, value_name = "DIR", default_value = "runs/study/accuracy")]
+    pub out: PathBuf,
 }
 
-/// Makes the charts of all parts, or of `only` one, and writes pictures and `accuracy.json` to `out`. `progress` is told
-/// parts done, all parts, and the next one's name.
-///
-/// # Errors
-/// A configuration is wrong, there is no such part, or `out` cannot be written.
-pub fn run(
-    config: &Path,
-    peers: &Peers,
-    out: &Path,
-    only: Option<&str>,
-    mut progress: impl FnMut(usize, usize, &str),
-) -> Result<Report, Box<dyn Error>> {
-    let wanted: Vec<_> = PARTS.iter().filter(|(name, _)| only.is_none_or(|only| only == *name)).collect();
-    if wanted.is_empty() {
-        let names: Vec<_> = PARTS.iter().map(|(name, _)| *name).collect();
-        return Err(format!("no part {}; there are {}", only.unwrap_or(""), names.join(", ")).into());
+impl Study for Accuracy {
+    fn run(&self, given: &crate::Given<'_>) -> Result<Sheet, Error> {
+        let peers = self.peers.as_deref().map(Peers::load).transpose()?.unwrap_or_default();
+        let only = self.only.as_deref();
+        let wanted: Vec<_> = PARTS.iter().filter(|(name, _)| only.is_none_or(|only| only == *name)).collect();
+        if wanted.is_empty() {
+            let names: Vec<_> = PARTS.iter().map(|(name, _)| *name).collect();
+            return Err(format!("no part {}; there are {}", only.unwrap_or(""), names.join(", ")).into());
+        }
+        // A place that cannot be written is told before hours of work, not after.
+        sheet::make(&self.out)?;
+        let mut charts = Vec::new();
+        for (done, (name, part)) in wanted.iter().enumerate() {
+            (given.progress)(done, wanted.len(), name);
+            charts.extend(part(&Given { config: given.config, peers: &peers })?);
+        }
+        let sheet = sheet(&charts, &self.out)?;
+        let path = self.out.join("accuracy.json");
+        std::fs::write(&path, serde_json::to_string_pretty(&sheet.json())?)
+            .map_err(|e| format!("{}: {e}; choose another place with --out", path.display()))?;
+        Ok(sheet)
     }
-    std::fs::create_dir_all(out)
-        .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
-    let mut charts = Vec::new();
-    for (done, (name, part)) in wanted.iter().enumerate() {
-        progress(done, wanted.len(), name);
-        charts.extend(part(&Given { config, peers })?);
-    }
-    let mut report = Report { pictures: picture::draw(&charts, out)?, ..Report::default() };
-    for chart in charts {
-        report.points.extend(chart.points);
-        report.orders.extend(chart.orders);
-    }
-    let path = out.join("accuracy.json");
-    std::fs::write(&path, serde_json::to_string_pretty(&report)?)
-        .map_err(|e| format!("{}: {e}; choose another place with --out", path.display()))?;
-    Ok(report)
 }
 
-/// The report as text: what was lost, the orders, and where the pictures are.
-pub fn table(report: &Report) -> String {
-    let mut text = format!("{} points\n", report.points.len());
-    for p in report.points.iter().filter(|p| p.diverged) {
+/// What was lost, the orders, and where the pictures are.
+fn sheet(charts: &[Chart], out: &Path) -> Result<Sheet, Error> {
+    let points: Vec<&Point> = charts.iter().flat_map(|chart| &chart.points).collect();
+    let orders: Vec<&Order> = charts.iter().flat_map(|chart| &chart.orders).collect();
+    let lost = |p: &&&Point| {
         let step = p.step.map_or(String::new(), |h| format!(" {}", order::in_ms(h)));
-        let note = p.note.as_deref().unwrap_or("diverged");
-        text += &format!("  {:24} {} {}{step}: {note}\n", p.chart, p.model, p.method);
+        let (method, note) = (format!("{}{step}", p.method), p.note.as_deref().unwrap_or("diverged"));
+        json!({ "chart": p.chart, "model": p.model, "method": method, "note": note })
+    };
+    let mut sheet = Sheet::titled(format!("{} points", points.len()));
+    sheet.fact("points", &points);
+    let lost: Vec<_> = points.iter().filter(|p| p.diverged).map(|p| lost(&p)).collect();
+    if !lost.is_empty() {
+        sheet.table(LOST, &lost);
     }
-    text += "orders of convergence         measured  predicted\n";
-    for o in &report.orders {
-        text += &format!("  {:24} {:24} {:6.2} {:6.2}\n", o.chart, o.method, o.measured, o.predicted);
-    }
-    text + &report.pictures.join("\n")
+    sheet.rows("orders", ORDERS, &orders);
+    picture::draw(charts, out, &mut sheet)?;
+    Ok(sheet)
 }

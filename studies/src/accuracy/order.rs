@@ -15,18 +15,6 @@ pub struct Order {
     pub measured: f64,
 }
 
-/// Slope of a straight line through (log step, log error), by least squares.
-pub fn slope(points: &[(f64, f64)]) -> f64 {
-    let logs: Vec<(f64, f64)> = points.iter().map(|(h, e)| (h.ln(), e.ln())).collect();
-    let n = logs.len() as f64;
-    let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / n;
-    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
-    let (above, below) = logs
-        .iter()
-        .fold((0.0, 0.0), |(above, below), p| (above + (p.0 - x) * (p.1 - y), below + (p.0 - x).powi(2)));
-    above / below
-}
-
 /// A step as people write it.
 pub fn in_ms(step: f64) -> String {
     let ms = step * 1e3;
@@ -39,13 +27,6 @@ pub fn in_ms(step: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn slope_of_a_power_is_its_exponent() {
-        let points = [1e-3, 2e-3, 5e-3, 1e-2].map(|h: f64| (h, 7.0 * h.powf(2.5)));
-        assert!((slope(&points) - 2.5).abs() < 1e-12);
-        assert!(slope(&points[..1]).is_nan() && slope(&[]).is_nan());
-    }
 
     #[test]
     fn steps_are_written_without_needless_digits() {

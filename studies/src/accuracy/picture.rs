@@ -7,23 +7,22 @@ use drawing::{Color, Figure, Pen};
 
 use super::order::in_ms;
 use super::{Chart, Cost, Point};
+use crate::Sheet;
 
 const COLORS: [Color; 6] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY];
 
 /// Of curves with more points than this every second one has a label.
 const CROWDED: usize = 6;
 
-/// Writes the pictures; their paths.
-pub(super) fn draw(charts: &[Chart], out: &Path) -> Result<Vec<String>, String> {
-    let mut written = Vec::new();
+/// Draws the pictures.
+pub(super) fn draw(charts: &[Chart], out: &Path, sheet: &mut Sheet) -> Result<(), String> {
     for together in charts.chunk_by(|a, b| file(a) == file(b)) {
-        let path = out.join(format!("{}.png", file(&together[0])));
         let first = &together[0];
         let figure = Figure::new(&first.title, &first.about);
-        together.iter().fold(figure, |figure, chart| figure.with(panel(chart))).save(&path)?;
-        written.push(path.display().to_string());
+        let figure = together.iter().fold(figure, |figure, chart| figure.with(panel(chart)));
+        sheet.draw(out, &format!("{}.png", file(first)), &figure)?;
     }
-    Ok(written)
+    Ok(())
 }
 
 fn file(chart: &Chart) -> &str {

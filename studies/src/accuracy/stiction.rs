@@ -12,6 +12,8 @@ use std::f64::consts::TAU;
 
 use drives::Sliding;
 
+use crate::search::{NoBorder, Width, middle};
+
 use super::system::{Method, Motion, System, Times, largest};
 use super::{Chart, Cost, Given, Part, Point};
 
@@ -84,7 +86,8 @@ impl System for Joint {
 fn exact() -> Motion {
     let go = (T_0 / A).asin() / TAU;
     let speed = |t: f64| A / TAU * ((TAU * go).cos() - (TAU * t).cos()) - T_0 * (t - go);
-    let stop = bisect(speed, 0.25, 0.5 + go);
+    let slides = |t: f64| Ok::<_, NoBorder>(speed(t) > 0.0);
+    let stop = middle([0.25, 0.5 + go], Width::Exact, slides).expect("it comes to rest once");
     let way = |t: f64| {
         let s = t.clamp(go, stop) - go;
         let swing = ((TAU * (go + s)).sin() - (TAU * go).sin()) / TAU;
@@ -99,15 +102,6 @@ fn exact() -> Motion {
         vec![q, f64::NAN]
     });
     Motion { seen: seen.collect(), ..Motion::default() }
-}
-
-/// Zero of a function that changes its sign once.
-fn bisect(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
-    for _ in 0..200 {
-        let middle = 0.5 * (a + b);
-        if f(middle) * f(a) > 0.0 { a = middle } else { b = middle }
-    }
-    0.5 * (a + b)
 }
 
 #[cfg(test)]

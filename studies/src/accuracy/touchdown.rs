@@ -6,6 +6,8 @@ use std::error::Error;
 
 use contact::point::{self, Law};
 
+use crate::search::{NoBorder, Width, border};
+
 use super::system::{Method, Motion, System, Times, largest, stepper};
 use super::{Chart, Given, Part, Point};
 
@@ -68,20 +70,12 @@ impl System for Mass {
         if !open(&begin) || open(x) {
             return;
         }
-        let (mut above, mut below) = (0.0, h);
-        while below - above > 1e-16 {
-            let middle = 0.5 * (above + below);
+        let [_, below] = border([0.0, h], Width::Absolute(1e-16), |step| {
             x.copy_from_slice(&begin);
-            self.parabola(middle, x);
-            if open(x) {
-                above = middle;
-            } else {
-                below = middle;
-            }
-            if middle == above && middle == below {
-                break;
-            }
-        }
+            self.parabola(step, x);
+            Ok::<_, NoBorder>(open(x))
+        })
+        .expect("a fall ends below the ground if a step over the contact does");
         x.copy_from_slice(&begin);
         self.parabola(below, x);
         x[0] = x[0].min((TOUCH - x[2]).next_down());
@@ -120,14 +114,14 @@ fn exact() -> Motion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accuracy::order::slope;
+    use crate::search::slope;
 
     #[test]
     fn the_order_falls_to_one_and_locating_the_event_brings_it_back() {
         let of = |method: fn(f64) -> Method, steps: &[f64]| {
             let error = |h: &f64| {
                 let motion = method(*h).run(&mut Mass, &[FALL + TOUCH, 0.0, 0.0], TIMES);
-                (*h, largest(&motion, &exact(), |a, b| (a[0] - b[0]).abs()))
+                [*h, largest(&motion, &exact(), |a, b| (a[0] - b[0]).abs())]
             };
             slope(&steps.iter().map(error).collect::<Vec<_>>())
         };

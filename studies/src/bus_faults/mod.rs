@@ -7,27 +7,61 @@
 //! |---|---|
 //! | `cases` | the faults, and what is demanded |
 //! | `trial` | one fault at one instant |
-//! | `text` | the tables |
 
 mod cases;
-mod text;
 mod trial;
 
-use std::error::Error;
 use std::path::Path;
 
 use config::Setup;
 use messages::EventCode;
 use serde::Serialize;
+use serde_json::json;
 
-use crate::push;
+use crate::sheet::{Column, plain};
+use crate::{Error, Given, Sheet, Study, push};
 use cases::Case;
 use chain::parallel;
-pub use text::table;
 use trial::Trial;
 
 /// The walk that is disturbed, unless another one is.
 pub const SCENE: &str = "walk_2kmh";
+
+/// Cycles are the latest of all instants.
+const FAULTS: &[Column] = &[
+    plain("/fault", "fault"),
+    plain("/noticed_cycles", "noticed"),
+    plain("/reacted_cycles", "stop or power off"),
+    plain("/at_rest_cycles", "joints at rest after that"),
+    plain("/power_off_cycles", "supply off"),
+    plain("/log", "log"),
+    plain("/end", "end"),
+    plain("/upright", "upright"),
+];
+const BURSTS: &[Column] = &[
+    plain("/0", "burst, all frames of"),
+    plain("/1", "1 line of a knee: walks on"),
+    plain("/2", "upright"),
+    plain("/3", "all lines: walks on"),
+    plain("/4", "upright"),
+];
+
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct BusFaults {
+    /// The walk.
+    #[arg(long, default_value = SCENE)]
+    pub scene: String,
+    /// At how many instants of a stride each fault begins.
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=100))]
+    pub instants: u64,
+}
+
+impl Study for BusFaults {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        Ok(run(given.config, &self.scene, self.instants as usize)?.sheet())
+    }
+}
 
 /// How a robot ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -79,7 +113,7 @@ pub struct Burst {
 
 /// What was found.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct Found {
     /// \[s\] Bus cycle.
     pub cycle_s: f64,
     /// \[1\] Instants of a stride at which each fault began.
@@ -90,10 +124,43 @@ pub struct Report {
     pub bursts: Vec<Burst>,
 }
 
-impl Report {
+impl Found {
     /// Cases whose demands are not met.
     pub fn failed(&self) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(|row| !row.unmet.is_empty())
+    }
+
+    /// As docs/bus_faults.md holds it.
+    pub fn sheet(&self) -> Sheet {
+        let n = self.instants;
+        let of = |upright: usize| format!("{upright}/{n}");
+        let mut sheet = Sheet::titled(format!(
+            "Faults of the bus while Lola walks 2 km/h, bus cycle {} ms, begun at {n} instants of a stride; the latest of all.",
+            self.cycle_s * 1e3
+        ));
+        let row = |row: &Row| {
+            let end = match row.end {
+                End::Walks => "walks on",
+                End::Stands => "stopped, stands",
+                End::FellBraked => "falls with its joints braked",
+                End::Fell => "falls",
+            };
+            let unmet =
+                if row.unmet.is_empty() { String::new() } else { format!(" **not met: {}**", row.unmet) };
+            let mut shown = json!(row);
+            shown["end"] = format!("{end}{unmet}").into();
+            shown["upright"] = of(row.upright).into();
+            shown
+        };
+        sheet.table(FAULTS, &self.rows.iter().map(row).collect::<Vec<_>>());
+        sheet.line("");
+        let burst = |b: &Burst| {
+            let [all, knee] = [0, 1].map(|k| [of(b.walked_on[k]), of(b.upright[k])]);
+            json!([format!("{} cycles", b.cycles), knee[0], knee[1], all[0], all[1]])
+        };
+        sheet.table(BURSTS, &self.bursts.iter().map(burst).collect::<Vec<_>>());
+        sheet.facts(self);
+        sheet
     }
 }
 
@@ -101,7 +168,7 @@ impl Report {
 ///
 /// # Errors
 /// A configuration or robot is wrong, or the robot falls without a fault.
-pub fn run(config: &Path, scene: &str, instants: usize) -> Result<Report, Box<dyn Error>> {
+pub fn run(config: &Path, scene: &str, instants: usize) -> Result<Found, Error> {
     let setup = Setup::load(config, scene)?;
     let starts = push::at_instants(&setup, instants)?;
     let cases = cases::all(&setup);
@@ -126,7 +193,7 @@ pub fn run(config: &Path, scene: &str, instants: usize) -> Result<Report, Box<dy
             upright: count(|t| t.end() <= End::Stands),
         }
     });
-    Ok(Report { cycle_s: setup.scene.cycle, instants, rows, bursts: bursts.collect() })
+    Ok(Found { cycle_s: setup.scene.cycle, instants, rows, bursts: bursts.collect() })
 }
 
 /// The worst of all instants.

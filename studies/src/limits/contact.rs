@@ -14,7 +14,8 @@ use ::contact::solver::solve;
 use ::contact::{Layer, Material, Memory, Method, Report, Settings};
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::{Bench, Finding, Findings, Result, Rule, largest_stable};
+use super::Rule::{AtLeast, AtMost, Within};
+use super::{Bench, Findings, Result, largest_stable, row};
 
 /// A pad of the thesis's size, 36 nodes free.
 fn layer(poisson: f64) -> Result<Layer> {
@@ -69,10 +70,11 @@ pub(super) fn fixed_point(_: &Bench) -> Findings {
             let report = press(layer.coupling(), &mut memory, 0.0, &settings);
             (report, memory.forces().iter().all(|f| f.norm() < 1e6))
         };
-        let measured = largest_stable(0.8 * predicted, 1.1 * predicted, |gamma| run(gamma).0.converged);
+        let measured = largest_stable(0.8 * predicted, 1.1 * predicted, |gamma| run(gamma).0.converged)?;
         let (beyond, bounded) = run(1.05 * predicted);
         let regime = format!("Jacobi, nu = {poisson}: largest gamma 2/lambda_max(D^-1 W)");
-        Ok(Finding::new("F8", &regime, "", [predicted, measured], Rule::Within(0.05))
+        Ok(row("F8", "", Within(0.05))
+            .of(regime, [predicted, measured])
             .says("converged: false, residual", !beyond.converged && beyond.residual > 1.0 && bounded))
     };
     [0.0, 0.3, 0.45, 0.49].map(finding).into_iter().collect()
@@ -93,9 +95,9 @@ pub(super) fn incompressible(_: &Bench) -> Findings {
         let left = values.iter().map(|l| (1.0 - gamma * l).abs()).fold(0.0, f64::max);
         let numbers = [(1e-4_f64).ln() / left.ln(), sweeps(1e-7) - sweeps(1e-3)];
         let regime = format!("layer of nu = {poisson}: condition of W");
-        findings.push(Finding::new("F9", &regime, "", [condition, found], Rule::Within(0.02)));
+        findings.push(row("F9", "", Within(0.02)).of(regime, [condition, found]));
         let regime = format!("Jacobi, nu = {poisson}: sweeps for four more digits");
-        findings.push(Finding::new("F9", &regime, "", numbers, Rule::Within(0.03)));
+        findings.push(row("F9", "", Within(0.03)).of(regime, numbers));
     }
     Ok(findings)
 }
@@ -121,30 +123,15 @@ pub(super) fn friction(_: &Bench) -> Findings {
     let counts = [f64::from(few.sweeps), f64::from(many.0.sweeps)];
     let honest = beyond.converged == (beyond.residual <= 1e-6);
     Ok(vec![
-        Finding::new(
-            "F10",
-            "Gauss-Seidel, mu = 2: sweeps, against those of mu = 0.3",
-            "",
-            counts,
-            Rule::AtLeast,
-        )
-        .says("converged, sweeps", many.0.converged),
-        Finding::new(
-            "F10",
-            "mu = 2 from two starts: largest difference of a force",
-            "N",
-            [1e-3, apart],
-            Rule::AtMost,
-        )
-        .says("unique: true", many.0.unique),
-        Finding::new(
-            "F10",
-            "Gauss-Seidel, mu = 2, gamma = 1.95: residual",
-            "",
-            [1e-6, beyond.residual],
-            Rule::AtLeast,
-        )
-        .says("converged: false, residual", honest),
+        row("F10", "", AtLeast)
+            .of("Gauss-Seidel, mu = 2: sweeps, against those of mu = 0.3", counts)
+            .says("converged, sweeps", many.0.converged),
+        row("F10", "N", AtMost)
+            .of("mu = 2 from two starts: largest difference of a force", [1e-3, apart])
+            .says("unique: true", many.0.unique),
+        row("F10", "", AtLeast)
+            .of("Gauss-Seidel, mu = 2, gamma = 1.95: residual", [1e-6, beyond.residual])
+            .says("converged: false, residual", honest),
     ])
 }
 
@@ -161,7 +148,7 @@ pub(super) fn cone(_: &Bench) -> Findings {
     };
     let largest = (0..=45).map(error).fold(0.0, f64::max);
     let regime = "sliding node, 0 to 45 degrees: size and direction of friction, error";
-    Ok(vec![Finding::new("F11", regime, "", [1e-9, largest], Rule::AtMost)])
+    Ok(vec![row("F11", "", AtMost).of(regime, [1e-9, largest])])
 }
 
 /// F11: a block that sticks on an incline of 20 degrees stays: way in 5 s after it came to rest.
@@ -183,7 +170,7 @@ pub(super) fn creep(_: &Bench) -> Findings {
         }
     }
     let regime = "block that sticks on 20 degrees, explicit Euler at 1 ms: creep in 5 s";
-    Ok(vec![Finding::new("F11", regime, "m", [1e-12, (r[0] + d[0] - before).abs()], Rule::AtMost)])
+    Ok(vec![row("F11", "m", AtMost).of(regime, [1e-12, (r[0] + d[0] - before).abs()])])
 }
 
 /// A node left 1 mm inside of the ground by a too long step: time constant with which it is taken out, 1/200 s, which is
@@ -202,10 +189,8 @@ pub(super) fn penetration(_: &Bench) -> Findings {
     };
     let (h, steps) = (1e-6, 5000);
     let time = -h * steps as f64 / (run(h, steps).0 / 1e-3).ln();
-    let longest = largest_stable(1e-4, 0.1, |h| run(h, 1000).1);
-    let of = |regime, measured, most| {
-        Finding::new("P1", regime, "s", [1.0 / law.recovery, measured], Rule::Within(most))
-    };
+    let longest = largest_stable(1e-4, 0.1, |h| run(h, 1000).1)?;
+    let of = |regime, measured, most| row("P1", "s", Within(most)).of(regime, [1.0 / law.recovery, measured]);
     Ok(vec![
         of("penetration of 1 mm: time constant of its recovery", time, 1e-3),
         of("penetration of 1 mm: largest Euler step that does not lift the node off", longest, 2e-3),

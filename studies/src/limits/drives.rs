@@ -11,7 +11,10 @@ use sim_backend::drive::Drive;
 use sim_backend::plant::PlantInputs;
 use sim_backend::train::FaultCause;
 
-use super::{Bench, Finding, Findings, Rule, largest_stable, slope};
+use crate::search::{Width, border, slope};
+
+use super::Rule::{AtMost, Within};
+use super::{Bench, Findings, Result, largest_stable, row};
 
 /// A gear whose share of the load is the speed \[rad/s\] times 1e-3.
 const COUPLED: HarmonicFriction = HarmonicFriction { starting: 0.0, load: 0.0, viscous: 0.0, coupled: 1e-3 };
@@ -26,22 +29,18 @@ pub(super) fn load_torque(_: &Bench) -> Findings {
     let amplified = -COUPLED.load_torque(990.0, -1.0, 0.0)?;
     let beyond = COUPLED.load_torque(1001.0, -1.0, 0.0);
     let mut findings = vec![
-        Finding::new(
-            "F12",
-            "load torque (2.64), c = 0.99: amplification 1/(1 - c)",
-            "",
-            [100.0, amplified],
-            Rule::Within(1e-9),
-        )
-        .says("beyond c = 1: NoLoadTorque", matches!(beyond, Err(NoLoadTorque { share }) if share > 1.0)),
+        row("F12", "", Within(1e-9))
+            .of("load torque (2.64), c = 0.99: amplification 1/(1 - c)", [100.0, amplified])
+            .says("beyond c = 1: NoLoadTorque", matches!(beyond, Err(NoLoadTorque { share }) if share > 1.0)),
     ];
     for (name, gear) in GEARS {
-        let found = largest_stable(0.0, 4000.0, |w| gear.load_torque(w, -1.0, 0.0).is_ok());
+        let found = largest_stable(0.0, 4000.0, |w| gear.load_torque(w, -1.0, 0.0).is_ok())?;
         let limit = Friction::Harmonic(gear).speed_limit();
         let predicted = (1.0 - gear.load) / gear.coupled;
         let regime = format!("{name}: speed (1 - mu)/gamma at which (2.64) ends");
         findings.push(
-            Finding::new("F12", &regime, "rad/s", [predicted, found], Rule::Within(1e-3))
+            row("F12", "rad/s", Within(1e-3))
+                .of(regime, [predicted, found])
                 .says("Friction::speed_limit, NoLoadTorque", (limit / predicted - 1.0).abs() < 1e-12),
         );
     }
@@ -59,7 +58,7 @@ pub(super) fn fixed_point(_: &Bench) -> Findings {
         });
         let numbers = [(1e-12_f64.ln() / c.ln()).ceil(), rounds.map_or(f64::INFINITY, f64::from)];
         let regime = format!("(2.64) by fixed point, c = {c}: rounds to 1e-12, ln tol/ln c");
-        Ok(Finding::new("F13", &regime, "", numbers, Rule::Within(0.0)))
+        Ok(row("F13", "", Within(0.0)).of(regime, numbers))
     };
     [0.24, 0.5, 0.9, 0.99].map(finding).into_iter().collect()
 }
@@ -79,25 +78,15 @@ pub(super) fn passivity(_: &Bench) -> Findings {
     let cubic = CubicFriction { starting: 0.1, load: 0.02, viscous: 2e-4, cubic: -1e-10 };
     // Where T_0 + mu T + b w + g w^3 = 0, by bisection of the polynomial.
     let force = |w: f64| 0.1 + 0.02 * 0.7 + 2e-4 * w - 1e-10 * w.powi(3);
-    let predicted = largest_stable(100.0, 5000.0, |w| force(w) > 0.0);
-    let found = largest_stable(100.0, 5000.0, |w| cubic.torque(w, 0.7) * w < 0.0);
+    let predicted = largest_stable(100.0, 5000.0, |w| force(w) > 0.0)?;
+    let found = largest_stable(100.0, 5000.0, |w| cubic.torque(w, 0.7) * w < 0.0)?;
     Ok(vec![
-        Finding::new(
-            "F14",
-            "friction (2.61), (2.68), +-3000 rad/s, +-20 N m: largest power",
-            "W",
-            [0.0, most],
-            Rule::AtMost,
-        )
-        .says("no answer beyond c = 1", true),
-        Finding::new(
-            "F14",
-            "friction (2.60) with g < 0: speed at which it gives power",
-            "rad/s",
-            [predicted, found],
-            Rule::Within(1e-3),
-        )
-        .says("not used; fitted for comparison only", true),
+        row("F14", "W", AtMost)
+            .of("friction (2.61), (2.68), +-3000 rad/s, +-20 N m: largest power", [0.0, most])
+            .says("no answer beyond c = 1", true),
+        row("F14", "rad/s", Within(1e-3))
+            .of("friction (2.60) with g < 0: speed at which it gives power", [predicted, found])
+            .says("not used; fitted for comparison only", true),
     ])
 }
 
@@ -113,20 +102,10 @@ pub(super) fn elasticity(bench: &Bench) -> Findings {
     let first = t1 / k0;
     let literal = printed(first * (1.0 + 1e-12)) - printed(first * (1.0 - 1e-12));
     Ok(vec![
-        Finding::new(
-            "F15",
-            "elasticity, continuous form: jump at its knees",
-            "N m",
-            [1e-12, jump(t1).max(jump(t2))],
-            Rule::AtMost,
-        ),
-        Finding::new(
-            "F15",
-            "elasticity (2.69) as printed: jump K_1 T_1/K_0",
-            "N m",
-            [k1 * t1 / k0, literal],
-            Rule::Within(1e-6),
-        ),
+        row("F15", "N m", AtMost)
+            .of("elasticity, continuous form: jump at its knees", [1e-12, jump(t1).max(jump(t2))]),
+        row("F15", "N m", Within(1e-6))
+            .of("elasticity (2.69) as printed: jump K_1 T_1/K_0", [k1 * t1 / k0, literal]),
     ])
 }
 
@@ -139,23 +118,20 @@ pub(super) fn ankle(bench: &Bench) -> Findings {
     let geometry = *real.geometry();
     let at = |ankle: &Ankle, flexion: f64| Transmission::Ankle(*ankle).at([0.0, 0.0, flexion], [0.0; 3]);
     let short = |coupler: f64| Ankle::new(&AnkleGeometry { coupler, ..geometry });
-    let least = largest_stable(0.0, geometry.coupler, |l| short(l).is_err());
+    let least = largest_stable(0.0, geometry.coupler, |l| short(l).is_err())?;
     let ankle = short(least + 0.3 * Vector3::from(geometry.attachment).norm())?;
     let angles = (1..150).flat_map(|k| [0.01, -0.01].map(|step| step * f64::from(k)));
     let end = angles.into_iter().find(|q| at(&ankle, *q).is_err()).ok_or("the coupler reaches everywhere")?;
     let toward = end.signum();
-    let mut dead = [0.0, end];
-    for _ in 0..60 {
-        let middle = 0.5 * (dead[0] + dead[1]);
-        dead[usize::from(at(&ankle, middle).is_err())] = middle;
-    }
+    let dead = border([0.0, end], Width::Exact, |q| Result::Ok(at(&ankle, q).is_ok()))?;
     let ratio = |d: f64| at(&ankle, dead[0] - toward * d).map(|gear| [d, gear.ratio[2].abs()]);
     let points = [1e-7, 1e-6, 1e-5].into_iter().map(ratio).collect::<std::result::Result<Vec<_>, _>>()?;
     let beyond = at(&ankle, dead[0] + toward * 1e-3);
     let told = matches!(beyond, Err(OutOfDomain::Coupler { margin }) if margin < 0.0);
     let regime = "ankle, coupler near its end: power of the distance in the ratio";
     Ok(vec![
-        Finding::new("F24", regime, "", [-0.5, slope(&points)], Rule::Within(0.01))
+        row("F24", "", Within(0.01))
+            .of(regime, [-0.5, slope(&points)])
             .says("OutOfDomain::Coupler, margin D < 0", told),
     ])
 }
@@ -190,13 +166,14 @@ pub(super) fn dead_point(bench: &Bench) -> Findings {
         plant.take_fault()
     };
     let predicted = dead_angle(knee.geometry());
-    let found = largest_stable(0.0, predicted + 1.0, |q| fault(q).is_none());
+    let found = largest_stable(0.0, predicted + 1.0, |q| fault(q).is_none())?;
     let why = fault(predicted + 0.01).map(|f| f.why);
     let told =
         matches!(why, Some(FaultCause::Linkage(OutOfDomain::Lever { margin })) if margin < 0.0) && finite;
     let regime = "type 2, knee bent to the dead point of its screw";
     Ok(vec![
-        Finding::new("D1", regime, "rad", [predicted, found], Rule::Within(1e-3))
+        row("D1", "rad", Within(1e-3))
+            .of(regime, [predicted, found])
             .says("DriveFault: Lever; rates finite", told),
     ])
 }

@@ -3,7 +3,8 @@
 use environment::{Environment, Mesh, Object, Pose, Schedule, Surface, closest};
 use nalgebra::Vector3;
 
-use super::{Bench, Finding, Findings, Rule};
+use super::Rule::{AtMost, Within};
+use super::{Bench, Findings, row};
 
 /// Numbers from -1 to 1, the same in every run.
 struct Dice(u64);
@@ -48,7 +49,7 @@ pub(super) fn nearest(_: &Bench) -> Findings {
         most = most.max(((p - closest(&p, &corners).0).norm() - by_search(&p, &corners)).abs());
     }
     let regime = "nearest point of 200 000 triangles, all regions and degenerate ones: error";
-    Ok(vec![Finding::new("F25", regime, "m", [1e-12, most], Rule::AtMost)])
+    Ok(vec![row("F25", "m", AtMost).of(regime, [1e-12, most])])
 }
 
 /// A node that rounds the upper edge of a board at a distance of 2 mm, a quarter of a circle: gap and normal are continuous.
@@ -71,20 +72,10 @@ pub(super) fn edge(_: &Bench) -> Findings {
     }
     let lost = ground.query([f64::NAN, 0.0, 0.02]);
     Ok(vec![
-        Finding::new(
-            "E1",
-            "node around the edge of a board, 2 mm away: error of the gap",
-            "m",
-            [1e-12, gap],
-            Rule::AtMost,
-        )
-        .says("no number: Surface::Far", lost.surface == Surface::Far && on_board),
-        Finding::new(
-            "E1",
-            "node around the edge, 1000 steps: largest turn of the normal",
-            "rad",
-            [turn, largest],
-            Rule::Within(1e-6),
-        ),
+        row("E1", "m", AtMost)
+            .of("node around the edge of a board, 2 mm away: error of the gap", [1e-12, gap])
+            .says("no number: Surface::Far", lost.surface == Surface::Far && on_board),
+        row("E1", "rad", Within(1e-6))
+            .of("node around the edge, 1000 steps: largest turn of the normal", [turn, largest]),
     ])
 }

@@ -24,7 +24,10 @@ use sim_backend::drive::Drive;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs};
 
-use super::{Bench, Finding, Findings, Result, Rule};
+use crate::search::{Width, middle};
+
+use super::Rule::{AtLeast, AtMost, Within};
+use super::{Bench, Findings, Result, row};
 
 /// A leg joint standing, and the same in the air (errata 2.14): HFUC-25-100 with a large motor.
 pub(super) const STANCE: ElasticJoint =
@@ -173,21 +176,21 @@ impl Loop {
     }
 }
 
-/// Where `stable` ends between `low` and `high`, to `share` of it.
-fn limit(low: f64, high: f64, share: f64, mut stable: impl FnMut(f64) -> Result<bool>) -> Result<f64> {
-    let (mut low, mut high) = (low, high);
-    while high - low > share * high {
-        let middle = 0.5 * (low + high);
-        *(if stable(middle)? { &mut low } else { &mut high }) = middle;
-    }
-    Ok(0.5 * (low + high))
-}
+/// \[1\] From where to where a limit is looked for, over where it is about.
+const AROUND: [f64; 2] = [0.7, 1.4];
+/// The same of a loop that smaller gains do not keep stable either.
+const CLOSE: [f64; 2] = [0.97, 1.4];
 
-/// Predicted and measured limit of a family of loops, in units of `unit`; looked for from 0.7 to 1.4 times `about`.
-fn limits(bench: &Bench, about: f64, unit: f64, family: impl Fn(f64) -> Loop) -> Result<[f64; 2]> {
-    let (low, high) = (0.7 * about, 1.4 * about);
-    let predicted = limit(low, high, 1e-5, |x| Ok(family(x).predicted()))?;
-    let measured = limit(low, high, 3e-3, |x| family(x).is_calm(bench))?;
+/// Predicted and measured limit of a family of loops, in units of `unit`; looked for `around` a number.
+fn limits(
+    bench: &Bench,
+    (about, around): (f64, [f64; 2]),
+    unit: f64,
+    family: impl Fn(f64) -> Loop,
+) -> Result<[f64; 2]> {
+    let ends = around.map(|share| share * about);
+    let predicted = middle(ends, Width::Share(1e-5), |x| Result::Ok(family(x).predicted()))?;
+    let measured = middle(ends, Width::Share(3e-3), |x| family(x).is_calm(bench))?;
     Ok([predicted / unit, measured / unit])
 }
 
@@ -199,17 +202,17 @@ pub(super) fn continuous(bench: &Bench) -> Findings {
         let numbers =
             [joint.growth(link.feedback, link.gains), link.measured(&bench.setup.robot, [0.0, KICK])?];
         let regime = format!("link-side PD (5.43), {name}, no friction: rate of growth");
-        findings.push(Finding::new("J1", &regime, "1/s", numbers, Rule::Within(0.05)));
+        findings.push(row("J1", "1/s", Within(0.05)).of(regime, numbers));
     }
     let motor = Loop::new(STANCE, Feedback::Motor, [20.0, 1000.0]);
     let regime = "motor-side PD (5.45), K_p = 20 K: rate of growth";
     let growth = motor.measured(&bench.setup.robot, [0.0, KICK])?;
-    findings.push(Finding::new("J1", regime, "1/s", [0.0, growth], Rule::AtMost));
+    findings.push(row("J1", "1/s", AtMost).of(regime, [0.0, growth]));
     for (name, joint, kd) in [("J_J = 10", STANCE, 500.0), ("J_J = 0.5", AIR, 100.0)] {
         let k = joint.stiffness;
         let mixed = |kp: f64| Loop::new(joint, Feedback::LinkMotor, [kp / k, kd]);
         let regime = format!("link angle, motor speed (5.49), {name}: largest K_p/K");
-        findings.push(Finding::new("J1", &regime, "", limits(bench, k, k, mixed)?, Rule::Within(0.01)));
+        findings.push(row("J1", "", Within(0.01)).of(regime, limits(bench, (k, AROUND), k, mixed)?));
     }
     Ok(findings)
 }
@@ -227,22 +230,22 @@ pub(super) fn sampled(bench: &Bench) -> Findings {
     for (name, feedback, period, sampled, about) in largest_kd {
         let family = |kd| Loop::new(STANCE, feedback, [0.1, kd]).every(period, sampled);
         let regime = format!("{name}, J_J = 10, K_p = 0.1 K: largest K_d");
-        let numbers = limits(bench, about, 1.0, family)?;
-        findings.push(Finding::new("J2", &regime, "N m s/rad", numbers, Rule::Within(0.02)));
+        let numbers = limits(bench, (about, AROUND), 1.0, family)?;
+        findings.push(row("J2", "N m s/rad", Within(0.02)).of(regime, numbers));
     }
     let largest_kp = [
-        ("motor-side, 3.5 ms + 1 cycle", STANCE, Feedback::Motor, DELAYED, 144.0, 0.370),
-        ("motor-side, 3.5 ms, differences", STANCE, Feedback::Motor, DIFFERENCE, 247.0, 1.656),
-        ("link and motor, 3.5 ms", STANCE, Feedback::LinkMotor, EXACT, 300.0, 0.9),
-        ("link and motor, 3.5 ms + 1 cycle", STANCE, Feedback::LinkMotor, DELAYED, 200.0, 0.6),
-        ("link and motor, 3.5 ms + 1 cycle", AIR, Feedback::LinkMotor, DELAYED, 221.0, 0.666),
+        ("motor-side, 3.5 ms + 1 cycle", STANCE, Feedback::Motor, DELAYED, 144.0, (0.370, AROUND)),
+        ("motor-side, 3.5 ms, differences", STANCE, Feedback::Motor, DIFFERENCE, 247.0, (1.656, AROUND)),
+        ("link and motor, 3.5 ms", STANCE, Feedback::LinkMotor, EXACT, 300.0, (0.9, AROUND)),
+        ("link and motor, 3.5 ms + 1 cycle", STANCE, Feedback::LinkMotor, DELAYED, 200.0, (0.6, AROUND)),
+        ("link and motor, 3.5 ms + 1 cycle", AIR, Feedback::LinkMotor, DELAYED, 221.0, (0.666, CLOSE)),
     ];
-    for (name, joint, feedback, sampled, kd, about) in largest_kp {
+    for (name, joint, feedback, sampled, kd, (about, around)) in largest_kp {
         let k = joint.stiffness;
         let family = |kp: f64| Loop::new(joint, feedback, [kp / k, kd]).every(3.5e-3, sampled);
         let regime = format!("{name}, J_J = {}, K_d = {kd}: largest K_p/K", joint.link);
-        let numbers = limits(bench, about * k, k, family)?;
-        findings.push(Finding::new("J2", &regime, "", numbers, Rule::Within(0.02)));
+        let numbers = limits(bench, (about * k, around), k, family)?;
+        findings.push(row("J2", "", Within(0.02)).of(regime, numbers));
     }
     // Where the motor-side loop has no stable gains at all (errata 2.14), the mixed one has.
     let growth = |feedback: Feedback| {
@@ -254,20 +257,18 @@ pub(super) fn sampled(bench: &Bench) -> Findings {
     let regime = "motor-side, 3.5 ms + 1 cycle, J_J = 0.5, K_d = 120: rate of growth";
     let [predicted, measured] = growth(Feedback::Motor)?;
     let told = "grows, as predicted";
-    findings
-        .push(Finding::new("J2", regime, "1/s", [0.0, measured], Rule::AtLeast).says(told, predicted > 0.0));
+    findings.push(row("J2", "1/s", AtLeast).of(regime, [0.0, measured]).says(told, predicted > 0.0));
     let regime = "link and motor, 3.5 ms + 1 cycle, J_J = 0.5, K_d = 120: rate of growth";
     let [predicted, measured] = growth(Feedback::LinkMotor)?;
     let calm = "decays, as predicted";
-    findings
-        .push(Finding::new("J2", regime, "1/s", [0.0, measured], Rule::AtMost).says(calm, predicted < 0.0));
+    findings.push(row("J2", "1/s", AtMost).of(regime, [0.0, measured]).says(calm, predicted < 0.0));
     Ok(findings)
 }
 
 /// \[N m s/rad\] Viscous friction of the rotor from which on the loop is stable.
 fn enough_friction(loop_: &Loop) -> Result<f64> {
     let stable = |d: f64| ElasticJoint { friction: d, ..loop_.joint }.is_stable(loop_.feedback, loop_.gains);
-    limit(0.0, 1e4, 1e-6, |d| Ok(!stable(d)))
+    middle([0.0, 1e4], Width::Share(1e-6), |d| Ok(!stable(d)))
 }
 
 /// J3: friction of the rotor makes link-side PD stable: viscous friction up to gains, dry friction up to swings. A swing
@@ -280,8 +281,8 @@ pub(super) fn friction(bench: &Bench) -> Findings {
         let about = (1.0 + u) * (joint.link - joint.rotor * u) / joint.link * k;
         let family = |kp: f64| Loop::new(joint, Feedback::Link, [kp / k, u * d]);
         let regime = format!("link-side, J_J = {}, d = 200, K_d = {}: largest K_p/K", joint.link, u * d);
-        let numbers = limits(bench, about, k, family)?;
-        findings.push(Finding::new("J3", &regime, "", numbers, Rule::Within(0.02)));
+        let numbers = limits(bench, (about, AROUND), k, family)?;
+        findings.push(row("J3", "", Within(0.02)).of(regime, numbers));
     }
     for joint in [STANCE, AIR] {
         let dry = HarmonicFriction { starting: 6.20e-2, load: 0.0, viscous: 0.0, coupled: 0.0 };
@@ -291,17 +292,17 @@ pub(super) fn friction(bench: &Bench) -> Findings {
         // The swing at the limit: link and rotor against each other, v_J/v_M = -d/K_d.
         let calm = |v: f64| {
             let grows = held.measured(&bench.setup.robot, [-v * enough / held.gains.speed, v])?;
-            Ok(!(grows > 0.0))
+            Result::Ok(!(grows > 0.0))
         };
         let regime =
             format!("link-side, dry friction of HFUC-25-100, J_J = {}: largest calm swing", joint.link);
-        let numbers = [about, limit(0.3 * about, 3.0 * about, 5e-3, calm)?];
-        findings.push(Finding::new("J3", &regime, "rad/s", numbers, Rule::Within(0.15)));
+        let numbers = [about, middle([0.3 * about, 3.0 * about], Width::Share(5e-3), calm)?];
+        findings.push(row("J3", "rad/s", Within(0.15)).of(regime, numbers));
     }
     let screw = Friction::Screw(ScrewFriction { direct: 0.860, indirect: 0.858 });
     let knee = Loop::new(STANCE, Feedback::Link, [0.1, 100.0]).with(screw);
     let growth = knee.measured(&bench.setup.robot, [0.0, KICK])?;
     let regime = "link-side, friction of a roller screw, J_J = 10: rate of growth";
-    findings.push(Finding::new("J3", regime, "1/s", [0.0, growth], Rule::AtLeast));
+    findings.push(row("J3", "1/s", AtLeast).of(regime, [0.0, growth]));
     Ok(findings)
 }

@@ -1,7 +1,5 @@
 //! Stable gains of an elastic joint over its sampling time, as a picture.
 
-use std::path::Path;
-
 use ::drives::elastic_joint::{ElasticJoint, Gains, Held};
 use ::drives::{Feedback, Sampled};
 use drawing::color::{BLUE, VERMILION};
@@ -35,21 +33,15 @@ const ARRANGEMENTS: [Arrangement; 4] = [
     },
 ];
 
-/// Writes `joint_control.png`; its path.
-///
-/// # Errors
-/// It cannot be written.
-pub fn draw(out: &Path) -> Result<String, String> {
-    std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
+/// The picture.
+pub(super) fn figure() -> Figure {
     let about = "J_J = 10 kg m2 standing, 0.5 in the air; J_M = 1.2, K = 31 kN m/rad. motor: (5.45), link + motor: (5.49). \
                  K_p up to 30 K, at its best K_d.";
     let mut figure = Figure::new("Stable gains of an elastic joint over its sampling time", about);
     for (name, joint) in [("standing", STANCE), ("in the air", AIR)] {
         figure = figure.with(position_chart(name, &joint)).with(speed_chart(name, &joint));
     }
-    let path = out.join("joint_control.png");
-    figure.save(&path)?;
-    Ok(path.display().to_string())
+    figure
 }
 
 fn position_chart(name: &str, joint: &ElasticJoint) -> Chart {

@@ -31,17 +31,19 @@ mod steps;
 mod stiction;
 mod touchdown;
 
-use std::error::Error;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use config::Setup;
 use config::scene::Integrator;
 use environment::Environment;
 use serde::Serialize;
+use serde_json::json;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::Plant;
 
-pub use joint_chart::draw;
+use crate::search::{Width, middle};
+use crate::sheet::{Column, plain, six};
+use crate::{Error, Given, Sheet, Study};
 
 /// One method at its limit.
 #[derive(Clone, Debug, Serialize)]
@@ -76,14 +78,7 @@ pub enum Rule {
     AtLeast,
 }
 
-/// All findings.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// In the order of the files.
-    pub findings: Vec<Finding>,
-}
-
-type Result<T> = std::result::Result<T, Box<dyn Error>>;
+type Result<T> = std::result::Result<T, Error>;
 /// What a check has found.
 type Findings = Result<Vec<Finding>>;
 
@@ -126,17 +121,45 @@ const CHECKS: [fn(&Bench) -> Findings; 30] = [
     signals::all,
 ];
 
+const COLUMNS: &[Column] = &[
+    plain("/id", "id"),
+    plain("/regime", "method and regime"),
+    six("/predicted", "predicted"),
+    six("/measured", "measured"),
+    plain("/unit", "unit"),
+    plain("/deviation", "deviation"),
+    plain("/allowed", "allowed"),
+    plain("/said", "reported as"),
+    plain("/ok", "ok"),
+];
+
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Limits {
+    /// Where the picture of stable joint control goes.
+    #[arg(long, value_name = "DIR", default_value = "runs/study/limits")]
+    pub out: PathBuf,
+}
+
+impl Study for Limits {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet> {
+        let mut sheet = sheet(&run(given.config)?);
+        sheet.draw(&self.out, "joint_control.png", &joint_chart::figure())?;
+        Ok(sheet)
+    }
+}
+
 /// Drives every method to its limit, with the robot of scene `stand`.
 ///
 /// # Errors
-/// A configuration or robot is wrong.
-pub fn run(config: &Path) -> Result<Report> {
+/// A configuration or robot is wrong, or there is no limit where it was looked for.
+pub fn run(config: &Path) -> Result<Vec<Finding>> {
     let bench = Bench { setup: Setup::load(config, "stand")? };
     let mut findings = Vec::new();
     for check in CHECKS {
         findings.extend(check(&bench)?);
     }
-    Ok(Report { findings })
+    Ok(findings)
 }
 
 impl Bench {
@@ -150,10 +173,23 @@ impl Bench {
     }
 }
 
-impl Finding {
-    fn new(id: &'static str, regime: &str, unit: &'static str, numbers: [f64; 2], rule: Rule) -> Self {
-        let [predicted, measured] = numbers;
-        Self {
+/// What is the same of several findings.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    id: &'static str,
+    unit: &'static str,
+    rule: Rule,
+}
+
+const fn row(id: &'static str, unit: &'static str, rule: Rule) -> Row {
+    Row { id, unit, rule }
+}
+
+impl Row {
+    /// Method and regime, with what was predicted and what was measured.
+    fn of(self, regime: impl Into<String>, [predicted, measured]: [f64; 2]) -> Finding {
+        let Self { id, unit, rule } = self;
+        Finding {
             id,
             regime: regime.into(),
             unit,
@@ -164,7 +200,9 @@ impl Finding {
             told: true,
         }
     }
+}
 
+impl Finding {
     /// What the program says about it, and whether it did.
     fn says(mut self, what: &str, told: bool) -> Self {
         (self.reported, self.told) = (what.into(), told);
@@ -188,21 +226,9 @@ impl Finding {
     }
 }
 
-impl Report {
-    /// Findings that are not as predicted, or not reported.
-    pub fn failed(&self) -> impl Iterator<Item = &Finding> {
-        self.findings.iter().filter(|f| !f.ok())
-    }
-}
-
 /// Largest step between `low` (stable) and `high` (not) that is stable, by bisection to 1e-4 of itself.
-fn largest_stable(low: f64, high: f64, mut stable: impl FnMut(f64) -> bool) -> f64 {
-    let (mut low, mut high) = (low, high);
-    while high - low > 1e-4 * high {
-        let middle = 0.5 * (low + high);
-        *(if stable(middle) { &mut low } else { &mut high }) = middle;
-    }
-    0.5 * (low + high)
+fn largest_stable(low: f64, high: f64, mut stable: impl FnMut(f64) -> bool) -> Result<f64> {
+    middle([low, high], Width::Share(1e-4), |x| Ok(stable(x)))
 }
 
 /// Explicit methods for `n` states; which one, says the call.
@@ -210,39 +236,23 @@ fn stepper(n: usize) -> Stepper {
     Stepper::new(Integrator::Euler, n)
 }
 
-/// Slope of log y over log x by least squares.
-fn slope(points: &[[f64; 2]]) -> f64 {
-    let logs: Vec<[f64; 2]> = points.iter().map(|p| p.map(f64::ln)).collect();
-    let n = logs.len() as f64;
-    let mean: [f64; 2] = std::array::from_fn(|k| logs.iter().map(|p| p[k]).sum::<f64>() / n);
-    let sum = |k: usize| logs.iter().map(|p| (p[0] - mean[0]) * (p[k] - mean[k])).sum::<f64>();
-    sum(1) / sum(0)
-}
-
-/// The report as lines for people.
-pub fn table(report: &Report) -> String {
-    let mut text = format!(
-        "{:5}{:74}{:>13}{:>13} {:10}{:>10}{:>10}  {:38}ok",
-        "id", "method and regime", "predicted", "measured", "unit", "deviation", "allowed", "reported as"
-    );
-    for f in &report.findings {
+/// The findings as docs/limits.md holds them.
+pub fn sheet(findings: &[Finding]) -> Sheet {
+    let row = |f: &Finding| {
         let (deviation, allowed) = match f.rule {
             Rule::Within(most) => (format!("{:+.2} %", 100.0 * f.deviation()), percent(most)),
             Rule::AtMost => (String::new(), "at most".into()),
             Rule::AtLeast => (String::new(), "at least".into()),
         };
-        text += &format!(
-            "\n{:5}{:74}{:>13}{:>13} {:10}{deviation:>10}{allowed:>10}  {:38}{}",
-            f.id,
-            f.regime,
-            number(f.predicted),
-            number(f.measured),
-            f.unit,
-            if f.told { f.reported.clone() } else { format!("NOT: {}", f.reported) },
-            if f.ok() { "yes" } else { "NO" }
-        );
-    }
-    text
+        let mut row = json!(f);
+        (row["deviation"], row["allowed"], row["ok"]) = (deviation.into(), allowed.into(), f.ok().into());
+        row["said"] = if f.told { f.reported.clone() } else { format!("NOT: {}", f.reported) }.into();
+        row
+    };
+    let mut sheet = Sheet::default();
+    sheet.fact("findings", findings);
+    sheet.table(COLUMNS, &findings.iter().map(row).collect::<Vec<_>>());
+    sheet
 }
 
 /// A share as people write it.
@@ -252,9 +262,4 @@ fn percent(share: f64) -> String {
     } else {
         format!("{} %", (1e4 * share).round() / 1e2)
     }
-}
-
-/// Six digits, without noise.
-fn number(x: f64) -> String {
-    if x == 0.0 || (1e-3..1e6).contains(&x.abs()) { format!("{x:.6}") } else { format!("{x:.4e}") }
 }

@@ -6,7 +6,10 @@ use messages::RIGHT;
 use multibody::{Data, Model};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::{Bench, Finding, Findings, Result, Rule, slope, stepper};
+use crate::search::slope;
+
+use super::Rule::{AtLeast, AtMost, Within};
+use super::{Bench, Finding, Findings, Result, row, stepper};
 
 pub(super) fn all(bench: &Bench) -> Findings {
     let mut findings = euler_angles();
@@ -30,7 +33,8 @@ fn euler_angles() -> Vec<Finding> {
     };
     let of = |theta: f64| {
         let regime = format!("z-x-z Euler angles {theta} rad from upright: condition 2/theta");
-        Finding::new("F22", &regime, "", [2.0 / theta, condition(theta)], Rule::Within(0.01))
+        row("F22", "", Within(0.01))
+            .of(regime, [2.0 / theta, condition(theta)])
             .says("not used: quaternions", true)
     };
     let mut findings: Vec<Finding> = [0.1, 0.01, 0.001].map(of).into();
@@ -48,7 +52,7 @@ fn euler_angles() -> Vec<Finding> {
     let error = q.angle_to(&UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 0.5));
     let numbers = [h.powi(4) / 1920.0, error];
     let regime = "quaternion, Runge-Kutta 4 at 10 ms, 1 rad/s through upright: error after 1 s";
-    findings.push(Finding::new("F22", regime, "rad", numbers, Rule::Within(0.01)));
+    findings.push(row("F22", "rad", Within(0.01)).of(regime, numbers));
     findings
 }
 
@@ -82,13 +86,14 @@ fn knee(bench: &Bench) -> Findings {
     for q in [0.5, 0.1, 0.05] {
         let (predicted, speed, damped) = at(q)?;
         let regime = format!("knee at {q} rad, 0.1 m/s along the leg: its speed");
-        let finding = Finding::new("F23", &regime, "rad/s", [predicted, speed], Rule::Within(1e-3));
+        let finding = row("F23", "rad/s", Within(1e-3)).of(regime, [predicted, speed]);
         findings.push(if damped { finding.says("damped without need", false) } else { finding });
     }
     let (wanted, speed, damped) = at(1e-4)?;
     let regime = "knee at 1e-4 rad: its speed, damped, against the one asked for";
     findings.push(
-        Finding::new("F23", regime, "rad/s", [wanted / 10.0, speed.abs()], Rule::AtMost)
+        row("F23", "rad/s", AtMost)
+            .of(regime, [wanted / 10.0, speed.abs()])
             .says("damped: true, counted as limited", damped),
     );
     Ok(findings)
@@ -133,19 +138,11 @@ fn oscillator() -> Vec<Finding> {
     let euler = (60_000.0 * (z * z).ln_1p()).exp();
     let fourth = 60_000.0 * (z.powi(6) / 72.0 - z.powi(8) / 576.0);
     vec![
-        Finding::new(
-            "E2",
-            "swing of 1 Hz, explicit Euler at 1 ms: energy after a minute, times",
-            "",
-            [euler, run(false)],
-            Rule::Within(1e-6),
-        ),
-        Finding::new(
-            "E2",
+        row("E2", "", Within(1e-6))
+            .of("swing of 1 Hz, explicit Euler at 1 ms: energy after a minute, times", [euler, run(false)]),
+        row("E2", "", Within(0.01)).of(
             "swing of 1 Hz, Runge-Kutta 4 at 1 ms: share of energy lost in a minute",
-            "",
             [fourth, 1.0 - run(true)],
-            Rule::Within(0.01),
         ),
     ]
 }
@@ -183,19 +180,11 @@ fn flight(bench: &Bench) -> Findings {
     let points = [8e-3, 4e-3].map(|h| [h, drift(&model, h, 5.0)]);
     let minute = drift(&model, 4e-3, 60.0);
     Ok(vec![
-        Finding::new(
-            "E2",
+        row("E2", "", AtLeast).of(
             "robot thrown, joints free, Runge-Kutta 4: order of the drift of energy",
-            "",
             [3.6, slope(&points)],
-            Rule::AtLeast,
         ),
-        Finding::new(
-            "E2",
-            "robot thrown, Runge-Kutta 4 at 4 ms: share of energy after a minute",
-            "",
-            [1e-3, minute],
-            Rule::AtMost,
-        ),
+        row("E2", "", AtMost)
+            .of("robot thrown, Runge-Kutta 4 at 4 ms: share of energy after a minute", [1e-3, minute]),
     ])
 }

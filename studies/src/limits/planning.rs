@@ -5,7 +5,10 @@
 use planner::cog_method::BoundarySolver;
 use planner::collocation::Collocation;
 
-use super::{Bench, Finding, Findings, Rule, slope, stepper};
+use crate::search::slope;
+
+use super::Rule::Within;
+use super::{Bench, Findings, row, stepper};
 
 const HEIGHT: f64 = 0.9;
 const OMEGA: f64 = 3.0;
@@ -58,27 +61,14 @@ pub(super) fn collocation(_: &Bench) -> Findings {
     let doubling = 4.0 * 2f64.ln() / (late / early).ln();
     let points = [13, 25, 49, 97].map(|n| [1.0 / (n - 1) as f64, collocate(n, 4.0).0]);
     Ok(vec![
-        Finding::new(
-            "F16",
-            "pendulum integrated forward from its exact plan: error doubles every",
-            "s",
-            [2f64.ln() / growth().sqrt(), doubling],
-            Rule::Within(0.01),
-        )
-        .says("not done: plans are boundary value problems", true),
-        Finding::new(
-            "F16",
-            "boundary value problem, horizon twice as long: error, times",
-            "",
-            [1.0, long / short],
-            Rule::Within(0.05),
-        ),
-        Finding::new(
-            "F20",
-            "collocation with parabolas, smooth: order",
-            "",
-            [4.0, slope(&points)],
-            Rule::Within(0.05),
-        ),
+        row("F16", "s", Within(0.01))
+            .of(
+                "pendulum integrated forward from its exact plan: error doubles every",
+                [2f64.ln() / growth().sqrt(), doubling],
+            )
+            .says("not done: plans are boundary value problems", true),
+        row("F16", "", Within(0.05))
+            .of("boundary value problem, horizon twice as long: error, times", [1.0, long / short]),
+        row("F20", "", Within(0.05)).of("collocation with parabolas, smooth: order", [4.0, slope(&points)]),
     ])
 }

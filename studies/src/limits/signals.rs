@@ -7,8 +7,9 @@ use messages::command::PushCommand;
 use messages::{EventCode, JointMode, JointTargets, MAX_JOINTS, Wrench};
 use sim_backend::sensors::{SensorSet, Truth};
 
+use super::Rule::{AtMost, Within};
 use super::held::Held;
-use super::{Bench, Finding, Findings, Result, Rule};
+use super::{Bench, Finding, Findings, Result, row};
 
 pub(super) fn all(bench: &Bench) -> Findings {
     let mut findings = quantised_speed(bench)?;
@@ -46,20 +47,9 @@ fn quantised_speed(bench: &Bench) -> Findings {
     let [mean, most] =
         [[delta / (cycle * 6f64.sqrt()), (square / f64::from(n)).sqrt()], [delta / cycle, largest]];
     Ok(vec![
-        Finding::new(
-            "F26",
-            "speed from differences, 16 bit, 1 kHz: root mean square error",
-            "rad/s",
-            mean,
-            Rule::Within(0.05),
-        ),
-        Finding::new(
-            "F26",
-            "speed from differences, 16 bit, 1 kHz: largest error",
-            "rad/s",
-            most,
-            Rule::Within(0.05),
-        ),
+        row("F26", "rad/s", Within(0.05))
+            .of("speed from differences, 16 bit, 1 kHz: root mean square error", mean),
+        row("F26", "rad/s", Within(0.05)).of("speed from differences, 16 bit, 1 kHz: largest error", most),
     ])
 }
 
@@ -94,7 +84,7 @@ fn target(bench: &Bench) -> Finding {
         told |= matches!(joints.take_event(), Some((EventCode::TargetNotFinite, _)));
     }
     let regime = "joint targets NaN and 1e300: way that goes out on the bus";
-    Finding::new("N1", regime, "rad", [1e-8, largest], Rule::AtMost).says("TargetNotFinite, joint", told)
+    row("N1", "rad", AtMost).of(regime, [1e-8, largest]).says("TargetNotFinite, joint", told)
 }
 
 /// A push that no simulation survives: numbers that are not finite in any record after it.
@@ -119,5 +109,5 @@ fn push(bench: &Bench, depth: u8, name: &str, force: f64) -> Result<Finding> {
     let regime = format!("type {depth}, push of {name} N: numbers in the records that are none");
     let said = event.map_or("nothing".into(), |(e, _)| format!("{e:?}"));
     let told = matches!(event, Some((EventCode::Diverged, _)));
-    Ok(Finding::new("N2", &regime, "", [0.0, bad as f64], Rule::AtMost).says(&said, told))
+    Ok(row("N2", "", AtMost).of(regime, [0.0, bad as f64]).says(&said, told))
 }

@@ -10,9 +10,10 @@ use sim_backend::drive::Drive;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs};
 
+use super::Rule::{AtMost, Within};
 use super::held::Held;
 use super::linear::{eigenvalues, euler_limit, runge_kutta_limit};
-use super::{Bench, Finding, Findings, Result, Rule, largest_stable, stepper};
+use super::{Bench, Findings, Result, largest_stable, row, stepper};
 
 /// Where the stability region of the classical Runge-Kutta method ends on the real axis.
 const REAL_AXIS: f64 = 2.785_293_563_405_282;
@@ -43,22 +44,10 @@ pub(super) fn free_layer(bench: &Bench) -> Findings {
         !(d[0].abs() <= 1e-3)
     };
     let limit = |runge_kutta: bool| largest_stable(0.0, 10.0 * time, |h| !grows(runge_kutta, h));
-    let numbers = [[2.0 * time, limit(false)], [REAL_AXIS * time, limit(true)]];
+    let numbers = [[2.0 * time, limit(false)?], [REAL_AXIS * time, limit(true)?]];
     Ok(vec![
-        Finding::new(
-            "F1",
-            "explicit Euler, free layer: largest step 2 B/K",
-            "s",
-            numbers[0],
-            Rule::Within(1e-3),
-        ),
-        Finding::new(
-            "F4",
-            "Runge-Kutta 4, free layer: largest step 2.785 B/K",
-            "s",
-            numbers[1],
-            Rule::Within(1e-3),
-        ),
+        row("F1", "s", Within(1e-3)).of("explicit Euler, free layer: largest step 2 B/K", numbers[0]),
+        row("F4", "s", Within(1e-3)).of("Runge-Kutta 4, free layer: largest step 2.785 B/K", numbers[1]),
     ])
 }
 
@@ -82,11 +71,11 @@ pub(super) fn mass_on_layer(_: &Bench) -> Findings {
             }
             x[1].abs() < 1e-6
         };
-        let numbers = [euler_limit(&values), largest_stable(0.0, 0.05, stable)];
+        let numbers = [euler_limit(&values), largest_stable(0.0, 0.05, stable)?];
         let regime = format!("explicit Euler, {name} of {m} kg on a layer: -2 Re s/|s|^2");
-        Finding::new("F2", &regime, "s", numbers, Rule::Within(1e-3))
+        Ok(row("F2", "s", Within(1e-3)).of(regime, numbers))
     };
-    Ok([("mass", 60.0), ("toe", 0.797)].map(finding).into())
+    [("mass", 60.0), ("toe", 0.797)].into_iter().map(finding).collect()
 }
 
 /// A plant at rest on its feet, and how it takes steps.
@@ -125,7 +114,7 @@ impl Standing {
 
     /// Largest step from `low` to `high` in which a small change of the speeds does not grow, and, where there are no servos
     /// that still settle, the robot stays at rest: swings that have grown to their end look alike, changed or not.
-    fn largest(&mut self, integrator: Integrator, low: f64, high: f64) -> f64 {
+    fn largest(&mut self, integrator: Integrator, low: f64, high: f64) -> Result<f64> {
         let most = if self.plant.layout().joints == 0 { 1e-3 } else { f64::INFINITY };
         let speed = self.plant.layout().speed();
         let rest = self.state.clone();
@@ -164,10 +153,10 @@ pub(super) fn whole_robot(bench: &Bench) -> Findings {
     let mut standing = Standing::new(bench, 1, 1e-3, 3.0)?;
     let values = standing.eigenvalues()?;
     let finding = |(id, name, integrator, predicted): (_, &str, _, f64)| {
-        let measured = standing.largest(integrator, 0.2 * predicted, 3.0 * predicted);
+        let measured = standing.largest(integrator, 0.2 * predicted, 3.0 * predicted)?;
         let (said, told) = told(bench, 1, integrator, predicted)?;
         let regime = format!("{name}, standing robot of type 1");
-        Ok(Finding::new(id, &regime, "s", [predicted, measured], Rule::Within(0.05)).says(&said, told))
+        Ok(row(id, "s", Within(0.05)).of(regime, [predicted, measured]).says(&said, told))
     };
     [
         ("F2", "explicit Euler", Integrator::Euler, euler_limit(&values)),
@@ -183,10 +172,10 @@ pub(super) fn servo(bench: &Bench) -> Findings {
     let mut standing = Standing::new(bench, 2, 2e-5, 0.4)?;
     let values = standing.eigenvalues()?;
     let finding = |(id, name, integrator, predicted): (_, &str, _, f64)| {
-        let measured = standing.largest(integrator, 0.2 * predicted, 3.0 * predicted);
+        let measured = standing.largest(integrator, 0.2 * predicted, 3.0 * predicted)?;
         let (said, told) = told(bench, 2, integrator, predicted)?;
         let regime = format!("{name}, standing robot of type 2 with its servos");
-        Ok(Finding::new(id, &regime, "s", [predicted, measured], Rule::Within(0.05)).says(&said, told))
+        Ok(row(id, "s", Within(0.05)).of(regime, [predicted, measured]).says(&said, told))
     };
     [
         ("F3", "explicit Euler", Integrator::Euler, euler_limit(&values)),
@@ -208,25 +197,14 @@ pub(super) fn circuit(bench: &Bench) -> Findings {
                 di[0] = motor.current_rate(i[0], -motor.inductance * bandwidth * i[0], 0.0);
             });
         }
-        current[0].abs() < 1.0
+        current[0].abs() <= 1.0
     };
     let predicted = 2.0 * motor.inductance / (motor.resistance + motor.inductance * bandwidth);
-    let numbers = [predicted, largest_stable(0.0, 1e-2, stable)];
+    let numbers = [predicted, largest_stable(0.0, 1e-2, stable)?];
     let exact = motor.current_after(1.0, 0.0, 0.0, 1000.0 * predicted);
     Ok(vec![
-        Finding::new(
-            "F3",
-            "explicit Euler, current loop of a motor: 2 L/(R + L w_c)",
-            "s",
-            numbers,
-            Rule::Within(1e-3),
-        ),
-        Finding::new(
-            "F3",
-            "exact step of the circuit, 1000 times as long: current left of 1 A",
-            "A",
-            [1e-12, exact.abs()],
-            Rule::AtMost,
-        ),
+        row("F3", "s", Within(1e-3)).of("explicit Euler, current loop of a motor: 2 L/(R + L w_c)", numbers),
+        row("F3", "A", AtMost)
+            .of("exact step of the circuit, 1000 times as long: current left of 1 A", [1e-12, exact.abs()]),
     ])
 }

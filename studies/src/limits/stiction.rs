@@ -5,7 +5,10 @@ use config::scene::{Integrator, Scene};
 use sim_backend::SimBackend;
 use sim_backend::stiff::{Limits, Stiff, Why};
 
-use super::{Bench, Finding, Findings, Rule, slope};
+use crate::search::slope;
+
+use super::Rule::{AtMost, Within};
+use super::{Bench, Findings, row};
 
 /// A gear of dry friction only \[N m\], a rotor \[kg m^2\], a step \[s\].
 const GEAR: HarmonicFriction = HarmonicFriction { starting: 0.1, load: 0.0, viscous: 0.0, coupled: 0.0 };
@@ -30,14 +33,9 @@ pub(super) fn chatter(_: &Bench) -> Findings {
     let predicted = STEP * (GEAR.starting + MOTOR) / INERTIA;
     let [at_rest, chatter] = [[0.0, left], [predicted, largest]];
     Ok(vec![
-        Finding::new(
-            "F6",
-            "explicit Euler with sign(w) T_0: chatter h (T_0 + T)/J",
-            "rad/s",
-            chatter,
-            Rule::Within(0.01),
-        ),
-        Finding::new("F6", "implicit step on the same rotor: speed", "rad/s", at_rest, Rule::AtMost),
+        row("F6", "rad/s", Within(0.01))
+            .of("explicit Euler with sign(w) T_0: chatter h (T_0 + T)/J", chatter),
+        row("F6", "rad/s", AtMost).of("implicit step on the same rotor: speed", at_rest),
     ])
 }
 
@@ -49,7 +47,7 @@ pub(super) fn smoothed_sign(_: &Bench) -> Findings {
     }
     let numbers = [ramp * MOTOR / GEAR.starting, speed];
     let regime = "ramp of 1 rad/s instead of the sign: rotor below its friction creeps";
-    Ok(vec![Finding::new("F6", regime, "rad/s", numbers, Rule::Within(1e-3))])
+    Ok(vec![row("F6", "rad/s", Within(1e-3)).of(regime, numbers)])
 }
 
 /// F6: the robot of type 2 without supply, every joint held by dry friction and carrying its load: largest change of an angle
@@ -78,7 +76,7 @@ pub(super) fn at_rest(bench: &Bench) -> Findings {
         most = most.max(seconds * torque * h / (STIFFNESS * drive.rotor_inertia));
         coupled = coupled.max(moved);
     }
-    let of = |regime, numbers| Finding::new("F6", regime, "rad", numbers, Rule::AtMost);
+    let of = |regime, numbers| row("F6", "rad", AtMost).of(regime, numbers);
     Ok(vec![
         of("semi-implicit, type 2 without supply: joints of one drive creep in 10 s", [0.0, single]),
         of("semi-implicit, type 2 without supply: ankles creep in 10 s", [most, coupled]),
@@ -104,8 +102,5 @@ pub(super) fn adaptive(_: &Bench) -> Findings {
     let told = matches!(ended, Err(gave_up) if gave_up.why == Why::Calls && gave_up.state == 1);
     let regime = "BDF on sign(w) T_0 at rest: power of the tolerance in its evaluations";
     let numbers = [-1.0, slope(&points)];
-    Ok(vec![
-        Finding::new("F5", regime, "", numbers, Rule::Within(0.15))
-            .says("GaveUp: calls, state that chatters", told),
-    ])
+    Ok(vec![row("F5", "", Within(0.15)).of(regime, numbers).says("GaveUp: calls, state that chatters", told)])
 }

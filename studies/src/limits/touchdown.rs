@@ -5,7 +5,10 @@
 
 use ::contact::point::{self, Law};
 
-use super::{Bench, Finding, Findings, Rule, slope, stepper};
+use crate::search::slope;
+
+use super::Rule::Within;
+use super::{Bench, Findings, row, stepper};
 
 const MASS: f64 = 60.0;
 const LAW: Law = Law { stiffness: [2e5; 3], damping: [2e3; 3], friction: 0.6, recovery: 0.0 };
@@ -75,26 +78,11 @@ fn measured(runge_kutta: bool, located: bool) -> f64 {
 /// F7: every method of fixed steps is of first order across a touchdown; a step that ends there restores the fourth.
 pub(super) fn order(_: &Bench) -> Findings {
     Ok(vec![
-        Finding::new(
-            "F7",
-            "Runge-Kutta 4 across a touchdown: order",
-            "",
-            [1.0, measured(true, false)],
-            Rule::Within(0.1),
-        ),
-        Finding::new(
-            "F7",
-            "Runge-Kutta 4 with a step that ends at touchdown: order",
-            "",
-            [4.0, measured(true, true)],
-            Rule::Within(0.05),
-        ),
-        Finding::new(
-            "F7",
-            "explicit Euler across a touchdown: order",
-            "",
-            [1.0, measured(false, false)],
-            Rule::Within(0.1),
-        ),
+        row("F7", "", Within(0.1))
+            .of("Runge-Kutta 4 across a touchdown: order", [1.0, measured(true, false)]),
+        row("F7", "", Within(0.05))
+            .of("Runge-Kutta 4 with a step that ends at touchdown: order", [4.0, measured(true, true)]),
+        row("F7", "", Within(0.1))
+            .of("explicit Euler across a touchdown: order", [1.0, measured(false, false)]),
     ])
 }

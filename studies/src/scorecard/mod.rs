@@ -13,9 +13,12 @@ pub(crate) mod walk;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use chain::parallel;
 use config::Setup;
 use serde::Serialize;
+use serde_json::json;
 
+use crate::sheet::{Column, Sheet, plain};
 use entries::{ENTRIES, PICTURED, PUSHES};
 
 /// Errors are sentences: they come from other threads, which boxed ones cannot.
@@ -38,7 +41,7 @@ pub struct Order<'a> {
 
 /// What was found.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct Scorecard {
     /// Seed of every scene.
     pub seed: u64,
     /// Goals met.
@@ -102,7 +105,7 @@ struct Task<'a> {
 ///
 /// # Errors
 /// A configuration is wrong, or no entry has this name.
-pub fn run(order: &Order<'_>, progress: Progress<'_>) -> Result<Report> {
+pub fn run(order: &Order<'_>, progress: Progress<'_>) -> Result<Scorecard> {
     let mut tasks = tasks(order);
     if let Some(only) = order.only {
         let known: Vec<String> = tasks.iter().map(|task| task.name.clone()).collect();
@@ -117,7 +120,7 @@ pub fn run(order: &Order<'_>, progress: Progress<'_>) -> Result<Report> {
     // Rows of one walk share its processor time.
     let alone = |a: &Row, b: &Row| a.entry == b.entry && a.cycle_s == b.cycle_s && a.cpu_s == b.cpu_s;
     let cpu_s = rows.chunk_by(alone).map(|walk| walk[0].cpu_s).sum();
-    Ok(Report { seed: order.seed, met, goals, cpu_s, rows })
+    Ok(Scorecard { seed: order.seed, met, goals, cpu_s, rows })
 }
 
 /// Scenes of which the thesis shows pictures, set up as in the table, with the shortest bus cycle.
@@ -151,32 +154,15 @@ fn tasks<'a>(order: &'a Order<'a>) -> Vec<Task<'a>> {
 /// All tasks on all cores; rows in their order. The last ones, which take longest, are begun first, so that no core
 /// waits for them at the end.
 fn perform(tasks: &[Task<'_>], progress: Progress<'_>) -> Result<Vec<Row>> {
-    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let workers = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut found: Vec<(usize, Result<Vec<Row>>)> = std::thread::scope(|scope| {
-        let work = || {
-            let mut mine = Vec::new();
-            while let Some(k) = tasks.len().checked_sub(next.fetch_add(1, Ordering::Relaxed) + 1) {
-                mine.push((k, (tasks[k].work)()));
-                progress(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len(), &tasks[k].name);
-            }
-            mine
-        };
-        let threads: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        threads
-            .into_iter()
-            .map(|t| t.join().map_err(|_| "a walk panicked".to_owned()))
-            .collect::<Result<Vec<_>>>()
-    })?
-    .into_iter()
-    .flatten()
-    .collect();
-    found.sort_by_key(|(k, _)| *k);
-    let mut rows = Vec::new();
-    for (_, of_task) in found {
-        rows.extend(of_task?);
-    }
-    Ok(rows)
+    let done = AtomicUsize::new(0);
+    let mut found = parallel::map(tasks.len(), |k| {
+        let task = &tasks[tasks.len() - 1 - k];
+        let rows = (task.work)();
+        progress(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len(), &task.name);
+        rows
+    });
+    found.reverse();
+    Ok(found.into_iter().collect::<Result<Vec<_>>>()?.concat())
 }
 
 /// As [`chain::figures::Figures`] says it.
@@ -184,40 +170,37 @@ fn depth_of(scene: &config::Scene) -> String {
     format!("type {}, {:?} x {}", scene.depth, scene.integrator, scene.substeps)
 }
 
-/// The report as lines for people.
-pub fn table(report: &Report) -> String {
-    let mut text = String::new();
-    let walk = |a: &Row, b: &Row| a.entry == b.entry && a.cycle_s == b.cycle_s && a.depth == b.depth;
-    for rows in report.rows.chunk_by(walk) {
-        let head = &rows[0];
-        text += &format!(
-            "{} ({}): {}, cycle {} ms, {:.1} s CPU\n",
-            head.entry,
-            head.scene,
-            head.depth,
-            1e3 * head.cycle_s,
-            head.cpu_s
-        );
-        for row in rows {
-            let ours = row.ours.map_or("-".into(), |x| format!("{} {}", figure(x), row.unit));
-            let goal = match row.goal {
-                Goal::Met => "met",
-                Goal::Missed => "MISSED",
-                Goal::Measured => "",
+const COLUMNS: &[Column] =
+    &[plain("/0", ""), plain("/1", ""), plain("/2", ""), plain("/3", ""), plain("/4", "")];
+
+impl Scorecard {
+    /// A heading and a table per walk.
+    pub fn sheet(&self) -> Sheet {
+        let mut sheet = Sheet::default();
+        let walk = |a: &Row, b: &Row| a.entry == b.entry && a.cycle_s == b.cycle_s && a.depth == b.depth;
+        for rows in self.rows.chunk_by(walk) {
+            let Row { entry, scene, depth, cycle_s, cpu_s, .. } = &rows[0];
+            sheet.line(format!("{entry} ({scene}): {depth}, cycle {} ms, {cpu_s:.1} s CPU", 1e3 * cycle_s));
+            let shown = |row: &Row| {
+                let ours = row.ours.map_or("-".into(), |x| format!("{} {}", figure(x), row.unit));
+                let goal = match row.goal {
+                    Goal::Met => "met",
+                    Goal::Missed => "MISSED",
+                    Goal::Measured => "",
+                };
+                json!([format!("  {}", row.what), row.demanded, ours, goal, row.published])
             };
-            text += &format!("  {:33}{:26}{:26}{:8}{}\n", row.what, row.demanded, ours, goal, row.published);
+            sheet.table(COLUMNS, &rows.iter().map(shown).collect::<Vec<_>>());
+            let mut notes: Vec<&String> =
+                rows.iter().map(|row| &row.note).filter(|n| !n.is_empty()).collect();
+            notes.dedup();
+            notes.iter().for_each(|note| sheet.line(format!("    {note}")));
         }
-        let mut notes: Vec<&String> =
-            rows.iter().map(|row| &row.note).filter(|note| !note.is_empty()).collect();
-        notes.dedup();
-        for note in notes {
-            text += &format!("    {note}\n");
-        }
+        let Self { met, goals, seed, cpu_s, .. } = self;
+        sheet.line(format!("{met} of {goals} goals met, seed {seed}, {cpu_s:.0} s CPU"));
+        sheet.facts(self);
+        sheet
     }
-    text + &format!(
-        "{} of {} goals met, seed {}, {:.0} s CPU",
-        report.met, report.goals, report.seed, report.cpu_s
-    )
 }
 
 /// Three digits, no needless ones.

@@ -22,9 +22,8 @@ pub(super) fn rows(order: &Order<'_>, direction: usize, cycle: f64) -> Result<Ve
     let starts = push::at_instants(&setup, 2 * instants).map_err(|e| e.to_string())?;
     let survived: Vec<f64> = starts[..instants]
         .iter()
-        .map(|start| push::largest(start, axis, 1.0))
-        .map(|impulse| impulse / setup.robot.total_mass)
-        .collect();
+        .map(|start| push::largest(start, axis, 1.0).map(|impulse| impulse / setup.robot.total_mass))
+        .collect::<Result<_>>()?;
     let least = survived.iter().copied().fold(f64::INFINITY, f64::min);
     let each: Vec<String> = survived.iter().map(|x| format!("{x:.3}")).collect();
     Ok(vec![Row {

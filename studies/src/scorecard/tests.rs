@@ -32,7 +32,7 @@ fn a_walk_is_a_row_for_each_demand_and_the_same_one_twice() {
     for (a, b) in report.rows.iter().zip(&again.rows) {
         assert_eq!((a.ours, a.goal), (b.ours, b.goal), "{}", a.what);
     }
-    assert!(table(&report).contains("turn per step"), "{}", table(&report));
+    assert!(report.sheet().text().contains("turn per step"), "{}", report.sheet().text());
 }
 
 /// A walk that ends in a fall says so in every row, and none of them shows a figure.

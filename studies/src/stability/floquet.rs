@@ -15,8 +15,6 @@
 //! Left out is where the robot is on the ground and where it heads: nothing feeds that back, the map does not change with it,
 //! and its three multipliers are 1. Plans depend on plans alone, and joints on their targets of the cycle before.
 
-use std::path::Path;
-
 use config::Setup;
 use messages::Command;
 use messages::command::PushCommand;
@@ -25,6 +23,8 @@ use serde::Serialize;
 
 use super::poincare::{self, Multipliers};
 use crate::push::stride;
+use crate::sheet::{Column, fixed, plain, scientific};
+use crate::{Error, Given, Sheet, Study};
 use chain::Chain;
 
 /// Scenes shown unless another one is asked for.
@@ -52,68 +52,114 @@ const GROUPS: [(&str, f64); 8] = [
     ("filtered forces", 0.2),
 ];
 
-/// What was found.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// One row per scene.
-    pub rows: Vec<Row>,
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Floquet {
+    /// Only this scene; default: walking at 1 and 2 km/h.
+    #[arg(long)]
+    pub scene: Option<String>,
+    /// Steps of the differences over those of the table in docs/stability.md.
+    #[arg(long, default_value_t = 1.0)]
+    pub step: f64,
 }
+
+/// The gait of a scene.
+const GAIT: &[Column] = &[
+    plain("/scene", "scene"),
+    fixed("/period_s", "stride [s]", 3),
+    plain("/states", "states"),
+    scientific("/residual/0", "tilt changes by [rad]", 1),
+    scientific("/residual/1", "velocity by [m/s]", 1),
+    fixed("/largest", "|lambda|_max", 4),
+    fixed("/largest_with_larger_steps", "with larger steps", 4),
+    fixed("/spread", "J changes by [%]", 1).times(100.0),
+    fixed("/asymmetry", "one-sided by [%]", 1).times(100.0),
+    plain("/smooth", "smooth"),
+    fixed("/decay", "second stride leaves", 4),
+];
+/// What is left of one step of a group of states after a stride, at most, and with larger steps; its share of the slowest
+/// mode.
+const LEFT: &[Column] = &[
+    plain("/0", "of one step of"),
+    fixed("/1/0", "is left after a stride", 3),
+    fixed("/1/1", "of a larger one", 3),
+    fixed("/2", "share of the slowest mode [%]", 0).times(100.0),
+];
+/// Numbers by rank or by stride.
+const LISTS: &[Column] = &[plain("/0", ""), scientific("/1", "", 2)];
 
 /// The gait of one scene.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+struct Row {
     /// Name of the scene.
-    pub scene: String,
+    scene: String,
     /// \[s\] A stride.
-    pub period_s: f64,
+    period_s: f64,
     /// \[1\] States of the map.
-    pub states: usize,
+    states: usize,
     /// \[rad, m/s\] What tilt and velocity change by from one stride to the next without a disturbance.
-    pub residual: [f64; 2],
+    residual: [f64; 2],
     /// |lambda|_max with the smaller steps.
-    pub largest: f64,
+    largest: f64,
     /// The same with steps four times as large.
-    pub largest_with_larger_steps: f64,
+    largest_with_larger_steps: f64,
     /// \[1\] Change of the map's Jacobian with the step.
-    pub spread: f64,
+    spread: f64,
     /// \[1\] Difference of forward and backward differences, smaller and larger steps.
-    pub asymmetry: [f64; 2],
+    asymmetry: [f64; 2],
     /// Whether the map is smooth enough for its multipliers to mean something.
-    pub smooth: bool,
+    smooth: bool,
     /// The ten largest multipliers: real, imaginary.
-    pub multipliers: Vec<[f64; 2]>,
+    multipliers: Vec<[f64; 2]>,
     /// What is left of one step of a state after a stride, in steps, the most of each group: smaller and larger steps.
-    pub left: Vec<(&'static str, [f64; 2])>,
+    left: Vec<(&'static str, [f64; 2])>,
     /// What the mode of the largest one consists of: group of states, share.
-    pub made_of: Vec<(&'static str, f64)>,
+    made_of: Vec<(&'static str, f64)>,
     /// \[1\] Deviation after a small push, stride by stride, in steps of the states.
-    pub pushed: Vec<f64>,
+    pushed: Vec<f64>,
     /// \[1\] The same with all states disturbed.
-    pub shaken: Vec<f64>,
+    shaken: Vec<f64>,
     /// \[1\] What the second stride leaves of the latter; where it is far above its floor, |lambda|_max or less.
-    pub decay: f64,
+    decay: f64,
 }
 
-/// The Floquet multipliers of the shipped gaits, or of `only`.
-///
-/// # Errors
-/// A scene is wrong, not of type 1, or its robot falls.
-pub fn run(
-    config: &Path,
-    only: Option<&str>,
-    step: f64,
-    mut progress: impl FnMut(&str),
-) -> Result<Report, Box<dyn std::error::Error>> {
-    let scenes: Vec<&str> = only.map_or(SCENES.to_vec(), |scene| vec![scene]);
-    let mut rows = Vec::new();
-    for scene in scenes {
-        progress(scene);
-        rows.push(of_scene(Setup::load(config, scene)?, step)?);
+impl Study for Floquet {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        let scenes: Vec<&str> = self.scene.as_deref().map_or(SCENES.to_vec(), |scene| vec![scene]);
+        let mut rows = Vec::new();
+        for scene in scenes {
+            (given.progress)(0, 0, scene);
+            rows.push(of_scene(Setup::load(given.config, scene)?, self.step)?);
+        }
+        let mut sheet = Sheet::titled(format!(
+            "Floquet multipliers of the gait: what is left of a small deviation after one stride; larger steps are {FACTOR} \
+             times as large"
+        ));
+        sheet.rows("rows", GAIT, &rows);
+        for row in &rows {
+            sheet.line(format!("\n{}", row.scene));
+            // By group of states: what a step of it leaves, and its share of the mode that leaves most.
+            let share = |name| row.made_of.iter().find(|made| made.0 == name).map(|made| made.1);
+            sheet.table(
+                LEFT,
+                &row.left.iter().map(|left| (left.0, left.1, share(left.0))).collect::<Vec<_>>(),
+            );
+            // Stride by stride, for who wants to see the decay itself.
+            let size: Vec<f64> = row.multipliers.iter().map(|[a, b]| a.hypot(*b)).collect();
+            let push = format!("a push of {PUSH} N s leaves, stride by stride");
+            sheet.table(
+                LISTS,
+                &[("|lambda_i|", &size), (push.as_str(), &row.pushed), ("all states disturbed", &row.shaken)],
+            );
+            if !row.smooth {
+                sheet.line("NOT SMOOTH, the multipliers are no proof");
+            }
+        }
+        Ok(sheet)
     }
-    Ok(Report { rows })
 }
 
-fn of_scene(mut setup: Setup, step: f64) -> Result<Row, Box<dyn std::error::Error>> {
+fn of_scene(mut setup: Setup, step: f64) -> Result<Row, Error> {
     walk_on(&mut setup);
     let (begin, end) = stride(&setup, SETTLED)?;
     let mut chain = Chain::new(&setup)?;
@@ -279,49 +325,4 @@ fn parts(x: &[f64]) -> (UnitQuaternion<f64>, Vector3<f64>) {
     let o = UnitQuaternion::from_quaternion(Quaternion::new(x[6], x[3], x[4], x[5]));
     let heading = UnitQuaternion::from_quaternion(Quaternion::new(o.w, 0.0, 0.0, o.k));
     (heading, (heading.inverse() * o).scaled_axis())
-}
-
-/// The report as lines for people.
-pub fn table(r: &Report) -> String {
-    let mut text =
-        String::from("Floquet multipliers of the gait: what is left of a small deviation after one stride");
-    for row in &r.rows {
-        text += &format!(
-            "\n\n{}: stride {:.3} s, {} states; from stride to stride tilt changes by {:.1e} rad, velocity by {:.1e} m/s\n\
-             |lambda|_max {:.4}, with steps {FACTOR} times as large {:.4}; J changes by {:.1} % with the step, one-sided \
-             differences by {:.1} % and {:.1} %{}",
-            row.scene,
-            row.period_s,
-            row.states,
-            row.residual[0],
-            row.residual[1],
-            row.largest,
-            row.largest_with_larger_steps,
-            100.0 * row.spread,
-            100.0 * row.asymmetry[0],
-            100.0 * row.asymmetry[1],
-            if row.smooth { "" } else { ": NOT SMOOTH, the multipliers are no proof" }
-        );
-        let each: String = row.multipliers.iter().map(|[a, b]| format!(" {:.3}", a.hypot(*b))).collect();
-        let made: Vec<String> = row
-            .made_of
-            .iter()
-            .filter(|(_, s)| *s > 0.01)
-            .map(|(g, s)| format!("{g} {:.0} %", 100.0 * s))
-            .collect();
-        text += "\nof one step is left after a stride, at most:";
-        for (group, [small, large]) in &row.left {
-            text += &format!(" {group} {small:.3} ({large:.3}),");
-        }
-        let list = |of: &[f64]| of.iter().map(|d| format!(" {d:.2e}")).collect::<String>();
-        text += &format!(
-            "\n|lambda_i|{each}\nthe slowest mode: {}\na push of {PUSH} N s leaves, stride by stride:{}\nall states \
-             disturbed:{}; the second stride leaves {:.4}",
-            made.join(", "),
-            list(&row.pushed),
-            list(&row.shaken),
-            row.decay
-        );
-    }
-    text
 }

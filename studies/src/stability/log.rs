@@ -6,49 +6,54 @@ use serde::Serialize;
 
 use super::picture;
 use super::walk::{self, Instant};
+use crate::Sheet;
+use crate::sheet::{Column, fixed, plain};
+
+/// Distances to what must not be crossed.
+const COLUMNS: &[Column] = &[
+    plain("/name", "distance to the border of"),
+    plain("/unit", "unit"),
+    fixed("/least", "least", 4),
+    fixed("/at_s", "at [s]", 3),
+    fixed("/mean", "mean", 4),
+    fixed("/defined", "defined [%]", 1).times(100.0),
+    fixed("/outside", "outside [%]", 1).times(100.0),
+];
 
 /// What a log says.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Name of the robot.
-    pub robot: String,
-    /// Name of the scene.
-    pub scene: String,
-    /// \[1\] Coefficient of friction that was assumed.
-    pub friction: f64,
+pub(super) struct Contact {
     /// \[1\] Cycles in which something carries the robot, all others being left out.
-    pub cycles: usize,
+    pub(super) cycles: usize,
     /// Distances to what must not be crossed.
-    pub margins: Vec<Margin>,
+    pub(super) margins: Vec<Margin>,
     /// \[N m\] Largest absolute rate of the angular momentum about the centre of gravity, x, y, z.
-    pub momentum_rate_max_n_m: [f64; 3],
+    pub(super) momentum_rate_max_n_m: [f64; 3],
     /// \[m\] Largest distance of the point of zero rate from the zero-moment point.
-    pub zero_rate_from_zmp_max_m: f64,
+    pub(super) zero_rate_from_zmp_max_m: f64,
     /// What gives way first where the wrench is nearest to the border of its cone.
-    pub nearest_border: &'static str,
+    pub(super) nearest_border: &'static str,
     /// \[N\] Root mean square of what forces and accelerations in the log differ by.
-    pub imbalance_rms_n: f64,
-    /// Pictures.
-    pub pictures: Vec<String>,
+    pub(super) imbalance_rms_n: f64,
 }
 
 /// One measure over the whole log.
 #[derive(Clone, Debug, Serialize)]
-pub struct Margin {
+pub(super) struct Margin {
     /// Its name.
-    pub name: &'static str,
+    pub(super) name: &'static str,
     /// Its unit.
-    pub unit: &'static str,
+    pub(super) unit: &'static str,
     /// The least value; none if it is never defined.
-    pub least: Option<f64>,
+    pub(super) least: Option<f64>,
     /// \[s\] When that was.
-    pub at_s: Option<f64>,
+    pub(super) at_s: Option<f64>,
     /// Mean over the cycles in which it is defined.
-    pub mean: Option<f64>,
+    pub(super) mean: Option<f64>,
     /// \[1\] Share of the cycles in which it is defined.
-    pub defined: f64,
+    pub(super) defined: f64,
     /// \[1\] Share of those in which it is negative.
-    pub outside: f64,
+    pub(super) outside: f64,
 }
 
 /// A measure of one cycle; NaN where it is not defined.
@@ -63,20 +68,37 @@ pub(super) const MARGINS: [(&str, &str, Measure); 5] = [
     ("capture point (3.18)", "m", |i| i.margin(i.capture)),
 ];
 
-/// Reads a log, and draws into `out` if it is given.
+/// Reads a log with an assumed coefficient of friction, and draws into `out` if it is given.
 ///
 /// # Errors
 /// The log cannot be read or tells nothing of a simulated robot; a picture cannot be written.
-pub fn run(log: &Path, friction: f64, out: Option<&Path>) -> Result<Report, String> {
+pub fn run(log: &Path, friction: f64, out: Option<&Path>) -> Result<Sheet, String> {
     let (robot, scene, instants) = walk::read(log, friction)?;
-    let mut report = judge(&instants);
-    (report.robot, report.scene, report.friction) = (robot.name, scene, friction);
+    let (robot, found) = (robot.name, judge(&instants));
+    let mut sheet =
+        Sheet::titled(format!("{robot}, {scene}: {} cycles with load, friction {friction}", found.cycles));
+    sheet.facts(&found);
+    sheet.fact("robot", &robot);
+    sheet.fact("scene", &scene);
+    sheet.fact("friction", friction);
+    sheet.table(COLUMNS, &found.margins);
+    let [x, y, z] = found.momentum_rate_max_n_m;
+    sheet.line(format!("nearest to the border of the cone: {}", found.nearest_border));
+    sheet.line(format!(
+        "angular momentum changes by at most {x:.1}, {y:.1}, {z:.1} N m; its point of zero rate is up to {:.4} m from the \
+         zero-moment point",
+        found.zero_rate_from_zmp_max_m
+    ));
+    let imbalance = found.imbalance_rms_n;
+    sheet.line(format!("forces and accelerations of the log differ by {imbalance:.2} N (root mean square)"));
     if let Some(out) = out {
-        std::fs::create_dir_all(out)
-            .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
-        report.pictures = picture::of_log(&report, &instants, out)?;
+        for (name, figure) in
+            picture::of_log(&instants, &format!("{robot}  ·  {scene}  ·  friction {friction}"))
+        {
+            sheet.draw(out, name, &figure)?;
+        }
     }
-    Ok(report)
+    Ok(sheet)
 }
 
 /// The robot of a log; whoever wants its friction looks there.
@@ -88,23 +110,19 @@ pub fn robot_of(log: &Path) -> Result<String, String> {
 }
 
 /// What can be said about these cycles.
-pub(super) fn judge(instants: &[Instant]) -> Report {
+pub(super) fn judge(instants: &[Instant]) -> Contact {
     let most = |value: &dyn Fn(&Instant) -> f64| {
         instants.iter().map(value).filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()))
     };
     let nearest = instants.iter().filter(|i| i.cone.is_finite()).min_by(|a, b| a.cone.total_cmp(&b.cone));
     let square: f64 = instants.iter().map(|i| i.imbalance * i.imbalance).sum();
-    Report {
-        robot: String::new(),
-        scene: String::new(),
-        friction: f64::NAN,
+    Contact {
         cycles: instants.len(),
         margins: MARGINS.iter().map(|m| margin(*m, instants)).collect(),
         momentum_rate_max_n_m: std::array::from_fn(|k| most(&|i| i.momentum_rate[k])),
         zero_rate_from_zmp_max_m: most(&|i| (i.zram[0] - i.zmp[0]).hypot(i.zram[1] - i.zmp[1])),
         nearest_border: nearest.and_then(|i| i.border).map_or("none", super::cone::Border::name),
         imbalance_rms_n: (square / instants.len().max(1) as f64).sqrt(),
-        pictures: Vec::new(),
     }
 }
 
@@ -123,46 +141,4 @@ fn margin((name, unit, value): (&'static str, &'static str, Measure), instants: 
         defined: n / instants.len().max(1) as f64,
         outside: if n > 0.0 { outside / n } else { 0.0 },
     }
-}
-
-/// The report as lines for people.
-pub fn table(r: &Report) -> String {
-    let mut text = format!(
-        "{}, {}: {} cycles with load, friction {}\n{:28}{:>6}{:>10}{:>9}{:>10}{:>10}{:>10}",
-        r.robot,
-        r.scene,
-        r.cycles,
-        r.friction,
-        "distance to the border of",
-        "unit",
-        "least",
-        "at [s]",
-        "mean",
-        "defined",
-        "outside"
-    );
-    for m in &r.margins {
-        let number = |x: Option<f64>| x.map_or("none".into(), |x| format!("{x:.4}"));
-        text += &format!(
-            "\n{:28}{:>6}{:>10}{:>9}{:>10}{:>9.1}%{:>9.1}%",
-            m.name,
-            m.unit,
-            number(m.least),
-            m.at_s.map_or("-".into(), |t| format!("{t:.3}")),
-            number(m.mean),
-            100.0 * m.defined,
-            100.0 * m.outside
-        );
-    }
-    let [x, y, z] = r.momentum_rate_max_n_m;
-    text += &format!(
-        "\nnearest to the border of the cone: {}\nangular momentum changes by at most {x:.1}, {y:.1}, {z:.1} N m; \
-         its point of zero rate is up to {:.4} m from the zero-moment point\nforces and accelerations of the log \
-         differ by {:.2} N (root mean square)",
-        r.nearest_border, r.zero_rate_from_zmp_max_m, r.imbalance_rms_n
-    );
-    for path in &r.pictures {
-        text += &format!("\n{path}");
-    }
-    text
 }

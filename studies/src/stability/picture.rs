@@ -1,30 +1,18 @@
 //! Pictures of the stability studies.
 
-use std::path::Path;
-
 use drawing::color::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION};
 use drawing::{Chart, Color, Figure, Pen};
 use recording::polygon::Point;
 
-use super::log::{MARGINS, Report};
-use super::viability::Report as Viability;
+use super::log::MARGINS;
+use super::viability::{Pushes, Survived};
 use super::walk::Instant;
 
 const COLORS: [Color; 6] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY];
 
-/// Margins over time, and the points from above.
-pub(super) fn of_log(report: &Report, instants: &[Instant], out: &Path) -> Result<Vec<String>, String> {
-    let about = format!("{}  ·  {}  ·  friction {}", report.robot, report.scene, report.friction);
-    let figures =
-        [("stability.png", over_time(instants, &about)), ("points.png", from_above(instants, &about))];
-    figures
-        .into_iter()
-        .map(|(name, figure)| {
-            let path = out.join(name);
-            figure.save(&path)?;
-            Ok(path.display().to_string())
-        })
-        .collect()
+/// Margins over time, and the points from above: names and pictures.
+pub(super) fn of_log(instants: &[Instant], about: &str) -> [(&'static str, Figure); 2] {
+    [("stability.png", over_time(instants, about)), ("points.png", from_above(instants, about))]
 }
 
 fn over_time(instants: &[Instant], about: &str) -> Figure {
@@ -68,16 +56,11 @@ fn from_above(instants: &[Instant], about: &str) -> Figure {
 }
 
 /// What is survived: pushes around the robot, errors as bars over what was tried.
-pub(super) fn of_viability(report: &Viability, out: &Path) -> Result<String, String> {
-    let path = out.join("viability.png");
-    Figure::new("What the gait survives, each disturbance alone", &report.scene)
-        .with(pushes(report))
-        .with(bars(report))
-        .save(&path)?;
-    Ok(path.display().to_string())
+pub(super) fn of_viability(scene: &str, all: &Pushes, errors: &[Survived]) -> Figure {
+    Figure::new("What the gait survives, each disturbance alone", scene).with(pushes(all)).with(bars(errors))
 }
 
-fn pushes(report: &Viability) -> Chart {
+fn pushes(all: &Pushes) -> Chart {
     let mut chart = Chart::new(
         "Pushes of 0.1 s at the torso: each line an instant of the stride",
         "impulse forward [N s]",
@@ -93,20 +76,20 @@ fn pushes(report: &Viability) -> Chart {
         line.extend(line.first().copied());
         line
     };
-    chart.area("survived whenever it comes", around(&report.pushes.always_n_s), GREEN.faint(0x50));
-    for (k, at) in report.pushes.impulse_n_s.iter().enumerate() {
-        let name = format!("{k}/{}", report.pushes.impulse_n_s.len());
+    chart.area("survived whenever it comes", around(&all.always_n_s), GREEN.faint(0x50));
+    for (k, at) in all.impulse_n_s.iter().enumerate() {
+        let name = format!("{k}/{}", all.impulse_n_s.len());
         let pen = Pen { color: COLORS[k % COLORS.len()], width: 2.0, dashed: k >= COLORS.len() };
         chart.styled(&name, around(at), pen);
     }
     chart
 }
 
-fn bars(report: &Viability) -> Chart {
+fn bars(errors: &[Survived]) -> Chart {
     let title = "Errors: green is survived, the whole bar was tried";
-    let n = report.errors.len() as f64;
+    let n = errors.len() as f64;
     let mut chart = Chart::new(title, "share of what was tried", "").height(44.0 * n as f32);
-    for (k, e) in report.errors.iter().enumerate() {
+    for (k, e) in errors.iter().enumerate() {
         let y = n - k as f64;
         // Factors are drawn by their logarithms.
         let place = |x: f64| if e.tried[0] > 0.0 { x.ln() } else { x };

@@ -10,16 +10,18 @@
 //! Bisection takes for granted that what survives much survives less. Three lesser values are tried afterwards, and
 //! one that is not survived is told (`holes`).
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use config::Setup;
 use config::sensors::PerJoint;
 use config::terrain::{Shape, TerrainObject, TerrainPose};
 use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::picture;
-use crate::push;
+use crate::sheet::{Column, fixed, plain};
+use crate::{Error, Given, Sheet, Study, push};
 use chain::Chain;
 use chain::parallel;
 
@@ -35,43 +37,68 @@ const BOARD: (f64, [f64; 2]) = (1.2, [0.4, 1.2]);
 const JOINTS: [&str; 4] =
     ["right_hip_adduction", "right_knee_flexion", "right_ankle_flexion", "right_ankle_adduction"];
 
-/// What was found.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Name of the scene.
-    pub scene: String,
-    /// Pushes.
-    pub pushes: Pushes,
-    /// Errors.
-    pub errors: Vec<Survived>,
-    /// Pictures.
-    pub pictures: Vec<String>,
+/// What of one error is survived.
+const ERRORS: &[Column] = &[
+    plain("/name", "error"),
+    plain("/unit", "unit"),
+    plain("/from", "from"),
+    plain("/to", "to"),
+    fixed("/holes", "but not", 2),
+];
+/// Push of 0.1 s at the torso, counter-clockwise from forward.
+const PUSHES: &[Column] = &[
+    plain("/0", "direction, push [N s]"),
+    fixed("/1/0", "0°", 2),
+    fixed("/1/1", "45°", 2),
+    fixed("/1/2", "90°", 2),
+    fixed("/1/3", "135°", 2),
+    fixed("/1/4", "180°", 2),
+    fixed("/1/5", "225°", 2),
+    fixed("/1/6", "270°", 2),
+    fixed("/1/7", "315°", 2),
+];
+
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Viability {
+    /// Another scene than walk_1kmh.
+    #[arg(long)]
+    pub scene: Option<String>,
+    /// How many instants of a stride are pushed at.
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..=100))]
+    pub instants: u64,
+    /// Two instants, and borders four times as coarse.
+    #[arg(long)]
+    pub quick: bool,
+    /// Where the picture goes.
+    #[arg(long, value_name = "DIR", default_value = "runs/study/viability")]
+    pub out: PathBuf,
 }
 
 /// Largest impulses survived.
 #[derive(Clone, Debug, Serialize)]
-pub struct Pushes {
+pub(super) struct Pushes {
     /// \[N s\] By instant of the stride, then by direction: counter-clockwise from forward, steps of 45 degrees.
-    pub impulse_n_s: Vec<Vec<f64>>,
+    pub(super) impulse_n_s: Vec<Vec<f64>>,
     /// \[N s\] By direction: survived whenever it comes.
-    pub always_n_s: Vec<f64>,
+    pub(super) always_n_s: Vec<f64>,
 }
 
 /// What of one error is survived.
 #[derive(Clone, Debug, Serialize)]
-pub struct Survived {
+pub(super) struct Survived {
     /// What is wrong.
-    pub name: String,
+    pub(super) name: String,
     /// Unit of the numbers.
-    pub unit: &'static str,
+    pub(super) unit: &'static str,
     /// From, to; zero is no error (of a factor: one).
-    pub interval: [f64; 2],
+    pub(super) interval: [f64; 2],
     /// What was tried at most.
-    pub tried: [f64; 2],
+    pub(super) tried: [f64; 2],
     /// Whether even that is survived.
-    pub beyond: [bool; 2],
+    pub(super) beyond: [bool; 2],
     /// Lesser values inside of the interval that are not survived.
-    pub holes: Vec<f64>,
+    pub(super) holes: Vec<f64>,
 }
 
 /// Puts an error of a size into a scene.
@@ -102,48 +129,65 @@ impl Kind {
     }
 }
 
-/// Looks for the borders of what is survived, and draws them into `out`. `instants` of a stride; `coarse` has brackets
-/// four times as wide.
-///
-/// # Errors
-/// The scene is wrong, or its robot falls without a disturbance.
-pub fn run(
-    config: &Path,
-    scene: Option<&str>,
-    (instants, coarse): (usize, bool),
-    out: &Path,
-    progress: &(dyn Fn(usize, usize) + Sync),
-) -> Result<Report, Box<dyn std::error::Error>> {
-    let mut setup = Setup::load(config, scene.unwrap_or(SCENE))?;
-    setup.scene.pushes.clear();
-    let way = walk(&setup).ok_or_else(|| format!("scene {}: the robot falls by itself", setup.scene.name))?;
-    let kinds = kinds(&setup, way);
-    let starts = push::at_instants(&setup, instants)?;
-    let (sides, cases) = (2 * kinds.len(), starts.len() * DIRECTIONS);
-    let done = AtomicUsize::new(0);
-    let tick = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, sides + cases);
-    let fine = if coarse { 4.0 } else { 1.0 };
+impl Study for Viability {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        let (instants, fine) = if self.quick { (2, 4.0) } else { (self.instants as usize, 1.0) };
+        let mut setup = Setup::load(given.config, self.scene.as_deref().unwrap_or(SCENE))?;
+        setup.scene.pushes.clear();
+        let scene = &setup.scene.name;
+        let way = walk(&setup).ok_or_else(|| format!("scene {scene}: the robot falls by itself"))?;
+        let kinds = kinds(&setup, way);
+        let starts = push::at_instants(&setup, instants)?;
+        let (sides, cases) = (2 * kinds.len(), starts.len() * DIRECTIONS);
+        let done = AtomicUsize::new(0);
+        let tick = || (given.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, sides + cases, "");
 
-    let found = parallel::map(sides, |k| {
-        let found = side(&setup, &kinds[k / 2], k % 2, fine);
-        tick();
-        found
-    });
-    let errors = kinds.iter().zip(found.chunks(2)).map(|(kind, pair)| survived(kind, pair)).collect();
-    let impulses = parallel::map(cases, |k| {
-        let turn = std::f64::consts::TAU * (k % DIRECTIONS) as f64 / DIRECTIONS as f64;
-        let found = push::largest(&starts[k / DIRECTIONS], [turn.cos(), turn.sin()], fine);
-        tick();
-        found
-    });
-    let impulse_n_s: Vec<Vec<f64>> = impulses.chunks(DIRECTIONS).map(<[f64]>::to_vec).collect();
-    let least = |d: usize| impulse_n_s.iter().map(|at| at[d]).fold(f64::INFINITY, f64::min);
-    let pushes = Pushes { always_n_s: (0..DIRECTIONS).map(least).collect(), impulse_n_s };
-    let mut report = Report { scene: setup.scene.name.clone(), pushes, errors, pictures: Vec::new() };
-    std::fs::create_dir_all(out)
-        .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
-    report.pictures = vec![picture::of_viability(&report, out)?];
-    Ok(report)
+        // Errors: both sides of each, by bisection over whole scenes.
+        let found = parallel::map(sides, |k| {
+            let found = side(&setup, &kinds[k / 2], k % 2, fine);
+            tick();
+            found
+        });
+        let found = found.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let errors: Vec<_> =
+            kinds.iter().zip(found.chunks(2)).map(|(kind, pair)| survived(kind, pair)).collect();
+        // Pushes: every direction at every instant.
+        let impulses = parallel::map(cases, |k| {
+            let turn = std::f64::consts::TAU * (k % DIRECTIONS) as f64 / DIRECTIONS as f64;
+            let found = push::largest(&starts[k / DIRECTIONS], [turn.cos(), turn.sin()], fine);
+            tick();
+            found
+        });
+        let impulses = impulses.into_iter().collect::<Result<Vec<f64>, _>>()?;
+        let impulse_n_s: Vec<Vec<f64>> = impulses.chunks(DIRECTIONS).map(<[f64]>::to_vec).collect();
+        let least = |d: usize| impulse_n_s.iter().map(|at| at[d]).fold(f64::INFINITY, f64::min);
+        let pushes = Pushes { always_n_s: (0..DIRECTIONS).map(least).collect(), impulse_n_s };
+
+        // All of it for people, with the picture.
+        let mut sheet = Sheet::titled(format!("{scene}: what is survived, each alone"));
+        sheet.fact("scene", scene);
+        sheet.fact("errors", &errors);
+        sheet.fact("pushes", &pushes);
+        sheet.table(ERRORS, &errors.iter().map(Survived::row).collect::<Vec<_>>());
+        sheet.line("");
+        let at = pushes.impulse_n_s.iter().enumerate().map(|(k, at)| (format!("{k}/{instants} stride"), at));
+        sheet.table(PUSHES, &at.chain([("always".into(), &pushes.always_n_s)]).collect::<Vec<_>>());
+        sheet.draw(&self.out, "viability.png", &picture::of_viability(scene, &pushes, &errors))?;
+        Ok(sheet)
+    }
+}
+
+impl Survived {
+    /// For people: a side that does not exist is left out, and one that was survived to its end is marked.
+    fn row(&self) -> Value {
+        let number = |k: usize| {
+            let mark = if self.beyond[k] { "≥ " } else { "" };
+            (self.tried[k] != 0.0).then(|| format!("{mark}{:.2}", self.interval[k]))
+        };
+        let mut row = json!(self);
+        (row["from"], row["to"]) = (json!(number(0)), json!(number(1)));
+        row
+    }
 }
 
 /// All errors that make sense for a scene in which the robot gets `way` \[m\] far.
@@ -198,10 +242,10 @@ fn board(height: f64) -> TerrainObject {
 }
 
 /// The border on one side: value, whether it is beyond what was tried, lesser values that are not survived.
-fn side(setup: &Setup, kind: &Kind, side: usize, fine: f64) -> (f64, bool, Vec<f64>) {
+fn side(setup: &Setup, kind: &Kind, side: usize, fine: f64) -> Result<(f64, bool, Vec<f64>), String> {
     let most = kind.tried[side];
     if most == 0.0 {
-        return (0.0, false, Vec::new());
+        return Ok((0.0, false, Vec::new()));
     }
     let sign = most.signum();
     let survives = |x: f64| {
@@ -210,10 +254,12 @@ fn side(setup: &Setup, kind: &Kind, side: usize, fine: f64) -> (f64, bool, Vec<f
         walk(&setup).is_some()
     };
     if survives(most.abs()) {
-        return (most, true, holes(most, sign, survives));
+        return Ok((most, true, holes(most, sign, survives)));
     }
-    let found = sign * push::bisect(most.abs(), kind.resolution * fine, survives);
-    (found, false, holes(found, sign, survives))
+    // That the most is not survived is known.
+    let inside = |x: f64| x != most.abs() && survives(x);
+    let found = sign * push::survived(most.abs(), kind.resolution * fine, inside)?;
+    Ok((found, false, holes(found, sign, survives)))
 }
 
 fn holes(found: f64, sign: f64, survives: impl Fn(f64) -> bool) -> Vec<f64> {
@@ -240,36 +286,6 @@ fn walk(setup: &Setup) -> Option<f64> {
     (0..cycles).all(|_| !push::ended(chain.step())).then(|| chain.robot().state().position[0] - start)
 }
 
-/// The report as lines for people.
-pub fn table(r: &Report) -> String {
-    let mut text = format!(
-        "{}: what is survived, each alone\n{:44}{:>5}{:>12}{:>12}",
-        r.scene, "error", "unit", "from", "to"
-    );
-    for e in &r.errors {
-        let number = |k: usize| {
-            let (x, mark) = (e.interval[k], if e.beyond[k] { "≥ " } else { "" });
-            if e.tried[k] == 0.0 { "-".to_string() } else { format!("{mark}{x:.2}") }
-        };
-        text += &format!("\n{:44}{:>5}{:>12}{:>12}", e.name, e.unit, number(0), number(1));
-        if !e.holes.is_empty() {
-            let each: Vec<String> = e.holes.iter().map(|x| format!("{x:.2}")).collect();
-            text += &format!("   but not {}", each.join(", "));
-        }
-    }
-    text += "\n\npush of 0.1 s at the torso [N s], counter-clockwise from forward\n";
-    text += &format!("{:12}", "direction");
-    (0..DIRECTIONS).for_each(|d| text += &format!("{:>7}°", d * 360 / DIRECTIONS));
-    for (k, at) in r.pushes.impulse_n_s.iter().enumerate() {
-        text += &format!("\n{:12}", format!("{k}/{} stride", r.pushes.impulse_n_s.len()));
-        at.iter().for_each(|x| text += &format!("{x:8.2}"));
-    }
-    text += &format!("\n{:12}", "always");
-    r.pushes.always_n_s.iter().for_each(|x| text += &format!("{x:8.2}"));
-    r.pictures.iter().for_each(|path| text += &format!("\n{path}"));
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -289,7 +305,7 @@ mod tests {
         assert!(way > 0.5, "{way} m");
         let kinds = kinds(&setup, way);
         let kind = kinds.iter().find(|k| k.name == "IMU bias, pitch").unwrap();
-        let (found, beyond, holes) = side(&setup, kind, 1, 20.0);
+        let (found, beyond, holes) = side(&setup, kind, 1, 20.0).unwrap();
         assert!(!beyond && found > 0.5 && found < 15.0, "{found} deg");
         let mut bracket = kind.tried[1];
         while bracket > 20.0 * kind.resolution {

@@ -24,7 +24,7 @@ const UNIT: f64 = 1.0 / (1u64 << 29) as f64;
 
 /// One linkage with tables of several sizes.
 #[derive(Clone, Debug, Serialize)]
-pub struct Linkage {
+pub(super) struct Linkage {
     /// Of which joint.
     pub name: &'static str,
     /// \[ns\] One evaluation without a table, median.
@@ -35,7 +35,7 @@ pub struct Linkage {
 
 /// A table of one size; pairs: in integers, in floating point.
 #[derive(Clone, Debug, Serialize)]
-pub struct Size {
+pub(super) struct Size {
     /// In each dimension.
     pub points: usize,
     /// Of the table in integers.
@@ -55,8 +55,7 @@ pub struct Size {
 }
 
 /// Everything.
-pub(super) fn all(config: &Path, tell: &impl Fn(&str)) -> Result<Vec<Linkage>, Box<dyn Error>> {
-    tell("tables of a knee and an ankle");
+pub(super) fn all(config: &Path) -> Result<Vec<Linkage>, Box<dyn Error>> {
     of_sizes(config, &KNEE, &ANKLE)
 }
 

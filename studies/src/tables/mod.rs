@@ -11,77 +11,65 @@ mod linkage;
 mod picture;
 mod walking;
 
-use std::error::Error;
-use std::path::Path;
+use std::path::PathBuf;
 
-use serde::Serialize;
+use crate::sheet::{Column, fixed, plain, scientific};
+use crate::{Error, Given, Sheet, Study};
 
-pub use linkage::{Linkage, Size};
-pub use picture::draw;
-pub use walking::Walk;
+use linkage::{Linkage, Size};
+use walking::Walk;
 
-/// Everything that was measured.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Tables alone.
-    pub linkages: Vec<Linkage>,
-    /// Tables, counts and cycles in the loop.
-    pub walks: Vec<Walk>,
+/// A table of one size; pairs: in integers, in floating point.
+const SIZES: &[Column] = &[
+    plain("/points", "points"),
+    plain("/bytes", "bytes"),
+    scientific("/angle_rad/0", "angle [rad]: integers", 2),
+    scientific("/angle_rad/1", "f64", 2),
+    scientific("/rounding_rad", "rounding", 0),
+    scientific("/predicted_rad", "predicted", 2),
+    scientific("/ratio/0", "ratio [1]: integers", 1),
+    scientific("/ratio/1", "f64", 1),
+    scientific("/joint_rad", "joint [rad]", 1),
+    fixed("/ns/0", "time [ns]: int.", 1),
+    fixed("/ns/1", "f64", 1),
+];
+/// A walk: tracking errors, largest and root mean square, and largest inclination.
+const WALKS: &[Column] = &[
+    plain("/what", "walk, errors in mrad"),
+    fixed("/cycle_s", "cycle [ms]", 1).times(1e3),
+    fixed("/hip_knee_rad", "hip and knee: link", 2).times(1e3),
+    fixed("/motor_side_rad", "motor", 2).times(1e3),
+    fixed("/rms_rad/0", "rms: knee", 3).times(1e3),
+    fixed("/rms_rad/1", "ankle", 3).times(1e3),
+    fixed("/inclination_rad", "inclination", 1).times(1e3),
+    plain("/fell", "fell"),
+];
+
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Tables {
+    /// Where the picture goes.
+    #[arg(long, value_name = "DIR", default_value = "runs/study/tables")]
+    pub out: PathBuf,
 }
 
-/// Measures Lola's tables, and walks with them.
-///
-/// # Errors
-/// A configuration is wrong, or a table cannot be made.
-pub fn run(config: &Path, tell: impl Fn(&str)) -> Result<Report, Box<dyn Error>> {
-    Ok(Report { linkages: linkage::all(config, &tell)?, walks: walking::all(config, &tell)? })
-}
-
-/// Heads of the columns.
-const SIZES: &str = "                       angle of the motor [rad]                                ratio [1]       joint       time [ns]
-  points      bytes    integers         f64  rounding    predicted   integers        f64       [rad]    int.     f64";
-const WALKS: &str = "                                                                         hip and knee, largest      root mean square   inclination
-                                                                 cycle        link       motor       knee      ankle       largest";
-
-/// The report as lines for people.
-pub fn table(report: &Report) -> String {
-    let mut text = String::new();
-    for linkage in &report.linkages {
-        text += &format!("{}: without a table {:.0} ns\n{SIZES}\n", linkage.name, linkage.direct_ns);
-        for s in &linkage.sizes {
-            text += &format!(
-                "{:>8}{:>11}{:>12.2e}{:>12.2e}{:>10.0e}{:>13.2e}{:>11.1e}{:>11.1e}{:>12.1e}{:>8.1}{:>8.1}\n",
-                s.points,
-                s.bytes,
-                s.angle_rad[0],
-                s.angle_rad[1],
-                s.rounding_rad,
-                s.predicted_rad,
-                s.ratio[0],
-                s.ratio[1],
-                s.joint_rad,
-                s.ns[0],
-                s.ns[1]
-            );
+impl Study for Tables {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        let tell = |what: &str| (given.progress)(0, 0, what);
+        tell("tables of a knee and an ankle");
+        let linkages = linkage::all(given.config)?;
+        let walks = walking::all(given.config, &tell)?;
+        let mut sheet = Sheet::default();
+        sheet.fact("linkages", &linkages);
+        for linkage in &linkages {
+            sheet.line(format!("{}: without a table {:.0} ns", linkage.name, linkage.direct_ns));
+            sheet.table(SIZES, &linkage.sizes);
+            sheet.line("");
         }
-        text.push('\n');
+        sheet.rows("walks", WALKS, &walks);
+        sheet.draw(&self.out, "tables.png", &picture::figure(&linkages, &walks))?;
+        Ok(sheet)
     }
-    text += &format!("walks, tracking errors and inclination [mrad]\n{WALKS}");
-    for w in &report.walks {
-        let fell = if w.fell { ", FELL" } else { "" };
-        let milli = |x: f64| 1e3 * x;
-        text += &format!(
-            "\n{:60}{:>7.1} ms{:>12.2}{:>12.2}{:>11.3}{:>11.3}{:>14.1}{fell}",
-            w.what,
-            milli(w.cycle_s),
-            milli(w.hip_knee_rad),
-            milli(w.motor_side_rad),
-            milli(w.rms_rad[0]),
-            milli(w.rms_rad[1]),
-            milli(w.inclination_rad)
-        );
-    }
-    text
 }
 
 #[cfg(test)]

@@ -1,35 +1,25 @@
 //! Look-up tables as a picture: error over bytes, error over time, tracking while walking over points.
 
-use std::path::Path;
-
 use drawing::color::{BLUE, GREEN, GREY, VERMILION};
 use drawing::{Chart, Color, Figure, Pen};
 
-use super::{Linkage, Report, Size, Walk};
+use super::{Linkage, Size, Walk};
 
-/// Writes `tables.png`; its path.
-///
-/// # Errors
-/// It cannot be written.
-pub fn draw(report: &Report, out: &Path) -> Result<String, String> {
-    std::fs::create_dir_all(out)
-        .map_err(|e| format!("{}: {e}; choose another place with --out", out.display()))?;
+/// The picture.
+pub(super) fn figure(linkages: &[Linkage], walks: &[Walk]) -> Figure {
     let about = "Lola's knee and inner ankle, whole ranges of their joints; linear interpolation, largest of 20000 errors; the \
                  numbers are points in each dimension.";
-    let figure = Figure::new("Look-up tables of the linkages in 32-bit integers", about)
+    Figure::new("Look-up tables of the linkages in 32-bit integers", about)
         .with(over_bytes(
-            report,
+            linkages,
             "angle of the motor",
             "error of the angle [rad]",
             |s| s.angle_rad,
             Some(|s| s.predicted_rad),
         ))
-        .with(over_bytes(report, "ratio", "error of the ratio [1]", |s| s.ratio, None))
-        .with(over_time(report))
-        .with(over_points(&report.walks));
-    let path = out.join("tables.png");
-    figure.save(&path)?;
-    Ok(path.display().to_string())
+        .with(over_bytes(linkages, "ratio", "error of the ratio [1]", |s| s.ratio, None))
+        .with(over_time(linkages))
+        .with(over_points(walks))
 }
 
 /// A number of a walk.
@@ -40,14 +30,14 @@ fn color(linkage: &Linkage) -> Color {
 }
 
 fn over_bytes(
-    report: &Report,
+    linkages: &[Linkage],
     title: &str,
     y: &str,
     error: fn(&Size) -> [f64; 2],
     predicted: Option<fn(&Size) -> f64>,
 ) -> Chart {
     let mut chart = Chart::new(title, "bytes of the table in integers", y).logarithmic().height(420.0);
-    for linkage in &report.linkages {
+    for linkage in linkages {
         let points = |of: &dyn Fn(&Size) -> f64| {
             linkage.sizes.iter().map(|s| [s.bytes as f64, of(s)]).collect::<Vec<_>>()
         };
@@ -67,12 +57,12 @@ fn over_bytes(
     chart
 }
 
-fn over_time(report: &Report) -> Chart {
+fn over_time(linkages: &[Linkage]) -> Chart {
     let mut chart =
         Chart::new("time", "one evaluation [ns]", "error of the angle [rad]").logarithmic().height(420.0);
-    let errors = report.linkages.iter().flat_map(|l| &l.sizes).flat_map(|s| s.angle_rad);
+    let errors = linkages.iter().flat_map(|l| &l.sizes).flat_map(|s| s.angle_rad);
     let (least, most) = errors.fold((f64::INFINITY, 0.0_f64), |(lo, hi), e| (lo.min(e), hi.max(e)));
-    for linkage in &report.linkages {
+    for linkage in linkages {
         let color = color(linkage);
         let direct = vec![[linkage.direct_ns, least], [linkage.direct_ns, most]];
         chart.line(&format!("{}, no table", linkage.name), direct, color.faint(90));

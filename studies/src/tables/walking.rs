@@ -26,7 +26,7 @@ const STEP: f64 = 2.5e-4;
 
 /// One walk.
 #[derive(Clone, Debug, Serialize)]
-pub struct Walk {
+pub(super) struct Walk {
     /// Robot, law, numbers.
     pub what: String,
     /// Points of the tables, if it is a walk for the chart over them; 0: computed directly.
