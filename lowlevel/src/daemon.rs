@@ -27,7 +27,7 @@ const ANSWER: (u64, u64) = (7, 10);
 /// The process cannot start, or, in lockstep, a peer fell silent.
 pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut d = Daemon::new(Process::Lowlevel, dir)?;
-    let mut ports = Ports {
+    let mut ports = LowlevelPorts {
         bus: bus::open(&d)?,
         sensors: d.space.writer(&SENSORS)?,
         frames_in: d.space.writer(&FRAMES_IN)?,
@@ -66,7 +66,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-struct Ports {
+struct LowlevelPorts {
     bus: Box<dyn Fieldbus>,
     sensors: Writer<Sensors>,
     frames_in: Writer<BusFrames>,
@@ -86,7 +86,7 @@ struct Ports {
 }
 
 /// Commands of this cycle: the scene's that are due, then live ones.
-fn take_commands(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, header: Header) {
+fn take_commands(d: &mut Daemon, p: &mut LowlevelPorts, joints: &mut JointLoop, header: Header) {
     while let Some(live) = p.timeline.due(header.tick).map(Live::of_scene).or_else(|| p.commands.next()) {
         let verdict = joints.command(&live.command);
         p.commands.answer(&live, verdict);
@@ -96,7 +96,13 @@ fn take_commands(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, header: 
 }
 
 /// First half of a cycle; its header. What came and what is measured goes to those who wait for it first.
-fn receive(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, tick: u64, stamp_ns: u64) -> Header {
+fn receive(
+    d: &mut Daemon,
+    p: &mut LowlevelPorts,
+    joints: &mut JointLoop,
+    tick: u64,
+    stamp_ns: u64,
+) -> Header {
     let frames = p.bus.receive();
     let sensors = joints.receive(tick, stamp_ns, frames);
     p.sensors.write(sensors);
@@ -115,7 +121,7 @@ fn receive(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, tick: u64, sta
 /// machine loses it does not make good for: the robot is slower for a moment.
 fn lockstep(
     d: &mut Daemon,
-    p: &mut Ports,
+    p: &mut LowlevelPorts,
     joints: &mut JointLoop,
     last: u64,
 ) -> Result<Header, Box<dyn Error>> {
@@ -163,7 +169,7 @@ fn lockstep(
 }
 
 /// Nobody runs ahead of the log by more than half of the shortest ring that is logged in each cycle: nothing is lost.
-fn wait_for_log(d: &Daemon, p: &mut Ports, tick: u64) -> Result<bool, Box<dyn Error>> {
+fn wait_for_log(d: &Daemon, p: &mut LowlevelPorts, tick: u64) -> Result<bool, Box<dyn Error>> {
     let ahead = FRAMES_OUT.depth as u64 / 2;
     if !d.logged || tick <= ahead {
         return Ok(true);
@@ -173,7 +179,7 @@ fn wait_for_log(d: &Daemon, p: &mut Ports, tick: u64) -> Result<bool, Box<dyn Er
 }
 
 /// The bus cycle is the clock.
-fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -> Header {
+fn real_time(d: &mut Daemon, p: &mut LowlevelPorts, joints: &mut JointLoop, last: u64) -> Header {
     let period_ns = d.period_ns();
     let answer_ns = period_ns * ANSWER.0 / ANSWER.1;
     let mut period = Period::new(clock::now() + period_ns, period_ns, d.setup.system.overrun_bucket);
@@ -214,14 +220,14 @@ fn real_time(d: &mut Daemon, p: &mut Ports, joints: &mut JointLoop, last: u64) -
 }
 
 /// The last heartbeat says that it is the last one: the log tells an orderly end from a joint loop that fell silent.
-fn say_goodbye(d: &Daemon, p: &mut Ports, last: Header) {
+fn say_goodbye(d: &Daemon, p: &mut LowlevelPorts, last: Header) {
     let header = Header { tick: last.tick + 1, ..last };
     p.reset.write(&WatchdogReset { header, trip: EventCode::Ended as u64, supply: 0 });
     d.ring(p.bell_reset);
 }
 
 /// Until the targets of this cycle are there, or it is too late for them.
-fn wait_for_targets(p: &mut Ports, tick: u64, until_ns: u64) {
+fn wait_for_targets(p: &mut LowlevelPorts, tick: u64, until_ns: u64) {
     while p.targets.latest().is_none_or(|t| t.header.tick < tick) {
         let left = until_ns.saturating_sub(clock::now());
         if left == 0 {

@@ -5,7 +5,7 @@ use config::robot::Joint;
 
 /// Share of the acceleration with which a joint that catches up plans to slow down.
 const PLANNED: f64 = 0.8;
-/// \[1\] A target at its limit is none beyond it.
+/// \[1\] Rounding of a target at its limit.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Reason why a target was changed or refused.

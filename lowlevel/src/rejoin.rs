@@ -7,7 +7,7 @@ use crate::limits::Setpoint;
 
 /// \[1/s\] w: an offset has died out after a tenth of a second, and asks for no more than a step does.
 const RATE: f64 = 40.0;
-/// \[rad\] and \[rad/s\] below which an offset is none.
+/// \[rad\] and \[rad/s\] below which an offset has died out.
 const GONE: (f64, f64) = (1e-7, 1e-5);
 
 /// Offset of one joint from its targets.

@@ -3,7 +3,7 @@
 use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use codec::layout::Carries;
 use config::{Robot, System};
-use drives::cia402::{self, Fault, Inputs, REFERENCED};
+use drives::cia402::{self, DriveInputs, Fault, REFERENCED};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::LoopState;
 use messages::{BusFrames, Command, EventCode, JointMode, JointTargets, Reason, Sensors, StartUp, Verdict};
@@ -20,7 +20,7 @@ const ARM: usize = 17;
 struct Rig {
     robot: Robot,
     loop_: JointLoop,
-    drives: Vec<cia402::Drive>,
+    drives: Vec<cia402::DriveStateMachine>,
     known: Vec<bool>,
     fault: Option<(usize, Fault)>,
     said: Sensors,
@@ -51,8 +51,8 @@ impl Rig {
         for wrench in &mut said.foot_wrench {
             wrench.force[2] = 0.5 * load;
         }
-        let mut drives = vec![cia402::Drive::default(); robot.joints.len()];
-        drives.iter_mut().for_each(|drive| _ = drive.step(&Inputs::default()));
+        let mut drives = vec![cia402::DriveStateMachine::default(); robot.joints.len()];
+        drives.iter_mut().for_each(|drive| _ = drive.step(&DriveInputs::default()));
         let mut rig = Self {
             loop_: JointLoop::new(&robot, &system, 1e-3),
             known: vec![true; drives.len()],
@@ -113,7 +113,7 @@ impl Rig {
         self.events.extend(std::iter::from_fn(|| self.loop_.take_event()));
         let home = self.told.targets.mode == JointMode::Home as u64;
         for j in 0..self.drives.len() {
-            self.drives[j].step(&Inputs {
+            self.drives[j].step(&DriveInputs {
                 control: Some(self.told.control[j] as u16),
                 supply: self.said.power == 1,
                 permit: home || self.known[j],
@@ -386,8 +386,8 @@ fn a_robot_that_stands_goes_on_without_a_drive_it_can_spare() {
 #[test]
 fn a_drive_that_drops_out_or_does_not_come_is_named() {
     let mut rig = Rig::on(WEIGHT);
-    rig.drives[KNEE] = cia402::Drive::default(); // its controller started again
-    rig.drives[KNEE].step(&Inputs::default());
+    rig.drives[KNEE] = cia402::DriveStateMachine::default(); // its controller started again
+    rig.drives[KNEE].step(&DriveInputs::default());
     rig.cycles(4);
     assert_eq!(rig.events, [(EventCode::DriveNotEnabled, KNEE as u64)]);
     assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::DriveNotEnabled));
@@ -395,7 +395,7 @@ fn a_drive_that_drops_out_or_does_not_come_is_named() {
     let mut dead = Rig::new(WEIGHT);
     dead.said.power = 1;
     for _ in 0..300 {
-        dead.drives[KNEE] = cia402::Drive::default();
+        dead.drives[KNEE] = cia402::DriveStateMachine::default();
         dead.cycle(None);
     }
     assert_eq!(

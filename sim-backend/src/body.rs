@@ -17,7 +17,7 @@ pub(crate) struct SimulatedBody {
     plant: Plant,
     stepper: Stepper,
     state: Vec<f64>,
-    /// State at the begin of the cycle.
+    /// State at the beginning of the cycle.
     last_good: Vec<f64>,
     /// Length of a cycle \[s\], and steps in it.
     cycle: f64,
@@ -68,7 +68,7 @@ impl SimulatedBody {
     }
 
     /// One cycle of time passes. Returns the first state that is not finite, if there is one: then the state is that of
-    /// the begin of the cycle.
+    /// the beginning of the cycle.
     pub(crate) fn advance(&mut self, references: &[Drive], inputs: &PlantInputs) -> Option<usize> {
         let Self { plant, stepper, state, last_good, .. } = self;
         last_good.copy_from_slice(state);

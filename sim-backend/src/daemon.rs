@@ -24,7 +24,7 @@ const PATIENCE: u64 = 2;
 /// The process cannot start, or, in lockstep, the joint loop fell silent.
 pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut d = Daemon::new(Process::SimBackend, dir)?;
-    let mut ports = Ports {
+    let mut ports = SimBackendPorts {
         bus: bus::open(&mut d)?,
         power: d.space.reader(&POWER)?,
         state: d.space.writer(&SIM_STATE)?,
@@ -79,7 +79,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-struct Ports {
+struct SimBackendPorts {
     bus: Box<dyn FarEnd>,
     power: Reader<Power>,
     state: Writer<SimState>,
@@ -88,7 +88,7 @@ struct Ports {
 }
 
 /// One bus cycle; returns its header.
-fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut Ports) -> Header {
+fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut SimBackendPorts) -> Header {
     let taken = p.bus.held().map_or(Header::default(), |frames| frames.header);
     let tick = taken.tick;
     // Commands first: those of the scene, which come by tick, then live ones.

@@ -1,6 +1,7 @@
 //! References of the joints: cubics from target to target (2.74), which a type 1 model follows exactly.
 //!
-//! They have no torque, so they cannot be limp: with the supply off they come to rest at their own rate of braking, and stay.
+//! Joints of type 1 have no torque, so they cannot be limp: with the supply off they come to rest at their own rate of
+//! braking, and stay.
 //! That stands for friction in gears; for a robot without brakes whose motors have no torque see types 2 to 5.
 
 use config::robot::Joint;

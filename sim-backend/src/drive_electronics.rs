@@ -1,12 +1,12 @@
 //! The drives' own electronics: states of CiA 402, references, protection; one power stage per drive.
 //!
 //! Row i of the drives drives joint i. States are always there; references and protection only where the scene asks for
-//! them by `[drives]`, and what needs motors only where the model has motors. A local controller that received nothing for too
-//! long ([`crate::command_timeout`]) is a fault of its drives in every scene.
+//! them by `[drives]`, and what needs motors only where the model has motors. A local controller that received nothing
+//! for too long ([`crate::command_timeout`]) is a fault of its drives in every scene.
 
 use config::protection::Protection;
 use config::{Robot, Scene};
-use drives::cia402::{self, Fault, Inputs, REFERENCED, WARNING, WORDS};
+use drives::cia402::{self, DriveInputs, Fault, REFERENCED, WARNING, WORDS};
 use drives::homing::{HomeSwitch, Homing};
 use messages::{JointMode, MAX_JOINTS, Sensors};
 
@@ -52,7 +52,7 @@ struct Search {
 /// Electronics of all drives.
 #[derive(Clone, Debug)]
 pub(crate) struct DriveElectronics {
-    drives: Vec<cia402::Drive>,
+    drives: Vec<cia402::DriveStateMachine>,
     /// Joints that look for their references, or have found them.
     searches: Vec<Option<Search>>,
     protection: Option<Protection>,
@@ -70,9 +70,9 @@ impl DriveElectronics {
     pub(crate) fn new(robot: &Robot, scene: &Scene, pose: &[f64]) -> Self {
         // Self-tests take one cycle, and are over.
         let start = scene.drives.as_ref();
-        let mut drives = vec![cia402::Drive::default(); robot.joints.len()];
+        let mut drives = vec![cia402::DriveStateMachine::default(); robot.joints.len()];
         for drive in &mut drives {
-            drive.step(&Inputs::default());
+            drive.step(&DriveInputs::default());
         }
         // A joint without absolute encoder counts from where it is, and knows on which side of its switch that is.
         let search = |(switch, angle): (&Option<HomeSwitch>, &f64)| {
@@ -117,7 +117,7 @@ impl DriveElectronics {
             let drive = self.drives[j];
             let silent = drive.drives() && command.timeout.is_timed_out(j);
             let word = command.control[j] as u16;
-            let inputs = Inputs {
+            let inputs = DriveInputs {
                 control: WORDS.contains(&word).then_some(word),
                 supply,
                 permit: home || self.knows(j),
@@ -156,7 +156,7 @@ impl DriveElectronics {
     fn fault(
         &mut self,
         j: usize,
-        drive: &cia402::Drive,
+        drive: &cia402::DriveStateMachine,
         dt: f64,
         goal: Motion,
         now: Motion,

@@ -77,7 +77,7 @@ impl ShaftStep {
     ) -> Result<(), NoLoadTorque> {
         let on = inputs.switches.has_torque(shaft.motor);
         let current = if on { inputs.current[shaft.motor] } else { 0.0 };
-        // Friction depends on the load, which is taken from the begin of the step: within one it changes little.
+        // Friction depends on the load, which is taken from the beginning of the step: within one it changes little.
         let found = shaft.drive.friction.sliding(shaft.speed, shaft.drive.motor.torque(current));
         let before = Sliding { dry: self.dry, viscous: self.viscous };
         let Sliding { dry, viscous } = *found.as_ref().unwrap_or(&before);

@@ -32,7 +32,7 @@ pub struct Layout {
 
 /// A column of thesis table 2.4 or 2.5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counts {
+pub struct StateCounts {
     /// Mechanical degrees of freedom.
     pub mechanical: usize,
     /// Degrees of freedom of the contact layer.
@@ -119,10 +119,10 @@ impl Layout {
     }
 
     /// Counts as in the thesis's tables.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> StateCounts {
         let mechanical = 6 + self.joints + self.elastic;
         let (contact, electrical) = (3 * self.nodes, self.motors);
-        Counts { mechanical, contact, electrical, odes: 2 * mechanical + contact + electrical }
+        StateCounts { mechanical, contact, electrical, odes: 2 * mechanical + contact + electrical }
     }
 }
 

@@ -14,7 +14,8 @@
 //! | equations of motion | [`plant`]; types 1 to 5 of the thesis: [`depth`] |
 //! | their states | [`layout`] |
 //! | their inputs | [`inputs`], [`external_forces`] |
-//! | their drives: shafts, controllers, both in an implicit step | [`train`], [`shaft`], `local_control.rs`, `implicit.rs`, `train_step.rs` |
+//! | their drives: shafts, controllers | [`train`], [`shaft`], `local_control.rs` |
+//! | the drives in an implicit step, one and all | `implicit.rs`, `train_step.rs` |
 //! | counts and look-up tables of these controllers | `resolution.rs` |
 //! | their contact, and what they stand on | `ground.rs`, [`feet`], [`terrain`] |
 //! | time steps; the adaptive ones | [`integrate`], [`stiff`] |

@@ -1,4 +1,4 @@
-//! Local controllers: readings of the encoders of a shaft, and the current or voltage that the law makes of them (thesis 5.5).
+//! Local controllers: from the encoders of a shaft to the current or voltage that the law sets (thesis 5.5).
 //!
 //! ```text
 //! cascade   w_d = c q'_d + K_x c (q_d - q_a),   I_d = K_v (w_d - w_b),   U = R I_d + k_M w + L w_c (I_d - I)

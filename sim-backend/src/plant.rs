@@ -181,7 +181,7 @@ impl Plant {
         }
     }
 
-    /// The sampled controllers measure, at the begin of a cycle \[s\] in state `x`, and compute what they hold until the next.
+    /// The sampled controllers measure, at the beginning of a cycle \[s\] in state `x`, and compute what they hold in it.
     pub fn sample(&mut self, cycle: f64, x: &[f64], drives: &[Drive], inputs: &PlantInputs) {
         let Joints::Driven(train) = &self.joints else { return };
         if train.is_sampled() {

@@ -251,7 +251,7 @@ impl SimBackend {
         self.joints.come_to_rest();
     }
 
-    /// Readings and truth, `dt` \[s\] after the begin of the references; false if a reading is NaN and must not go on the
+    /// Readings and truth, `dt` \[s\] after the beginning of the references; false if a reading is NaN and must not go on the
     /// bus.
     ///
     /// Forces first, for they are those of the motion; a robot that comes to rest on the ground does so after that.

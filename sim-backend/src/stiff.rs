@@ -57,7 +57,7 @@ pub struct Effort {
 pub struct GaveUp {
     /// \[s\] How far it came; the state is that of this time.
     pub time: f64,
-    /// Number of the state whose rate jumped to and fro most, or was no number.
+    /// Number of the state whose rate jumped to and fro most, or was NaN or infinite.
     pub state: usize,
     /// Why it gave up.
     pub why: Why,
@@ -72,7 +72,7 @@ pub enum Why {
     Calls,
     /// Even the smallest step was not accurate enough.
     Step,
-    /// A rate is no number.
+    /// A rate is NaN or infinite.
     NotFinite,
 }
 
@@ -110,7 +110,7 @@ impl Stiff {
     /// between calls, not within.
     ///
     /// # Errors
-    /// [`GaveUp`]; then `x` is the state of its time, and finite if it was at the begin.
+    /// [`GaveUp`]; then `x` is the state of its time, and finite if it was at the beginning.
     pub fn advance(&mut self, t: f64, h: f64, x: &mut [f64], rate: &mut Rate<'_>) -> Result<Effort, GaveUp> {
         // The library asks for f and J in turns: both need the one guard, which borrows f.
         let n = x.len();
@@ -223,7 +223,7 @@ impl<'a, 'b> RateGuard<'a, 'b> {
         Self { inner, calls, most_calls, not_finite, last, change, to_and_fro, jacobian, used, near, moved }
     }
 
-    /// f, or no numbers at all once there were too many calls, with which the library ends.
+    /// f, or NaN once there were too many calls, with which the library ends.
     fn evaluate(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
         if self.calls >= self.most_calls || self.not_finite.is_some() {
             dx.fill(f64::NAN);

@@ -32,7 +32,7 @@ impl Train {
             }
         }
         for round in 1..=ROUNDS {
-            // Each drive gives its torque at the speed of the begin, and a damper for what the step adds to that.
+            // Each drive gives its torque at the speed of the beginning, and a damper for what the step adds to that.
             out.copy_from_slice(force);
             for (DriveTrain { shaft, step, .. }, damper) in self.drives.iter().zip(&mut self.dampers) {
                 let line = step.joint_line(h, shaft, inputs);

@@ -6,7 +6,7 @@ use config::Robot;
 use config::sensors::{Encoder, ForceTorque, Imu, PerJoint, Side, Signal};
 use messages::{Sensors, Wrench};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use sim_backend::sensors::{Report, SensorSet, Truth};
+use sim_backend::sensors::{ReadingFaults, SensorSet, Truth};
 
 const CYCLE: f64 = 1e-3;
 const HANGING: [Wrench; 2] = [
@@ -40,7 +40,7 @@ fn truth() -> Truth {
     }
 }
 
-fn measure(set: &mut SensorSet, truth: &Truth) -> (Sensors, Report) {
+fn measure(set: &mut SensorSet, truth: &Truth) -> (Sensors, ReadingFaults) {
     let mut out = Sensors::default();
     let report = set.measure(truth, &mut out);
     (out, report)
@@ -100,7 +100,7 @@ fn nothing_named_is_the_truth_bit_for_bit() {
     assert_eq!(out.imu.orientation.map(f64::to_bits), truth.imu.orientation.map(f64::to_bits));
     assert_eq!(out.imu.angular_velocity.map(f64::to_bits), truth.imu.angular_velocity.map(f64::to_bits));
     assert_eq!(out.imu.acceleration.map(f64::to_bits), truth.imu.acceleration.map(f64::to_bits));
-    assert_eq!(report, Report::default());
+    assert_eq!(report, ReadingFaults::default());
 }
 
 /// An error touches its own signal only: all others stay the truth bit for bit.
@@ -268,7 +268,7 @@ fn steps_and_range_of_the_force_sensor() {
     assert_eq!(out.foot_wrench[0].force[2], 250.0);
     close(out.foot_wrench[1].moment[0], 0.3, 1e-12);
     close(out.foot_wrench[1].moment[1], -0.2, 1e-12);
-    assert_eq!(report, Report { invalid: 0, clipped: 2 });
+    assert_eq!(report, ReadingFaults { invalid: 0, clipped: 2 });
 }
 
 fn orientation(s: &Sensors) -> UnitQuaternion<f64> {
@@ -366,7 +366,7 @@ fn steps_and_range_of_the_imu() {
     close(out.imu.angular_velocity[1], -0.13, 1e-15);
     assert_eq!(out.imu.angular_velocity[2], 3.5);
     assert_eq!(out.imu.acceleration, [0.0, -0.05, -19.62]);
-    assert_eq!(report, Report { invalid: 0, clipped: 2 });
+    assert_eq!(report, ReadingFaults { invalid: 0, clipped: 2 });
 }
 
 #[test]
@@ -445,7 +445,7 @@ fn what_is_not_finite_is_reported() {
         bad.imu.orientation = [f64::NAN; 4];
         bad.imu.acceleration[1] = f64::NAN;
         bad.motor_current[2] = f64::NAN; // no current sensor: allowed
-        assert_eq!(measure(&mut set, &good).1, Report::default());
+        assert_eq!(measure(&mut set, &good).1, ReadingFaults::default());
         let (out, report) = measure(&mut set, &bad);
         assert!(report.invalid >= 7, "{report:?}");
         assert!(!out.joint_angle[5].is_finite() && !out.foot_wrench[1].force[2].is_finite());
@@ -453,7 +453,7 @@ fn what_is_not_finite_is_reported() {
         assert!(out.joint_angle[4].is_finite() && out.foot_wrench[0].force[2].is_finite());
         measure(&mut set, &good); // the difference to the reading before is still missing
         let (out, report) = measure(&mut set, &good);
-        assert_eq!(report, Report::default());
+        assert_eq!(report, ReadingFaults::default());
         close(out.imu.acceleration[1], good.imu.acceleration[1], 1e-12);
     }
     let mut nothing = truth();

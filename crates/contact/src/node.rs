@@ -21,7 +21,7 @@ use crate::point::State;
 
 /// Force on the node and what the node does.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Answer {
+pub struct NodeAnswer {
     /// \[N\] lambda
     pub force: Vector3<f64>,
     /// Which case it is.
@@ -35,16 +35,16 @@ pub fn unique(g: &Matrix3<f64>, mu: f64) -> bool {
 
 /// Solves the law for one node. Where it has several solutions ([`unique`] is false), the first that holds of open,
 /// stick, slip is the answer; `None` when the data hold no solution (G not positive definite, or not finite).
-pub fn solve(g: &Matrix3<f64>, c: &Vector3<f64>, mu: f64) -> Option<Answer> {
+pub fn solve(g: &Matrix3<f64>, c: &Vector3<f64>, mu: f64) -> Option<NodeAnswer> {
     if c.z >= 0.0 {
-        return Some(Answer { force: Vector3::zeros(), state: State::Open });
+        return Some(NodeAnswer { force: Vector3::zeros(), state: State::Open });
     }
     let force = -(g.cholesky()?.solve(c));
     if force.z > 0.0 && force.xy().norm() <= mu * force.z {
-        return Some(Answer { force, state: State::Stick });
+        return Some(NodeAnswer { force, state: State::Stick });
     }
     let hint = -force.xy().try_normalize(f64::MIN_POSITIVE).unwrap_or(Vector2::x());
-    slide(g, c, mu, hint).map(|force| Answer { force, state: State::Slip })
+    slide(g, c, mu, hint).map(|force| NodeAnswer { force, state: State::Slip })
 }
 
 /// Force on a node that slides under pressure (c_N < 0); `hint` is a direction to begin with, of length 1.
@@ -169,7 +169,7 @@ mod tests {
             let c = Vector3::from(c);
             let answer = solve(&g, &c, mu);
             prop_assert!(answer.is_some() || !unique(&g, mu));
-            if let Some(Answer { force, .. }) = answer {
+            if let Some(NodeAnswer { force, .. }) = answer {
                 let u = g * force + c;
                 let (n, t) = (force.z, force.xy());
                 let size = 1.0 + n.abs();

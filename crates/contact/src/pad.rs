@@ -136,7 +136,7 @@ impl Pad {
                 c += ground.normal * (settings.recovery * ground.gap.min(0.0));
                 normal = Some(ground.normal);
             }
-            // A gap that is no number must not pass for a distance.
+            // A gap that is NaN must not pass for a distance.
             sum += ground.map_or(0.0, |ground| ground.gap) + c.x + c.y + c.z;
             memory.set(i, c, normal);
         }

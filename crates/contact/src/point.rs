@@ -40,7 +40,7 @@ pub enum State {
 
 /// Force on the node and rate of its displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Answer {
+pub struct PointAnswer {
     /// \[N\] lambda
     pub force: [f64; 3],
     /// \[m/s\] d'
@@ -50,10 +50,10 @@ pub struct Answer {
 }
 
 /// Solves the contact law for one node: lambda and d' from d, w and g_N.
-pub fn solve(law: &Law, d: [f64; 3], w: [f64; 3], gap: f64) -> Answer {
+pub fn solve(law: &Law, d: [f64; 3], w: [f64; 3], gap: f64) -> PointAnswer {
     let (k, b, mu) = (law.stiffness, law.damping, law.friction);
     let rate = |lambda: [f64; 3]| std::array::from_fn(|i| (lambda[i] - k[i] * d[i]) / b[i]); // (2.37)
-    let open = Answer { force: [0.0; 3], rate: rate([0.0; 3]), state: State::Open };
+    let open = PointAnswer { force: [0.0; 3], rate: rate([0.0; 3]), state: State::Open };
     if gap >= TOUCHING {
         return open;
     }
@@ -67,11 +67,11 @@ pub fn solve(law: &Law, d: [f64; 3], w: [f64; 3], gap: f64) -> Answer {
     let size = (t[0] * t[0] + t[1] * t[1]).sqrt();
     if size <= mu * normal {
         let force = [t[0], t[1], normal];
-        return Answer { force, rate: rate(force), state: State::Stick };
+        return PointAnswer { force, rate: rate(force), state: State::Stick };
     }
     let s = mu * normal / size;
     let force = [s * t[0], s * t[1], normal];
-    Answer { force, rate: rate(force), state: State::Slip }
+    PointAnswer { force, rate: rate(force), state: State::Slip }
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@
 //! Where the standard leaves a choice, it is made as a biped needs it. *Enable operation* in state Ready does transitions
 //! 3 and 4 at once. Quick stop brakes on the ramp and then holds (option code 6): a leg that lets go is a fall. A supply
 //! that goes off is no fault but transitions 9, 10 and 12: who took it away says why. Switching on takes a supply and, for
-//! transition 4 and for staying there, what the drive itself demands ([`Inputs::permit`]): a reference for its angle.
+//! transition 4 and for staying there, what the drive itself demands ([`DriveInputs::permit`]): a reference for its angle.
 //! A bus that falls silent under torque is a fault (abort connection option code 0x6007 = 1); a drive without torque waits.
 
 /// States of a drive.
@@ -115,7 +115,7 @@ impl Fault {
 
 /// Inputs of one cycle of a drive.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Inputs {
+pub struct DriveInputs {
     /// The controlword, if one came in this cycle; otherwise the last one holds, without an edge.
     pub control: Option<u16>,
     /// Voltage of the motor supply.
@@ -130,20 +130,20 @@ pub struct Inputs {
 
 /// The drive's side.
 #[derive(Clone, Copy, Debug)]
-pub struct Drive {
+pub struct DriveStateMachine {
     state: State,
     control: u16,
     error: Option<Fault>,
     supply: bool,
 }
 
-impl Default for Drive {
+impl Default for DriveStateMachine {
     fn default() -> Self {
         Self { state: State::NotReady, control: 0, error: None, supply: false }
     }
 }
 
-impl Drive {
+impl DriveStateMachine {
     /// The state.
     pub fn state(&self) -> State {
         self.state
@@ -165,7 +165,7 @@ impl Drive {
     }
 
     /// One cycle.
-    pub fn step(&mut self, inputs: &Inputs) -> State {
+    pub fn step(&mut self, inputs: &DriveInputs) -> State {
         let before = self.control;
         self.control = inputs.control.unwrap_or(self.control & !RESET);
         self.supply = inputs.supply;
@@ -191,7 +191,7 @@ impl Drive {
     }
 
     /// The transition table without faults.
-    fn command(&self, state: State, inputs: &Inputs) -> State {
+    fn command(&self, state: State, inputs: &DriveInputs) -> State {
         use State::{OperationEnabled, QuickStop, Ready, SwitchOnDisabled, SwitchedOn};
         let word = self.control & 0x0F;
         let is = |wanted: u16, mask: u16| word & mask == wanted;

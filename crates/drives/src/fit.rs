@@ -84,14 +84,14 @@ const LEAST_SPREAD: f64 = 1e-10;
 
 /// Fits (2.61).
 pub fn coupled(data: &[Efficiency]) -> Result<Fit<HarmonicFriction>, FitError> {
-    let fit = Problem::new(data, |point| point.speed, true)?.solve();
+    let fit = FitProblem::new(data, |point| point.speed, true)?.solve();
     let [starting, load, viscous, coupled] = fit.friction;
     Ok(fit.with(HarmonicFriction { starting, load, viscous, coupled }))
 }
 
 /// Fits (2.60).
 pub fn cubic(data: &[Efficiency]) -> Result<Fit<CubicFriction>, FitError> {
-    let fit = Problem::new(data, |point| point.speed.powi(3) / point.load, false)?.solve();
+    let fit = FitProblem::new(data, |point| point.speed.powi(3) / point.load, false)?.solve();
     let [starting, load, viscous, cubic] = fit.friction;
     Ok(fit.with(CubicFriction { starting, load, viscous, cubic }))
 }
@@ -123,7 +123,7 @@ impl<T> Fit<T> {
 }
 
 /// The least-squares problem with columns of equal size.
-struct Problem {
+struct FitProblem {
     /// x of every point, scaled, and η.
     rows: Vec<(Vector4<f64>, f64)>,
     /// Parameter over scaled parameter.
@@ -132,7 +132,7 @@ struct Problem {
     bounded: [bool; 4],
 }
 
-impl Problem {
+impl FitProblem {
     fn new(data: &[Efficiency], last: impl Fn(&Efficiency) -> f64, bounded: bool) -> Result<Self, FitError> {
         data.iter().enumerate().try_for_each(|(row, point)| check(row, point))?;
         let x = |p: &Efficiency| Vector4::new(1.0 / p.load, 1.0, p.speed / p.load, last(p));

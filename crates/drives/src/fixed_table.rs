@@ -220,7 +220,7 @@ impl TableAxis {
 /// A joint angle \[rad\] in 2^-29 rad, to the nearest.
 ///
 /// # Errors
-/// It is not a number, or beyond ±4 rad.
+/// It is NaN, or beyond ±4 rad.
 pub fn whole_angle(q: f64) -> Result<i32, OutOfDomain> {
     whole((q * ANGLE).round(), q)
 }

@@ -1,7 +1,8 @@
 //! The states of a drive against the tables of the profile, and what must hold on every way through them.
 
 use drives::cia402::{
-    Drive, ENABLE_OPERATION, Fault, Inputs, State, WORDS, Wanted, controlword, state_of, status_of,
+    DriveInputs, DriveStateMachine, ENABLE_OPERATION, Fault, State, WORDS, Wanted, controlword, state_of,
+    status_of,
 };
 use proptest::prelude::*;
 
@@ -17,13 +18,13 @@ const STATES: [State; 8] = [
 ];
 
 /// A cycle with supply, reference and this controlword.
-fn told(control: u16) -> Inputs {
-    Inputs { control: Some(control), supply: true, permit: true, fault: None, still: false }
+fn told(control: u16) -> DriveInputs {
+    DriveInputs { control: Some(control), supply: true, permit: true, fault: None, still: false }
 }
 
 /// A drive in a state, by the profile's own way.
-fn drive_in(state: State) -> Drive {
-    let mut drive = Drive::default();
+fn drive_in(state: State) -> DriveStateMachine {
+    let mut drive = DriveStateMachine::default();
     let words: &[u16] = match state {
         State::NotReady => &[],
         State::SwitchOnDisabled => &[0x00],
@@ -36,10 +37,10 @@ fn drive_in(state: State) -> Drive {
         drive.step(&told(word));
     }
     if matches!(state, State::FaultReaction | State::Fault) {
-        drive.step(&Inputs { fault: Some(Fault::FollowingError), ..told(0x0F) });
+        drive.step(&DriveInputs { fault: Some(Fault::FollowingError), ..told(0x0F) });
     }
     if state == State::Fault {
-        drive.step(&Inputs { still: true, ..told(0x0F) });
+        drive.step(&DriveInputs { still: true, ..told(0x0F) });
     }
     assert_eq!(drive.state(), state);
     drive
@@ -70,11 +71,11 @@ fn every_transition_of_the_profile_is_there() {
     for (from, to, word) in TRANSITIONS {
         assert_eq!(drive_in(from).step(&told(word)), to, "{from:?} with {word:#04x}");
     }
-    let still = Inputs { still: true, ..told(0x00) };
+    let still = DriveInputs { still: true, ..told(0x00) };
     assert_eq!(drive_in(State::FaultReaction).step(&still), State::Fault); // 14
     for state in STATES {
         let mut drive = drive_in(state);
-        let after = drive.step(&Inputs { fault: Some(Fault::OverTemperature), ..told(0x0F) }); // 13
+        let after = drive.step(&DriveInputs { fault: Some(Fault::OverTemperature), ..told(0x0F) }); // 13
         assert!(matches!(after, State::FaultReaction | State::Fault), "{state:?}");
     }
 }
@@ -121,7 +122,8 @@ fn the_master_leads_every_drive_to_operation_but_out_of_no_fault() {
         let mut drive = drive_in(from);
         let mut cycles = 0;
         while drive.state() != State::OperationEnabled && cycles < 10 {
-            let still = Inputs { still: true, ..told(controlword(drive.statusword(), Wanted::Operation)) };
+            let still =
+                DriveInputs { still: true, ..told(controlword(drive.statusword(), Wanted::Operation)) };
             drive.step(&still);
             cycles += 1;
         }
@@ -139,31 +141,31 @@ fn the_master_leads_every_drive_to_operation_but_out_of_no_fault() {
 fn quick_stop_brakes_holds_and_is_left_only_when_told() {
     let mut drive = drive_in(State::QuickStop);
     for _ in 0..1000 {
-        drive.step(&Inputs { still: true, ..told(controlword(drive.statusword(), Wanted::Stop)) });
+        drive.step(&DriveInputs { still: true, ..told(controlword(drive.statusword(), Wanted::Stop)) });
     }
     assert!(drive.state() == State::QuickStop && drive.drives() && drive.ramps());
-    drive.step(&Inputs { control: None, ..told(0) });
+    drive.step(&DriveInputs { control: None, ..told(0) });
     assert_eq!(drive.state(), State::QuickStop, "silence is no command");
 }
 
 /// A drive that does not know its angle stays where the brake holds it, whatever the master says.
 #[test]
 fn without_a_reference_nothing_is_enabled() {
-    let mut drive = Drive::default();
+    let mut drive = DriveStateMachine::default();
     for _ in 0..10 {
         let word = controlword(drive.statusword(), Wanted::Operation);
-        drive.step(&Inputs { permit: false, ..told(word) });
+        drive.step(&DriveInputs { permit: false, ..told(word) });
     }
     assert!(drive.state() == State::SwitchedOn && !drive.drives());
     drive.step(&told(ENABLE_OPERATION));
     assert_eq!(drive.state(), State::OperationEnabled);
-    drive.step(&Inputs { permit: false, ..told(ENABLE_OPERATION) });
+    drive.step(&DriveInputs { permit: false, ..told(ENABLE_OPERATION) });
     assert_eq!(drive.state(), State::SwitchedOn, "a reference that is lost disables");
 }
 
 #[test]
 fn a_fault_of_the_power_stage_lets_go_at_once() {
-    let fault = |fault| Inputs { fault: Some(fault), ..told(ENABLE_OPERATION) };
+    let fault = |fault| DriveInputs { fault: Some(fault), ..told(ENABLE_OPERATION) };
     assert_eq!(drive_in(State::OperationEnabled).step(&fault(Fault::OverCurrent)), State::Fault);
     let mut drive = drive_in(State::OperationEnabled);
     assert_eq!(drive.step(&fault(Fault::OverTemperature)), State::FaultReaction);
@@ -198,21 +200,22 @@ fn one_bent_bit_of_a_controlword_does_no_harm() {
     }
 }
 
-fn any_inputs() -> impl Strategy<Value = Inputs> {
+fn any_inputs() -> impl Strategy<Value = DriveInputs> {
     let word = prop_oneof![
         4 => prop::sample::select(vec![0x00u16, 0x02, 0x06, 0x07, 0x0F, 0x80, 0x8F, 0x86]),
         1 => any::<u16>(),
     ];
     let fault = prop_oneof![9 => Just(None), 1 => prop::sample::select(Fault::ALL.to_vec()).prop_map(Some)];
-    (prop::option::of(word), any::<bool>(), prop::bool::weighted(0.9), fault, any::<bool>())
-        .prop_map(|(control, supply, permit, fault, still)| Inputs { control, supply, permit, fault, still })
+    (prop::option::of(word), any::<bool>(), prop::bool::weighted(0.9), fault, any::<bool>()).prop_map(
+        |(control, supply, permit, fault, still)| DriveInputs { control, supply, permit, fault, still },
+    )
 }
 
 proptest! {
     /// From a fault to torque only over the rising edge of a fault reset, and never in one cycle.
     #[test]
     fn no_way_from_fault_to_torque_without_the_edge(way in prop::collection::vec(any_inputs(), 1..200)) {
-        let (mut drive, mut word, mut broken) = (Drive::default(), 0u16, false);
+        let (mut drive, mut word, mut broken) = (DriveStateMachine::default(), 0u16, false);
         for inputs in &way {
             let before = drive.state();
             drive.step(inputs);
@@ -232,7 +235,7 @@ proptest! {
     /// Without supply, or without reference in Operation enabled, no torque in the same cycle.
     #[test]
     fn no_torque_without_supply(way in prop::collection::vec(any_inputs(), 1..200)) {
-        let mut drive = Drive::default();
+        let mut drive = DriveStateMachine::default();
         for inputs in &way {
             drive.step(inputs);
             prop_assert!(inputs.supply || !drive.drives());

@@ -7,7 +7,7 @@ use std::fmt;
 pub enum MeshError {
     /// No triangle has an area.
     Empty,
-    /// A coordinate is no number, or too large.
+    /// A coordinate is NaN, or too large.
     Coordinate {
         /// Number of the vertex, from 0.
         vertex: usize,

@@ -5,7 +5,7 @@
 //! - [`Mesh`]: the surface of a solid, from triangles, from a file ([`Mesh::read`]: STL, OBJ, glTF, VRML 97) or a box.
 //!
 //! Lengths in m, z up. Everything is allocated in `new`; queries and [`Environment::advance`] allocate nothing and
-//! answer every input: where a point is no number, the answer is [`Surface::Far`].
+//! answer every input: where a point is NaN or infinite, the answer is [`Surface::Far`].
 
 mod advance;
 mod bounds;

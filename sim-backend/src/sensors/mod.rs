@@ -54,7 +54,7 @@ pub struct Truth {
 
 /// Faults of one cycle's readings. Anything but zeros deserves an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Report {
+pub struct ReadingFaults {
     /// Numbers that are not finite: they stand in the record as NaN, and their frames must not be sent.
     pub invalid: u32,
     /// Numbers beyond the range of their sensor: they stand in the record as its limit.
@@ -110,8 +110,8 @@ impl SensorSet {
     }
 
     /// Writes the readings of one cycle into `out`; header, supply and counters of the record stay as they are.
-    pub fn measure(&mut self, truth: &Truth, out: &mut Sensors) -> Report {
-        let mut report = Report::default();
+    pub fn measure(&mut self, truth: &Truth, out: &mut Sensors) -> ReadingFaults {
+        let mut report = ReadingFaults::default();
         self.measure_joints(truth, out);
         out.foot_wrench = match &mut self.feet {
             Some(feet) => std::array::from_fn(|i| {
