@@ -6,9 +6,8 @@
 mod robot;
 
 use messages::{Command, command::VelocityCommand};
-use planner::boundary::{EndConditions, PlanarState};
+use planner::boundary::{BoundarySolver, EndConditions, PlanarState};
 use planner::closed_form::ClosedForm;
-use planner::cog_method::BoundarySolver;
 use planner::collocation::Collocation;
 use planner::pose::Pose;
 use planner::sole::Sole;

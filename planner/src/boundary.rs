@@ -1,5 +1,5 @@
 //! Boundary value problems `u.. = om2(t) u + f(t)` of the centre of gravity, and what their ends must meet (thesis 4.6.2,
-//! 4.6.5). How they are solved is the matter of [`crate::cog_method`].
+//! 4.6.5). How they are solved is the matter of `cog_method`.
 //!
 //! | symbol | name | unit |
 //! |---|---|---|
@@ -11,6 +11,7 @@
 //! | w, xi | sqrt(om2) at the right end, divergent component r + v/w | 1/s, m |
 
 use crate::pose::{Pose, rotate};
+use crate::verdict::PlanVerdict;
 use curves::Sample;
 
 /// Most knots of one problem.
@@ -72,6 +73,24 @@ impl BoundaryProblem {
             half: [[0.0; F]; MAX_KNOTS],
         }
     }
+}
+
+/// Solver of a boundary value problem that it holds.
+pub trait BoundarySolver {
+    /// The problem.
+    fn problem(&self) -> &BoundaryProblem;
+
+    /// The problem, to be written before it is solved.
+    fn problem_mut(&mut self) -> &mut BoundaryProblem;
+
+    /// Solves for all columns. Anything but [`PlanVerdict::Sound`]: there is no solution, or not by this method.
+    fn solve(&mut self) -> PlanVerdict;
+
+    /// Slopes of all columns at both ends.
+    fn ends(&self) -> EndSlopes;
+
+    /// Position, velocity and acceleration in the plane at knot `i` between given ends.
+    fn motion(&self, i: usize, ends: &EndConditions) -> [[f64; 2]; 3];
 }
 
 /// Selection of one solution: positions at both ends and amplitudes, per axis.

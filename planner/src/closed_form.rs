@@ -13,8 +13,9 @@
 //! | p, s | -f / w^2, zero-moment point T/(m g) of a column, and its rate in a piece over w | m |
 //! | e | e^{-w h} of all pieces together | 1 |
 
-use crate::boundary::{BoundaryProblem, EndConditions, EndSlopes, F, LEFT, MAX_KNOTS, RIGHT, U};
-use crate::cog_method::BoundarySolver;
+use crate::boundary::{
+    BoundaryProblem, BoundarySolver, EndConditions, EndSlopes, F, LEFT, MAX_KNOTS, RIGHT, U,
+};
 use crate::verdict::PlanVerdict;
 
 /// Share by which om2 and the middle of a piece may be off and still count as constant and as straight.

@@ -7,29 +7,10 @@
 //!
 //! Another method is another implementation of [`BoundarySolver`], a variant here and a word in `config::gait::CogMethod`.
 
-use crate::boundary::{BoundaryProblem, EndConditions, EndSlopes};
+use crate::boundary::BoundarySolver;
 use crate::closed_form::ClosedForm;
 use crate::collocation::Collocation;
-use crate::verdict::PlanVerdict;
 use config::gait;
-
-/// Solver of a boundary value problem that it holds.
-pub trait BoundarySolver {
-    /// The problem.
-    fn problem(&self) -> &BoundaryProblem;
-
-    /// The problem, to be written before it is solved.
-    fn problem_mut(&mut self) -> &mut BoundaryProblem;
-
-    /// Solves for all columns. Anything but [`PlanVerdict::Sound`]: there is no solution, or not by this method.
-    fn solve(&mut self) -> PlanVerdict;
-
-    /// Slopes of all columns at both ends.
-    fn ends(&self) -> EndSlopes;
-
-    /// Position, velocity and acceleration in the plane at knot `i` between given ends.
-    fn motion(&self, i: usize, ends: &EndConditions) -> [[f64; 2]; 3];
-}
 
 /// The method that a gait names.
 #[derive(Clone)]

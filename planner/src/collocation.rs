@@ -12,8 +12,9 @@
 //! | u | columns: the same, then unit value at the left end, unit value at the right end | m |
 //! | a, c | lengths of the intervals before and after a knot | s |
 
-use crate::boundary::{BoundaryProblem, EndConditions, EndSlopes, F, LEFT, MAX_KNOTS, RIGHT, U};
-use crate::cog_method::BoundarySolver;
+use crate::boundary::{
+    BoundaryProblem, BoundarySolver, EndConditions, EndSlopes, F, LEFT, MAX_KNOTS, RIGHT, U,
+};
 use crate::verdict::PlanVerdict;
 
 /// A problem and its solution.

@@ -11,7 +11,7 @@
 //! | foot rollover, toe joints | 4.5, (4.29), (4.30) | 2.5, gaps 7, 8 | [`foot_rollover`] |
 //! | upper body orientation | 4.4.4, (4.11)-(4.13) | 2.3 | [`torso`] |
 //! | contact force (ZMP) trajectory | 4.6.4, (4.40)-(4.43) | 2.10 | `segment`, [`zmp`], `active_set`, [`sole`] |
-//! | centre-of-gravity trajectory | 4.6.3, 4.6.5, (4.31)-(4.54) | 2.6-2.9 | `balance`, [`com`], [`boundary`], [`cog_method`]: [`collocation`] or [`closed_form`] |
+//! | centre-of-gravity trajectory | 4.6.3, 4.6.5, (4.31)-(4.54) | 2.6-2.9 | `balance`, [`com`], [`boundary`], `cog_method`: [`collocation`] or [`closed_form`] |
 //! | contact force distribution | 4.8, (4.62) | gap 15 | [`load`] |
 //! | all of them, in this order | | | [`walk`] |
 //!
@@ -21,7 +21,7 @@ mod active_set;
 mod balance;
 pub mod boundary;
 pub mod closed_form;
-pub mod cog_method;
+mod cog_method;
 pub mod collocation;
 pub mod com;
 pub mod commands;

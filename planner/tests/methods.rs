@@ -1,8 +1,7 @@
 //! Methods against one another, and where they fail: closed form and collocation, direct construction and sweeps.
 
-use planner::boundary::{BoundaryProblem, EndConditions, MAX_KNOTS, PlanarState};
+use planner::boundary::{BoundaryProblem, BoundarySolver, EndConditions, MAX_KNOTS, PlanarState};
 use planner::closed_form::ClosedForm;
-use planner::cog_method::BoundarySolver;
 use planner::collocation::Collocation;
 use planner::pose::Pose;
 use planner::sole::{Hull, Sole};

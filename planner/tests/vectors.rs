@@ -1,7 +1,6 @@
 //! Vectors of errata 2 and orders of convergence.
 
-use planner::boundary::PlanarState;
-use planner::cog_method::BoundarySolver;
+use planner::boundary::{BoundarySolver, PlanarState};
 use planner::collocation::Collocation;
 use planner::pose::Pose;
 use planner::sole::Sole;

@@ -1,8 +1,7 @@
 //! Boundary value problem of the centre of gravity: cubic splines (4.50) and the fourth-order weights that plans use, with
 //! knots on the phases and without (errata 2.7, 2.8).
 
-use planner::boundary::U;
-use planner::cog_method::BoundarySolver;
+use planner::boundary::{BoundarySolver, U};
 use planner::collocation::Collocation;
 
 use super::{Chart, Cost, Point, cost};

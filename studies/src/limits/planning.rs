@@ -2,7 +2,7 @@
 //!
 //! u'' = w^2 u + f with f such that u = sin 3t, the linear inverted pendulum of height 0.9 m.
 
-use planner::cog_method::BoundarySolver;
+use planner::boundary::BoundarySolver;
 use planner::collocation::Collocation;
 
 use crate::search::slope;
