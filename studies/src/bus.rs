@@ -68,7 +68,13 @@ impl Study for BusCost {
         let mut buses = Vec::new();
         for (name, cycle) in ROBOTS {
             let robot = Robot::load(&given.config.join("robots").join(name))?;
-            buses.push(bus(&robot, "classic CAN, 1 Mbit/s", robot.classic.as_ref().map_err(String::as_str)?, CLASSIC, cycle));
+            buses.push(bus(
+                &robot,
+                "classic CAN, 1 Mbit/s",
+                robot.classic.as_ref().map_err(String::as_str)?,
+                CLASSIC,
+                cycle,
+            ));
             buses.push(bus(&robot, "CAN FD, 1 and 5 Mbit/s", &robot.layout, FD, FD_CYCLE));
         }
         // What the resolution and the cycle of each kind of bus do to the walk.
