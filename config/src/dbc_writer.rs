@@ -92,14 +92,14 @@ pub fn dbc_text(
     let mut file = File { frames: Vec::new() };
     for (n, node) in nodes.iter().enumerate() {
         match form {
-            FrameForm::Classic => file.to_node_classic(n as u32, node),
-            FrameForm::Fd => file.to_node_fd(n as u32, node),
+            FrameForm::Classic => file.command_classic(n as u32, node),
+            FrameForm::Fd => file.command_fd(n as u32, node),
         }
     }
     for (n, node) in nodes.iter().enumerate() {
         match form {
-            FrameForm::Classic => file.from_node_classic(n as u32, node, motor_side),
-            FrameForm::Fd => file.from_node_fd(n as u32, node, motor_side),
+            FrameForm::Classic => file.answer_classic(n as u32, node, motor_side),
+            FrameForm::Fd => file.answer_fd(n as u32, node, motor_side),
         }
     }
     Ok(file.text(robot, nodes, form))
@@ -199,7 +199,7 @@ impl File {
         self.frames.push(filling.frame);
     }
 
-    fn to_node_classic(&mut self, n: u32, node: &LocalController) {
+    fn command_classic(&mut self, n: u32, node: &LocalController) {
         let form = FrameForm::Classic;
         for (k, joint) in (0..).zip(&node.joints) {
             let head = (0x100 + 4 * n + k, format!("{joint}_to"));
@@ -216,7 +216,7 @@ impl File {
         self.frame(form, (0x80 + 4 * n, format!("node{n}_sync")), (node, true), SYNC, |_| {});
     }
 
-    fn from_node_classic(&mut self, n: u32, node: &LocalController, motor_side: bool) {
+    fn answer_classic(&mut self, n: u32, node: &LocalController, motor_side: bool) {
         let form = FrameForm::Classic;
         let sides = [
             (0x180, "link", ["angle", "speed"], "Link side: absolute encoder."),
@@ -240,7 +240,7 @@ impl File {
             self.frame(form, (base + 4 * n, format!("node{n}_{name}")), (node, false), comment, fill);
         };
         of_drives(0x200, "current", "Motor currents.", &|frame| {
-            frame.each(node, "current", || signed(16, 7, "A"))
+            frame.each(node, "current", || signed(16, 7, "A"));
         });
         of_drives(0x240, "status", "Motor supply, and statuswords of CiA 402.", &|frame| {
             frame.put("supply", unsigned(8));
@@ -248,7 +248,7 @@ impl File {
         });
         of_drives(0x280, "health", "Windings.", &|frame| frame.each(node, "temp", || TEMPERATURE));
         of_drives(0x2c0, "error", "Error codes of CiA 402.", &|frame| {
-            frame.each(node, "error", || unsigned(16))
+            frame.each(node, "error", || unsigned(16));
         });
         for sensor in &node.sensors {
             self.sensor_classic(n, node, sensor);
@@ -285,7 +285,7 @@ impl File {
         send(0x343, "imu_accel".into(), comment, &|frame| frame.axes("imu_accel", || signed(18, 6, "m/s2")));
     }
 
-    fn to_node_fd(&mut self, n: u32, node: &LocalController) {
+    fn command_fd(&mut self, n: u32, node: &LocalController) {
         let form = FrameForm::Fd;
         let comment = "Mode (0 off, 1 hold, 2 track, 3 stop), targets, controlwords of CiA 402.";
         self.frame(form, (0x100 + n, format!("node{n}_targets")), (node, true), comment, |frame| {
@@ -300,7 +300,7 @@ impl File {
         self.frame(form, (0x80 + n, format!("node{n}_sync")), (node, true), SYNC, |_| {});
     }
 
-    fn from_node_fd(&mut self, n: u32, node: &LocalController, motor_side: bool) {
+    fn answer_fd(&mut self, n: u32, node: &LocalController, motor_side: bool) {
         let form = FrameForm::Fd;
         // Link side and status: 10 bytes a joint; with the current 14, beside 4 of the head.
         let currents_fit = 4 + 14 * node.joints.len() <= 64;
