@@ -74,7 +74,7 @@ pub fn gate() -> (Gate, Inlet) {
 
 impl Gate {
     /// The gate that rings the broker whenever something is handed in.
-    pub fn ringing(self, doorbell: Doorbell) -> Self {
+    pub(crate) fn ringing(self, doorbell: Doorbell) -> Self {
         Self { doorbell: Some(doorbell), ..self }
     }
 

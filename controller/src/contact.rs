@@ -65,7 +65,7 @@ impl FootContact {
     }
 
     /// \[1\] alpha_lambda: 1 force controlled, 0 position controlled.
-    pub fn force_share(&self) -> f64 {
+    pub(crate) fn force_share(&self) -> f64 {
         match self.phase {
             ContactPhase::Swing | ContactPhase::Late => 0.0,
             ContactPhase::Early => 1.0,
@@ -78,7 +78,7 @@ impl FootContact {
 const HALF: f64 = 0.5;
 
 /// Load factors of the feet that are felt: the other foot carries for one that finds no ground.
-pub fn felt_load(planned: [f64; 2], contacts: &[FootContact; 2]) -> [f64; 2] {
+pub(crate) fn felt_load(planned: [f64; 2], contacts: &[FootContact; 2]) -> [f64; 2] {
     let felt = [planned[0] * contacts[0].felt, planned[1] * contacts[1].felt];
     let sum = felt[0] + felt[1];
     if sum > 0.0 { felt.map(|f| f / sum) } else { planned }

@@ -139,7 +139,7 @@ pub struct FootReference {
 /// One cycle of `dt` \[s\]: the rate of the modification (5.32) and its integral (5.33), both limited.
 ///
 /// `motion` is N. A foot in the air is position controlled; its forces do not matter (errata 2 to (5.32)).
-pub fn modify(
+pub(crate) fn modify(
     control: &Control,
     motion: &Matrix6<f64>,
     feet: &[(Compliance, FootReference); 2],

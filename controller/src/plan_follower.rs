@@ -53,7 +53,7 @@ impl PlanFollower {
     }
 
     /// Drops all plans, those made up to this tick that are still to come among them: without power nobody follows one.
-    pub fn drop_all(&mut self, tick: u64) {
+    pub(crate) fn drop_all(&mut self, tick: u64) {
         // Ids go on rising: what was dropped is not looked at again.
         self.next.id = self.next.id.max(self.active.id);
         self.next.start_tick = u64::MAX;

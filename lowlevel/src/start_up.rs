@@ -239,7 +239,7 @@ impl StartUpSequence {
 }
 
 /// True if the drive of joint `j` follows its targets.
-pub fn is_enabled(sensors: &Sensors, j: usize) -> bool {
+pub(crate) fn is_enabled(sensors: &Sensors, j: usize) -> bool {
     state_of(sensors.drive_status[j] as u16) == Some(State::OperationEnabled)
 }
 

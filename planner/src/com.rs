@@ -28,7 +28,7 @@ use curves::{Cursor, Path, Polyline, Sample};
 pub const GRAVITY: f64 = 9.81;
 
 /// Pieces of a height path.
-pub const HEIGHT_PIECES: usize = 16;
+pub(crate) const HEIGHT_PIECES: usize = 16;
 /// Height of the body mass point over time.
 pub type HeightPath = Path<1, HEIGHT_PIECES>;
 
@@ -69,7 +69,7 @@ pub struct GroundDemand {
 
 impl GroundDemand {
     /// Nothing asked of it yet.
-    pub const UNTOUCHED: Self = Self { least_force: f64::INFINITY, friction: 0.0 };
+    pub(crate) const UNTOUCHED: Self = Self { least_force: f64::INFINITY, friction: 0.0 };
 
     /// With an acceleration of the centre of gravity \[m/s^2\].
     fn with(self, [x, y, z]: [f64; 3]) -> Self {

@@ -29,7 +29,7 @@ impl WalkingModel {
     }
 
     /// \[m\] Point at which the centre of gravity rests between two feet.
-    pub fn standing_point(&self, feet: &[Pose; 2]) -> [f64; 2] {
+    pub(crate) fn standing_point(&self, feet: &[Pose; 2]) -> [f64; 2] {
         let heading = 0.5 * (feet[0].heading + feet[1].heading);
         let ahead = rotate(heading, [self.model.com_forward, 0.0]);
         [0.5 * (feet[0].x + feet[1].x) + ahead[0], 0.5 * (feet[0].y + feet[1].y) + ahead[1]]

@@ -73,7 +73,7 @@ impl CommandTimeout {
     }
 
     /// True if the local controller of a joint has received nothing for too long.
-    pub fn is_timed_out(&self, joint: usize) -> bool {
+    pub(crate) fn is_timed_out(&self, joint: usize) -> bool {
         self.silent[self.node_of[joint]] > TIMEOUT_CYCLES
     }
 

@@ -44,6 +44,6 @@ impl Converter {
 }
 
 /// The nearest multiple of `step`; `x` itself if `step` is 0.
-pub fn round_to(x: f64, step: f64) -> f64 {
+pub(crate) fn round_to(x: f64, step: f64) -> f64 {
     if step > 0.0 { (x / step).round() * step } else { x }
 }

@@ -60,7 +60,7 @@ impl Multipliers {
 ///
 /// # Errors
 /// A motion ended, or no eigenvalues were found.
-pub fn multipliers(
+pub(crate) fn multipliers(
     steps: &[f64],
     factor: f64,
     map: &(dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync),
