@@ -8,7 +8,7 @@ use config::gait::Control;
 
 /// Contact phase of a foot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ContactPhase {
+pub(crate) enum ContactPhase {
     /// In the air as planned: position controlled.
     #[default]
     Swing,
@@ -33,7 +33,7 @@ pub struct Signs {
 
 /// Contact of one foot.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct FootContact {
+pub(crate) struct FootContact {
     /// Its phase.
     pub phase: ContactPhase,
     /// \[1\] 0 without felt force, 1 from the upper force of `force_blend` on.
@@ -44,7 +44,7 @@ pub struct FootContact {
 
 impl FootContact {
     /// One cycle.
-    pub fn update(&mut self, control: &Control, signs: &Signs) {
+    pub(crate) fn update(&mut self, control: &Control, signs: &Signs) {
         let [low, high] = control.force_blend;
         self.felt = ((signs.force - low) / (high - low)).clamp(0.0, 1.0);
         let [now, end] = signs.load;

@@ -17,7 +17,7 @@ use nalgebra::{Vector2, Vector3};
 
 /// Force and moment about a force sensor, axes of the planning frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FootWrench {
+pub(crate) struct FootWrench {
     /// \[N\]
     pub force: Vector3<f64>,
     /// \[N m\]

@@ -12,7 +12,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 /// phi_x, phi_y, alpha \[rad\].
-pub type TorsoAngles = Vector3<f64>;
+pub(crate) type TorsoAngles = Vector3<f64>;
 
 /// Rotation world_from_torso of the angles; `None` where the torso's z axis is not above the horizontal.
 pub fn rotation(angles: &TorsoAngles) -> Option<Matrix3<f64>> {

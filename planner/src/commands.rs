@@ -9,7 +9,7 @@ use messages::command::{StepCommand, VelocityCommand};
 
 /// Intent of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Intent {
+pub(crate) enum Intent {
     /// Stay as it is, or stop.
     Rest,
     /// Take the standing pose.

@@ -13,7 +13,7 @@ use curves::{Path, Sample};
 use messages::Plan;
 
 /// Path of one foot: x, y, z \[m\] and heading \[rad\].
-pub type FootPath = Path<4, FOOT_PIECES>;
+pub(crate) type FootPath = Path<4, FOOT_PIECES>;
 /// Pieces of a foot's path.
 pub(crate) const FOOT_PIECES: usize = 32;
 

@@ -6,7 +6,7 @@ use config::{Gait, gait};
 
 /// Gait and geometry that plans are made with.
 #[derive(Clone)]
-pub struct WalkingModel {
+pub(crate) struct WalkingModel {
     /// Steps; its values may be changed between two plans.
     pub step: gait::Step,
     /// The model the centre of gravity is planned with.
@@ -19,12 +19,12 @@ pub struct WalkingModel {
 
 impl WalkingModel {
     /// For feet with these support rectangles, with a cycle of 1 ms until it is set.
-    pub fn new(gait: &Gait, soles: [Sole; 2]) -> Self {
+    pub(crate) fn new(gait: &Gait, soles: [Sole; 2]) -> Self {
         Self { step: gait.step.clone(), model: gait.model, soles, cycle_s: 1e-3 }
     }
 
     /// Whole cycles nearest to `t` \[s\], at least one.
-    pub fn cycles(&self, t: f64) -> u64 {
+    pub(crate) fn cycles(&self, t: f64) -> u64 {
         (t / self.cycle_s).round().max(1.0) as u64
     }
 

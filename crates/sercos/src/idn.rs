@@ -82,7 +82,7 @@ pub(crate) const PRODUCER: u16 = 0xC010;
 
 /// Element of a parameter in the service channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Element {
+pub(crate) enum Element {
     /// Nothing: the channel is closed.
     Close,
     /// The identification number; read: state of a procedure command.
@@ -95,7 +95,7 @@ pub enum Element {
 
 impl Element {
     /// Its number in the control word.
-    pub const fn number(self) -> u16 {
+    pub(crate) const fn number(self) -> u16 {
         match self {
             Self::Close => 0,
             Self::Idn => 1,

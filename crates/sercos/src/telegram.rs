@@ -4,14 +4,14 @@ use crate::header::{HEADER, Header, Kind, MAX_FRAME, Phase};
 
 /// One telegram with its headers.
 #[derive(Clone, Copy)]
-pub struct Telegram {
+pub(crate) struct Telegram {
     bytes: [u8; MAX_FRAME],
     len: usize,
 }
 
 impl Telegram {
     /// Begins a telegram with `len` bytes of zeros behind its headers; `len` at most [`crate::header::MAX_DATA`].
-    pub fn begin(&mut self, header: &Header, len: usize) {
+    pub(crate) fn begin(&mut self, header: &Header, len: usize) {
         self.len = HEADER + len;
         self.bytes[HEADER..HEADER + len].fill(0);
         header.write(&mut self.bytes);
@@ -21,13 +21,13 @@ impl Telegram {
     pub(crate) const EMPTY: Self = Self { bytes: [0; MAX_FRAME], len: 0 };
 
     /// Copies a received frame; frames longer than a telegram are cut.
-    pub fn copy_from(&mut self, frame: &[u8]) {
+    pub(crate) fn copy_from(&mut self, frame: &[u8]) {
         self.len = frame.len().min(MAX_FRAME);
         self.bytes[..self.len].copy_from_slice(&frame[..self.len]);
     }
 
     /// All bytes, as on the wire.
-    pub fn bytes(&self) -> &[u8] {
+    pub(crate) fn bytes(&self) -> &[u8] {
         &self.bytes[..self.len]
     }
 
@@ -37,7 +37,7 @@ impl Telegram {
     }
 
     /// Payload behind the headers.
-    pub fn data(&self) -> &[u8] {
+    pub(crate) fn data(&self) -> &[u8] {
         &self.bytes[HEADER.min(self.len)..self.len]
     }
 

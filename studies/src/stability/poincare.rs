@@ -33,7 +33,7 @@ pub struct Jacobian {
 
 /// What the differences of two step sizes say.
 #[derive(Clone, Debug)]
-pub struct Multipliers {
+pub(crate) struct Multipliers {
     /// lambda_i with the smaller step (real, imaginary), largest first.
     pub values: Vec<[f64; 2]>,
     /// |lambda|_max with the smaller and with the larger step.
@@ -50,7 +50,7 @@ pub struct Multipliers {
 
 impl Multipliers {
     /// Whether the map was smooth over the steps taken; otherwise its multipliers mean nothing.
-    pub fn smooth(&self) -> bool {
+    pub(crate) fn smooth(&self) -> bool {
         self.spread < SMOOTH && self.asymmetry.iter().all(|a| *a < SMOOTH)
     }
 }
