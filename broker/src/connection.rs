@@ -39,7 +39,7 @@ pub const RATE: f64 = 2000.0;
 /// Frames of one connection that are not answered yet.
 pub const UNANSWERED: usize = 64;
 /// Most states of the robot per second that a client gets; the broker looks a hundred times a second.
-pub const MAX_RATE: u16 = 50;
+pub(crate) const MAX_RATE: u16 = 50;
 /// Frames that wait for one client, answers not counted.
 const WAITING: usize = 128;
 /// Time for which the rest of a closed connection is read.
@@ -431,7 +431,7 @@ impl Bucket {
 }
 
 /// Writes why a connection was closed, unless there are too many such lines.
-pub fn log_end(log: &mut LogGate, token: u32, peer: &str, refusal: &Refusal) {
+pub(crate) fn log_end(log: &mut LogGate, token: u32, peer: &str, refusal: &Refusal) {
     if let Some(folded) = log.admit(now()) {
         let connection = token - FIRST_STREAM;
         tracing::warn!(code = refusal.code(), connection, folded, "connection closed: {peer}: {refusal}");

@@ -70,7 +70,7 @@ enum Peer {
 ///
 /// # Errors
 /// The path is too long for a socket, or cannot be made.
-pub fn bind_socket(dir: &Path) -> Result<(UnixListener, u32), String> {
+pub(crate) fn bind_socket(dir: &Path) -> Result<(UnixListener, u32), String> {
     let path = dir.join(SOCKET);
     let wrong = |e: std::io::Error| {
         format!("cannot listen on {}: {e}; a path of at most 107 bytes is needed (--dir)", path.display())
@@ -111,7 +111,7 @@ pub fn bind_tcp(address: SocketAddr, keys: &[Key]) -> Result<TcpListener, String
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn publish_address(dir: &Path, listener: &TcpListener) -> Result<(), String> {
+pub(crate) fn publish_address(dir: &Path, listener: &TcpListener) -> Result<(), String> {
     let path: PathBuf = dir.join(TCP_FILE);
     let address = listener.local_addr().map_err(|e| e.to_string())?;
     fs::write(&path, format!("{address}\n")).map_err(|e| format!("{}: {e}", path.display()))
@@ -121,7 +121,7 @@ pub fn publish_address(dir: &Path, listener: &TcpListener) -> Result<(), String>
 ///
 /// # Errors
 /// The thread or its run-time cannot be made.
-pub fn serve_socket(listener: UnixListener, owner: u32, gate: Gate) -> Result<(), String> {
+pub(crate) fn serve_socket(listener: UnixListener, owner: u32, gate: Gate) -> Result<(), String> {
     in_thread("socket", async move {
         let listener = match tokio::net::UnixListener::from_std(listener) {
             Ok(listener) => listener,
@@ -148,7 +148,7 @@ pub fn serve_socket(listener: UnixListener, owner: u32, gate: Gate) -> Result<()
 ///
 /// # Errors
 /// The thread or its run-time cannot be made.
-pub fn serve_tcp(listener: TcpListener, keys: Vec<Key>, gate: Gate) -> Result<(), String> {
+pub(crate) fn serve_tcp(listener: TcpListener, keys: Vec<Key>, gate: Gate) -> Result<(), String> {
     in_thread("tcp", async move {
         let listener = match tokio::net::TcpListener::from_std(listener) {
             Ok(listener) => listener,

@@ -100,7 +100,7 @@ impl<'a> Exchange<'a> {
     }
 
     /// Shows the robot to clients that want to watch it.
-    pub fn showing(self, robot: Observation) -> Self {
+    pub(crate) fn showing(self, robot: Observation) -> Self {
         Self { robot: Some(robot), ..self }
     }
 

@@ -9,7 +9,7 @@ use tokio::sync::oneshot;
 use crate::members::Outgoing;
 
 /// A command's way into the broker: number of the connection and message. It is answered on the connection.
-pub type Publication = (u32, Vec<u8>);
+pub(crate) type Publication = (u32, Vec<u8>);
 
 /// Requests of a connection other than commands, each with the sequence of its frame.
 #[allow(missing_docs, reason = "fields are the token of a connection and the contents of its frame")]
@@ -74,7 +74,7 @@ pub fn gate() -> (Gate, Inlet) {
 
 impl Gate {
     /// The gate that rings the broker whenever something is handed in.
-    pub fn ringing(self, doorbell: Doorbell) -> Self {
+    pub(crate) fn ringing(self, doorbell: Doorbell) -> Self {
         Self { doorbell: Some(doorbell), ..self }
     }
 

@@ -143,7 +143,7 @@ impl Half {
     }
 
     /// Whether that is the proof; compared in constant time.
-    pub fn proves(&self, proof: &[u8]) -> bool {
+    pub(crate) fn proves(&self, proof: &[u8]) -> bool {
         mac(&self.key, &[b"proof"]).verify_slice(proof).is_ok()
     }
 }

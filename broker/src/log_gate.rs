@@ -7,7 +7,7 @@ const RATE: u64 = 5;
 
 /// Counts lines, and those that were left out.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct LogGate {
+pub(crate) struct LogGate {
     window: u64,
     lines: u64,
     folded: u64,
@@ -15,7 +15,7 @@ pub struct LogGate {
 
 impl LogGate {
     /// Number of lines left out since the last one, if one may be written now; none: leave this one out, too.
-    pub fn admit(&mut self, now_ns: u64) -> Option<u64> {
+    pub(crate) fn admit(&mut self, now_ns: u64) -> Option<u64> {
         if now_ns / SECOND != self.window {
             (self.window, self.lines) = (now_ns / SECOND, 0);
         }

@@ -34,7 +34,7 @@ pub mod service {
     /// Register or renew, by queue: `[token u32, domains u32, lost u32, name]`. Answered with [`ACCEPTED`].
     pub const REGISTER: u16 = 1;
     /// Leave, by queue: `[token u32]`.
-    pub const LEAVE: u16 = 2;
+    pub(crate) const LEAVE: u16 = 2;
     /// Subscribe to domains, by stream: `[domains u32]`, bit n for domain n.
     pub const SUBSCRIBE: u16 = 3;
     /// Ask for statistics, by stream.
@@ -57,13 +57,13 @@ pub mod service {
     /// at that rate, and with `events` = 1 what the processes report.
     pub const WATCH: u16 = 12;
     /// Ask for the table of parameters, by stream.
-    pub const PARAMETERS: u16 = 13;
+    pub(crate) const PARAMETERS: u16 = 13;
     /// Give a parameter another value, by stream: `[value f64, name]`; answered like the command of its process.
-    pub const SET: u16 = 14;
+    pub(crate) const SET: u16 = 14;
     /// Done: `[name of the process that took it]`.
     pub const ACCEPTED: u16 = 16;
     /// Not done: `[code u8, reason]`.
-    pub const REFUSED: u16 = 17;
+    pub(crate) const REFUSED: u16 = 17;
     /// One line of text; [`ACCEPTED`] follows the last one.
     pub const LINE: u16 = 18;
     /// Answer to [`HELLO`]: `[version u16, schema u64, nonce 16 bytes, token u32, domains u32, prove u8]`.
@@ -73,7 +73,7 @@ pub mod service {
     /// State of the robot: `[tick u64, lost u32, numbers f32 ...]`; the LINEs of [`WATCH`] say what they are.
     pub const STATE: u16 = 21;
     /// Event of a process: `[tick u64, code u32, detail u64, PROCESS NAME]`.
-    pub const EVENT: u16 = 22;
+    pub(crate) const EVENT: u16 = 22;
     /// Present value of a parameter that can be changed: `[value f64, name]`.
     pub const PARAMETER: u16 = 23;
 }

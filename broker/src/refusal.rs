@@ -69,7 +69,7 @@ impl Refusal {
     }
 
     /// Whether the connection ends with it: after these the bytes that follow mean nothing.
-    pub const fn is_final(&self) -> bool {
+    pub(crate) const fn is_final(&self) -> bool {
         matches!(
             self,
             Self::Malformed(_)
@@ -81,7 +81,7 @@ impl Refusal {
     }
 
     /// The answer to the frame `sequence`.
-    pub fn to_message(&self, sequence: u64, now_ns: u64) -> Vec<u8> {
+    pub(crate) fn to_message(&self, sequence: u64, now_ns: u64) -> Vec<u8> {
         let mut payload = vec![self.code()];
         payload.extend(self.to_string().bytes());
         service_message(service::REFUSED, sequence, now_ns, &payload)

@@ -21,7 +21,7 @@ use crate::message::{
 /// Timeout for the broker's answer; a process that decides has less.
 const ANSWER_TIME: Duration = Duration::from_secs(3);
 /// Sign of life of a client that only listens, and of one that holds the lease.
-pub const PING_TIME: Duration = Duration::from_millis(100);
+pub(crate) const PING_TIME: Duration = Duration::from_millis(100);
 
 /// Operations common to Unix and TCP streams.
 trait Stream: Read + Write + Send {
@@ -260,15 +260,6 @@ impl StreamClient {
     /// The connection may not read, or is lost.
     pub fn parameters(&mut self) -> Result<Vec<String>, String> {
         self.lines(service::PARAMETERS, &[])
-    }
-
-    /// Gives a parameter another value: a command that its process answers.
-    ///
-    /// # Errors
-    /// The connection is lost.
-    pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<Answer, String> {
-        let sequence = self.request(service::SET, &[&value.to_le_bytes()[..], name.as_bytes()].concat())?;
-        self.answer(sequence)
     }
 
     /// Watches the robot: its present state at once, and from now on at `rate` \[1/s\] and with `events` what processes

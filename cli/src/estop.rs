@@ -93,7 +93,7 @@ fn robots(all: bool, dir: Option<&Path>) -> Vec<StopName> {
 }
 
 /// Stops the robot that this user runs in `dir`.
-pub fn stop_own(dir: &Path) -> Vec<Stopped> {
+pub(crate) fn stop_own(dir: &Path) -> Vec<Stopped> {
     stop(&[StopName::own(dir)])
 }
 

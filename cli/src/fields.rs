@@ -63,7 +63,7 @@ pub fn numbers<T: Field>(record: &T, joints: &[String]) -> Vec<Number> {
 }
 
 /// The first number whose bits differ: its name, and its value in both.
-pub fn first_difference<T: Field>(a: &T, b: &T) -> Option<(String, String, String)> {
+pub(crate) fn first_difference<T: Field>(a: &T, b: &T) -> Option<(String, String, String)> {
     let (a, b) = (numbers(a, &[]), numbers(b, &[]));
     let differs = a.iter().zip(&b).find(|(a, b)| a.name != b.name || a.value.bits() != b.value.bits());
     differs.map(|(a, b)| (a.name.clone(), a.value.exact(), b.value.exact()))

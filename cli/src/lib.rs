@@ -23,4 +23,4 @@ pub mod sim;
 pub mod topic;
 
 /// Git commit that this program was built from, `-dirty` with changes; empty: unknown.
-pub const COMMIT: &str = env!("GANGWERK_COMMIT");
+pub(crate) const COMMIT: &str = env!("GANGWERK_COMMIT");

@@ -54,7 +54,7 @@ impl FaultKind {
         ["lost", "late", "duplicated", "reordered", "corrupted", "flipped", "silent", "pulled", "shorted"];
 
     /// Whether it happens to a whole line, in both directions, without chance.
-    pub fn is_of_line(self) -> bool {
+    pub(crate) fn is_of_line(self) -> bool {
         matches!(self, Self::Silent | Self::Pulled | Self::Shorted)
     }
 }

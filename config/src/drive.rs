@@ -225,7 +225,7 @@ impl Drive {
     }
 
     /// Controls it like this; where counts are asked for, an encoder with a number of its own keeps it.
-    pub fn set_control(&mut self, control: JointControl) {
+    pub(crate) fn set_control(&mut self, control: JointControl) {
         self.control = control;
         if let Some(counts) = &mut self.control.resolution.encoder_counts {
             *counts = self.encoder_counts.unwrap_or(*counts);

@@ -7,7 +7,7 @@ use crate::error::ConfigError;
 use crate::file;
 
 /// Name of a scene, and the scene or what is wrong with its file.
-pub type Listed = (String, Result<Scene, ConfigError>);
+pub(crate) type Listed = (String, Result<Scene, ConfigError>);
 
 /// Name of the scene that somebody asks for by name or by path: that of the file, without its ending.
 pub fn name(asked: &str) -> String {

@@ -49,7 +49,7 @@ impl Output {
     pub const WORDS: [&str; 6] =
         ["inclination", "foot_force", "joint_angle", "joint_torque", "motor_current", "position"];
     /// Their units.
-    pub const UNITS: [&str; 6] = ["rad", "N", "rad", "N m", "A", "m"];
+    pub(crate) const UNITS: [&str; 6] = ["rad", "N", "rad", "N m", "A", "m"];
 
     /// Its name in scene files.
     pub fn word(self) -> &'static str {

@@ -8,7 +8,7 @@ use config::gait::Control;
 
 /// Contact phase of a foot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ContactPhase {
+pub(crate) enum ContactPhase {
     /// In the air as planned: position controlled.
     #[default]
     Swing,
@@ -33,7 +33,7 @@ pub struct Signs {
 
 /// Contact of one foot.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct FootContact {
+pub(crate) struct FootContact {
     /// Its phase.
     pub phase: ContactPhase,
     /// \[1\] 0 without felt force, 1 from the upper force of `force_blend` on.
@@ -44,7 +44,7 @@ pub struct FootContact {
 
 impl FootContact {
     /// One cycle.
-    pub fn update(&mut self, control: &Control, signs: &Signs) {
+    pub(crate) fn update(&mut self, control: &Control, signs: &Signs) {
         let [low, high] = control.force_blend;
         self.felt = ((signs.force - low) / (high - low)).clamp(0.0, 1.0);
         let [now, end] = signs.load;
@@ -65,7 +65,7 @@ impl FootContact {
     }
 
     /// \[1\] alpha_lambda: 1 force controlled, 0 position controlled.
-    pub fn force_share(&self) -> f64 {
+    pub(crate) fn force_share(&self) -> f64 {
         match self.phase {
             ContactPhase::Swing | ContactPhase::Late => 0.0,
             ContactPhase::Early => 1.0,
@@ -78,7 +78,7 @@ impl FootContact {
 const HALF: f64 = 0.5;
 
 /// Load factors of the feet that are felt: the other foot carries for one that finds no ground.
-pub fn felt_load(planned: [f64; 2], contacts: &[FootContact; 2]) -> [f64; 2] {
+pub(crate) fn felt_load(planned: [f64; 2], contacts: &[FootContact; 2]) -> [f64; 2] {
     let felt = [planned[0] * contacts[0].felt, planned[1] * contacts[1].felt];
     let sum = felt[0] + felt[1];
     if sum > 0.0 { felt.map(|f| f / sum) } else { planned }

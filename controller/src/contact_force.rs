@@ -17,7 +17,7 @@ use nalgebra::{Vector2, Vector3};
 
 /// Force and moment about a force sensor, axes of the planning frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FootWrench {
+pub(crate) struct FootWrench {
     /// \[N\]
     pub force: Vector3<f64>,
     /// \[N m\]
@@ -63,7 +63,7 @@ pub fn stabilize(
 ///
 /// `zmp` is the planned zero-moment point on the ground at height 0 \[m\], `force` the planned total force \[N\],
 /// `com` the centre of gravity \[m\], `weight` \[N\] the robot's weight.
-pub fn distribute(
+pub(crate) fn distribute(
     gains: &Control,
     weight: f64,
     (force, zmp, com): (Vector3<f64>, Vector2<f64>, Vector3<f64>),

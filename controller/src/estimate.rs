@@ -13,7 +13,7 @@ use crate::torso::{self, TorsoAngles};
 
 /// Measured upper body, centre of gravity and feet in the planning frame.
 #[derive(Clone, Copy, Debug)]
-pub struct TaskEstimate {
+pub(crate) struct TaskEstimate {
     /// phi_x, phi_y from the IMU, alpha from the anchor foot \[rad\].
     pub angles: TorsoAngles,
     /// Their rates \[rad/s\].
@@ -46,7 +46,7 @@ const TOUCHING: f64 = 1.0;
 impl TaskEstimate {
     /// From the sensors, the kinematics of the measured joints and what is desired. The anchor is the foot that is
     /// planned to carry more, unless it has lost the ground and the other one has not.
-    pub fn new(robot: &Robot, sensors: &Sensors, measured: &TaskSpace, desired: &Desired) -> Self {
+    pub(crate) fn new(robot: &Robot, sensors: &Sensors, measured: &TaskSpace, desired: &Desired) -> Self {
         let [x, y, z, w] = sensors.imu.orientation;
         let imu = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)).to_rotation_matrix();
         let force = |i: usize| sensors.foot_wrench[i].force[2];
@@ -117,7 +117,7 @@ impl TaskEstimate {
     }
 
     /// Writes the measured part of the record.
-    pub fn report(&self, desired: &Desired, state: &mut ControllerState) {
+    pub(crate) fn report(&self, desired: &Desired, state: &mut ControllerState) {
         state.com = self.com.into();
         state.feet = self.feet;
         state.zmp = self.zmp.into();

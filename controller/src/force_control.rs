@@ -44,7 +44,7 @@ const HASTE: f64 = 0.05;
 
 /// Compliance of a foot's contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Compliance {
+pub(crate) struct Compliance {
     /// K^+ \[m/N, rad/(N m)\]
     pub inverse: Matrix3<f64>,
     /// P
@@ -53,7 +53,7 @@ pub struct Compliance {
 
 impl Compliance {
     /// Of a foot with stiffness K: damped where K is nearly singular, exact elsewhere.
-    pub fn new(k: &Matrix3<f64>) -> Self {
+    pub(crate) fn new(k: &Matrix3<f64>) -> Self {
         const LENGTH: f64 = 0.1; // m: moments and angles against forces and heights (errata 2, gap 18)
         /// Singular values below this share of the largest are damped: with 0.02 the moments of a foot whose toe bends
         /// chatter at 20 Hz (knee 25 mrad off its target at 2 km/h, 4 mrad with 0.06), from 0.2 on she falls ...
@@ -79,7 +79,7 @@ impl Compliance {
 
 /// Modifications of both feet: (z, roll, pitch) right, then left.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Modification {
+pub(crate) struct Modification {
     /// Delta x_lambda \[m, rad, rad\]
     pub value: Vector6<f64>,
     /// Its rate \[m/s, rad/s, rad/s\]
@@ -116,7 +116,7 @@ impl Modification {
 
 /// Force targets of a cycle beside the measured forces; vectors are (F_z, T_x, T_y) right, then left \[N, N m\].
 #[derive(Clone, Copy, Debug)]
-pub struct ForceTargets {
+pub(crate) struct ForceTargets {
     /// Desired, modified: lambda_d1.
     pub desired: Vector6<f64>,
     /// Rate of the planned ones.
@@ -127,7 +127,7 @@ pub struct ForceTargets {
 
 /// Position-control inputs of one foot: contact state, planned vertical speed, target of its modification.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct FootReference {
+pub(crate) struct FootReference {
     /// Contact of the foot.
     pub contact: FootContact,
     /// \[m/s\] Planned vertical velocity of the sole.
@@ -139,7 +139,7 @@ pub struct FootReference {
 /// One cycle of `dt` \[s\]: the rate of the modification (5.32) and its integral (5.33), both limited.
 ///
 /// `motion` is N. A foot in the air is position controlled; its forces do not matter (errata 2 to (5.32)).
-pub fn modify(
+pub(crate) fn modify(
     control: &Control,
     motion: &Matrix6<f64>,
     feet: &[(Compliance, FootReference); 2],

@@ -31,7 +31,7 @@ use crate::task_space::TaskSpace;
 
 /// Pose and motion of the torso as measured.
 #[derive(Clone, Copy, Debug)]
-pub struct TorsoMotion {
+pub(crate) struct TorsoMotion {
     /// \[m, m, rad\] @I_0 The planning frame.
     pub origin: [f64; 3],
     /// \[m\] @I_0 Its height.
@@ -77,7 +77,7 @@ struct HeadAxis {
 
 /// The camera head of one robot.
 #[derive(Clone)]
-pub struct Gaze {
+pub(crate) struct Gaze {
     head: Head,
     /// Joints of the robot, for events.
     joints: usize,
@@ -105,7 +105,7 @@ impl Gaze {
     ///
     /// # Errors
     /// The cameras' link is unknown, or its joints are not a pan and a tilt whose axes meet.
-    pub fn new(robot: &Robot) -> Result<Option<Self>, ModelError> {
+    pub(crate) fn new(robot: &Robot) -> Result<Option<Self>, ModelError> {
         let Some(head) = robot.head.clone() else { return Ok(None) };
         let (centre, signs) = geometry(robot, &head)?;
         let axis = |(joint, sign): (usize, f64)| {
@@ -133,12 +133,12 @@ impl Gaze {
     }
 
     /// Something worth a line in the log, since the last step; to be called until there is none.
-    pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
+    pub(crate) fn take_event(&mut self) -> Option<(EventCode, u64)> {
         self.event.take().or_else(|| self.jump.take())
     }
 
     /// Takes a command to the head; `false` if it cannot be done and nothing changes.
-    pub fn command(&mut self, command: &Command) -> bool {
+    pub(crate) fn command(&mut self, command: &Command) -> bool {
         let goal = match command {
             Command::Fixate(f) => HeadGoal::Point(f.point.into()),
             Command::HeadJoints(h) => HeadGoal::Angles([h.pan, h.tilt, self.comfort(2)]),
@@ -164,7 +164,7 @@ impl Gaze {
     }
 
     /// The joints are at rest, wherever they are.
-    pub fn halt(&mut self) {
+    pub(crate) fn halt(&mut self) {
         self.mode = GazeMode::Pursuit;
         self.acceleration = [0.0; AXES];
         self.turn = None;
@@ -172,7 +172,7 @@ impl Gaze {
 
     /// Speeds of the head's joints at the end of this cycle of `dt` \[s\], from the angles and speeds commanded at its
     /// beginning.
-    pub fn drive(
+    pub(crate) fn drive(
         &mut self,
         torso: &TorsoMotion,
         dt: f64,

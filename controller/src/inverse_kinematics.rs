@@ -19,7 +19,7 @@ use messages::MAX_JOINTS;
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
 /// Task rows: position and rotation of the right sole, then of the left one.
-pub const TASK: usize = 12;
+pub(crate) const TASK: usize = 12;
 
 /// Velocity of the task space.
 pub type TaskVector = SVector<f64, TASK>;

@@ -6,7 +6,7 @@ use messages::{EventCode, GaitState, LEFT, Plan};
 
 /// The active plan and the one that follows it.
 #[derive(Clone)]
-pub struct PlanFollower {
+pub(crate) struct PlanFollower {
     active: Plan,
     next: Plan,
     /// Tick up to which plans are void, whoever made them: the supply was off.
@@ -38,22 +38,22 @@ pub struct Desired {
 
 impl PlanFollower {
     /// No plan yet; `edges` \[m\] are the rear and the front edge of each sole in its frame.
-    pub fn new(edges: [[f64; 2]; 2]) -> Self {
+    pub(crate) fn new(edges: [[f64; 2]; 2]) -> Self {
         Self { active: Plan::default(), next: Plan::default(), void: None, edges, sole_height: [0.0; 2] }
     }
 
     /// Id of the plan being executed; 0 before the first one.
-    pub fn id(&self) -> u64 {
+    pub(crate) fn id(&self) -> u64 {
         self.active.id
     }
 
     /// The plan being executed.
-    pub fn plan(&self) -> &Plan {
+    pub(crate) fn plan(&self) -> &Plan {
         &self.active
     }
 
     /// Drops all plans, those made up to this tick that are still to come among them: without power nobody follows one.
-    pub fn drop_all(&mut self, tick: u64) {
+    pub(crate) fn drop_all(&mut self, tick: u64) {
         // Ids go on rising: what was dropped is not looked at again.
         self.next.id = self.next.id.max(self.active.id);
         self.next.start_tick = u64::MAX;
@@ -62,7 +62,7 @@ impl PlanFollower {
     }
 
     /// Takes note of the newest plan and switches to the next one in its start cycle, not before and not after.
-    pub fn update(&mut self, tick: u64, newest: Option<&Plan>) -> Option<(EventCode, u64)> {
+    pub(crate) fn update(&mut self, tick: u64, newest: Option<&Plan>) -> Option<(EventCode, u64)> {
         let mut event = None;
         let valid = |p: &&Plan| self.void.is_none_or(|void| p.header.tick > void);
         if let Some(plan) = newest.filter(valid).filter(|p| p.id > self.active.id.max(self.next.id)) {
@@ -94,12 +94,12 @@ impl PlanFollower {
     }
 
     /// Time since the start of the active plan \[s\].
-    pub fn time(&self, tick: u64, dt: f64) -> f64 {
+    pub(crate) fn time(&self, tick: u64, dt: f64) -> f64 {
         tick.saturating_sub(self.active.start_tick) as f64 * dt
     }
 
     /// Gait state at plan time `t` \[s\].
-    pub fn gait(&self, t: f64) -> GaitState {
+    pub(crate) fn gait(&self, t: f64) -> GaitState {
         match GaitState::from(self.active.state) {
             GaitState::Idle => GaitState::Idle,
             _ if t >= self.active.end() => GaitState::Standing,
@@ -112,7 +112,7 @@ impl PlanFollower {
     }
 
     /// The active plan at plan time `t` \[s\].
-    pub fn sample(&self, t: f64) -> Desired {
+    pub(crate) fn sample(&self, t: f64) -> Desired {
         let p = &self.active;
         let left = p.load_left.sample(t).position[0].clamp(0.0, 1.0);
         let mut load = [1.0 - left; 2];

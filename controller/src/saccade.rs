@@ -117,7 +117,7 @@ pub fn jump(from: &AxisState, to: &Target, time: f64, dt: f64) -> (f64, f64) {
 /// Speed and acceleration after `dt` \[s\] of smooth pursuit: low pass of second order with damping 1, which carries the
 /// target's speed on and so has no lag behind an even motion; held to its limits. Implicit, so that no step is too long;
 /// `to` is the target at the end of the step.
-pub fn pursue(from: &AxisState, to: &Target, w: f64, dt: f64, limits: &AxisLimits) -> (f64, f64) {
+pub(crate) fn pursue(from: &AxisState, to: &Target, w: f64, dt: f64, limits: &AxisLimits) -> (f64, f64) {
     let error = to.p - from.p - 0.5 * dt * from.v;
     let v = (from.v + dt * (w * w * error + 2.0 * w * to.v)) / (1.0 + 2.0 * w * dt + 0.5 * w * w * dt * dt);
     let v = v.clamp(-limits.speed, limits.speed);

@@ -97,7 +97,7 @@ impl TaskSpace {
 
     /// \[m/s\] @torso Velocity of the centre of gravity against the sole of `foot`, after
     /// [`TaskSpace::update_motion`].
-    pub fn com_velocity(&self, foot: usize) -> Vector3<f64> {
+    pub(crate) fn com_velocity(&self, foot: usize) -> Vector3<f64> {
         self.model.cog_motion(&self.data).0 - self.model.frame_velocity(&self.data, &self.soles[foot]).linear
     }
 
@@ -131,7 +131,7 @@ impl TaskSpace {
 
     /// \[m/s\] @torso Velocity of the torso's origin, the sole of `foot` being at rest, after
     /// [`TaskSpace::update_motion`].
-    pub fn torso_velocity(&self, foot: usize) -> Vector3<f64> {
+    pub(crate) fn torso_velocity(&self, foot: usize) -> Vector3<f64> {
         -self.model.frame_velocity(&self.data, &self.soles[foot]).linear
     }
 
@@ -141,7 +141,7 @@ impl TaskSpace {
     }
 
     /// \[m\] Contact points of a foot relative to its sole frame, in the present joint angles.
-    pub fn contact_points(&self, foot: usize) -> impl Iterator<Item = Vector3<f64>> + Clone + '_ {
+    pub(crate) fn contact_points(&self, foot: usize) -> impl Iterator<Item = Vector3<f64>> + Clone + '_ {
         let sole = self.sole(foot);
         let back = sole.rotation.transpose();
         let at = |frame| self.model.frame_position(&self.data, frame);

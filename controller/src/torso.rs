@@ -12,7 +12,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 /// phi_x, phi_y, alpha \[rad\].
-pub type TorsoAngles = Vector3<f64>;
+pub(crate) type TorsoAngles = Vector3<f64>;
 
 /// Rotation world_from_torso of the angles; `None` where the torso's z axis is not above the horizontal.
 pub fn rotation(angles: &TorsoAngles) -> Option<Matrix3<f64>> {
@@ -42,7 +42,7 @@ pub fn angles(world_from_torso: &Matrix3<f64>) -> TorsoAngles {
 }
 
 /// M of (phi_x', phi_y', alpha') = M omega, omega in the world frame \[rad/s\] (errata 2.3).
-pub fn rates_from_omega(world_from_torso: &Matrix3<f64>) -> Matrix3<f64> {
+pub(crate) fn rates_from_omega(world_from_torso: &Matrix3<f64>) -> Matrix3<f64> {
     let z = Vector3::z();
     let (ex, ey) = (world_from_torso.column(0).into_owned(), world_from_torso.column(1).into_owned());
     let (sx, sy) = (ex.x.hypot(ex.y), ey.x.hypot(ey.y));

@@ -108,7 +108,7 @@ impl Output {
     }
 
     /// Whether records reach a file at present.
-    pub fn is_writing(&self) -> bool {
+    pub(crate) fn is_writing(&self) -> bool {
         self.recorder.is_some()
     }
 

@@ -84,7 +84,7 @@ fn accelerated(joint: &Joint, most: f64, last: Setpoint, wanted: Setpoint, dt: f
 
 /// Largest allowed distance between target and measured angle at a joint speed: a floor plus a delay (scales with
 /// speed).
-pub fn following_limit(floor: f64, time: f64, speed: f64) -> f64 {
+pub(crate) fn following_limit(floor: f64, time: f64, speed: f64) -> f64 {
     floor + time * speed.abs()
 }
 

@@ -41,7 +41,7 @@ struct ForceZero {
 
 /// The start-up of one robot.
 #[derive(Clone, Debug)]
-pub struct StartUpSequence {
+pub(crate) struct StartUpSequence {
     state: StartUp,
     joints: usize,
     /// \[N\]
@@ -60,7 +60,7 @@ pub struct StartUpSequence {
 
 impl StartUpSequence {
     /// The start-up of a robot of this weight \[N\].
-    pub fn new(joints: usize, weight: f64) -> Self {
+    pub(crate) fn new(joints: usize, weight: f64) -> Self {
         Self {
             state: StartUp::Off,
             joints,
@@ -76,22 +76,22 @@ impl StartUpSequence {
     }
 
     /// The state.
-    pub fn state(&self) -> StartUp {
+    pub(crate) fn state(&self) -> StartUp {
         self.state
     }
 
     /// The event since the last call.
-    pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
+    pub(crate) fn take_event(&mut self) -> Option<(EventCode, u64)> {
         self.event.take()
     }
 
     /// Before new sensor data are decoded: what is missing among them stays as it was read.
-    pub fn restore(&self, sensors: &mut Sensors) {
+    pub(crate) fn restore(&self, sensors: &mut Sensors) {
         sensors.foot_wrench = self.raw;
     }
 
     /// Takes the offsets of the force sensors away from what they read, and says where the start-up is.
-    pub fn receive(&mut self, sensors: &mut Sensors) {
+    pub(crate) fn receive(&mut self, sensors: &mut Sensors) {
         let begins = self.state == StartUp::Off && sensors.power == 1;
         sensors.start_up = if begins { StartUp::Enabling } else { self.state } as u64;
         self.raw = sensors.foot_wrench;
@@ -108,7 +108,7 @@ impl StartUpSequence {
     ///
     /// # Errors
     /// Why it is refused.
-    pub fn command(&mut self, command: &Command, sensors: &Sensors) -> Verdict {
+    pub(crate) fn command(&mut self, command: &Command, sensors: &Sensors) -> Verdict {
         match command {
             Command::Reset => self.reset = RESET_CYCLES,
             Command::Home if self.state == StartUp::NotHomed => self.enter(StartUp::Homing),
@@ -125,7 +125,7 @@ impl StartUpSequence {
 
     /// One cycle: `stopped` while a controlled stop is latched; a robot that stands goes on without the joints that it
     /// `spares`.
-    pub fn step(&mut self, sensors: &Sensors, stopped: bool, spares: impl Fn(usize) -> bool) {
+    pub(crate) fn step(&mut self, sensors: &Sensors, stopped: bool, spares: impl Fn(usize) -> bool) {
         self.cycles = self.cycles.saturating_add(1);
         self.reset = self.reset.saturating_sub(1);
         // Drives: the first that does not know its angle, and the first that does not follow.
@@ -165,17 +165,17 @@ impl StartUpSequence {
     }
 
     /// True if targets may be followed.
-    pub fn ready(&self) -> bool {
+    pub(crate) fn ready(&self) -> bool {
         matches!(self.state, StartUp::Hanging | StartUp::Zeroed | StartUp::Standing)
     }
 
     /// True if drives are still being switched on, or find their angles.
-    pub fn begins(&self) -> bool {
+    pub(crate) fn begins(&self) -> bool {
         matches!(self.state, StartUp::Off | StartUp::NotHomed | StartUp::Homing | StartUp::Enabling)
     }
 
     /// Demand on the drive of joint `j`.
-    pub fn wanted(&self, j: usize, sensors: &Sensors) -> Wanted {
+    pub(crate) fn wanted(&self, j: usize, sensors: &Sensors) -> Wanted {
         let unknown = sensors.drive_status[j] & u32::from(REFERENCED) == 0;
         match self.state {
             StartUp::Off if self.reset > 0 => Wanted::Reset,
@@ -239,7 +239,7 @@ impl StartUpSequence {
 }
 
 /// True if the drive of joint `j` follows its targets.
-pub fn is_enabled(sensors: &Sensors, j: usize) -> bool {
+pub(crate) fn is_enabled(sensors: &Sensors, j: usize) -> bool {
     state_of(sensors.drive_status[j] as u16) == Some(State::OperationEnabled)
 }
 

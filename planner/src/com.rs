@@ -28,16 +28,16 @@ use curves::{Cursor, Path, Polyline, Sample};
 pub const GRAVITY: f64 = 9.81;
 
 /// Pieces of a height path.
-pub const HEIGHT_PIECES: usize = 16;
+pub(crate) const HEIGHT_PIECES: usize = 16;
 /// Height of the body mass point over time.
-pub type HeightPath = Path<1, HEIGHT_PIECES>;
+pub(crate) type HeightPath = Path<1, HEIGHT_PIECES>;
 
 /// Height of the zero-moment point over time: the plane in which it is given (4.33) lies there.
-pub type GroundPath = Polyline<1, 24>;
+pub(crate) type GroundPath = Polyline<1, 24>;
 
 /// Everything that drives the centre of gravity.
 #[derive(Clone, Copy)]
-pub struct Forcing<'a> {
+pub(crate) struct Forcing<'a> {
     /// Feet: right, left.
     pub feet: &'a [FootPath; 2],
     /// Height of the body mass point \[m\].
@@ -60,7 +60,7 @@ struct Legs {
 
 /// Forces that a motion asks of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GroundDemand {
+pub(crate) struct GroundDemand {
     /// Least vertical force over the robot's weight.
     pub least_force: f64,
     /// Largest ratio of horizontal to vertical force.
@@ -69,7 +69,7 @@ pub struct GroundDemand {
 
 impl GroundDemand {
     /// Nothing asked of it yet.
-    pub const UNTOUCHED: Self = Self { least_force: f64::INFINITY, friction: 0.0 };
+    pub(crate) const UNTOUCHED: Self = Self { least_force: f64::INFINITY, friction: 0.0 };
 
     /// With an acceleration of the centre of gravity \[m/s^2\].
     fn with(self, [x, y, z]: [f64; 3]) -> Self {
@@ -83,7 +83,7 @@ impl GroundDemand {
 
 /// Three-mass model of one robot over one interval of time.
 #[derive(Clone)]
-pub struct ThreeMassModel {
+pub(crate) struct ThreeMassModel {
     leg: f64,
     body: f64,
     leg_height: f64,
@@ -127,7 +127,7 @@ fn level(ground: &GroundPath) -> Option<f64> {
 
 impl ThreeMassModel {
     /// For the masses of `model`.
-    pub fn new(model: &gait::Model) -> Self {
+    pub(crate) fn new(model: &gait::Model) -> Self {
         Self {
             leg: model.leg_mass,
             body: 1.0 - 2.0 * model.leg_mass,
@@ -150,7 +150,7 @@ impl ThreeMassModel {
     }
 
     /// The body mass point of a robot whose centre of gravity is `com` (errata on (4.51)-(4.54)).
-    pub fn body(&self, com: &Sample<3>, feet: &[FootPath; 2], t: f64) -> Sample<3> {
+    pub(crate) fn body(&self, com: &Sample<3>, feet: &[FootPath; 2], t: f64) -> Sample<3> {
         let legs = self.legs(&[feet[0].sample(t), feet[1].sample(t)]);
         let of = |c: &[f64; 3], l: &[f64; 3]| std::array::from_fn(|d| (c[d] - self.leg * l[d]) / self.body);
         Sample {
@@ -186,7 +186,7 @@ impl ThreeMassModel {
 
     /// Places knots on all `marks` \[s\], and between them no farther apart than `spacing`, and solves the boundary value
     /// problem there.
-    pub fn solve(&mut self, forcing: &Forcing<'_>, marks: &[f64], spacing: f64) -> PlanVerdict {
+    pub(crate) fn solve(&mut self, forcing: &Forcing<'_>, marks: &[f64], spacing: f64) -> PlanVerdict {
         if !place_knots(self.method.solver_mut().problem_mut(), marks, spacing) {
             return PlanVerdict::TooLong;
         }
@@ -214,19 +214,19 @@ impl ThreeMassModel {
     }
 
     /// Slopes at both ends of the problem that was solved last.
-    pub fn ends(&self) -> EndSlopes {
+    pub(crate) fn ends(&self) -> EndSlopes {
         self.method.solver().ends()
     }
 
     /// Position and velocity of the body mass point where the problem that was solved last ends.
-    pub fn end(&self, ends: &EndConditions) -> PlanarState {
+    pub(crate) fn end(&self, ends: &EndConditions) -> PlanarState {
         let [r, v, _] = self.method.solver().motion(self.problem().n - 1, ends);
         PlanarState { r, v }
     }
 
     /// Appends the robot's centre of gravity to `com`: quintics through position, velocity and acceleration at knots.
     /// Returns what the ground must do meanwhile.
-    pub fn write<const N: usize>(&self, ends: &EndConditions, com: &mut Path<3, N>) -> GroundDemand {
+    pub(crate) fn write<const N: usize>(&self, ends: &EndConditions, com: &mut Path<3, N>) -> GroundDemand {
         let mut last = self.com(0, ends);
         let mut ground = GroundDemand::UNTOUCHED.with(last.acceleration);
         for i in 1..self.problem().n {

@@ -9,7 +9,7 @@ use messages::command::{StepCommand, VelocityCommand};
 
 /// Intent of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Intent {
+pub(crate) enum Intent {
     /// Stay as it is, or stop.
     Rest,
     /// Take the standing pose.
@@ -27,7 +27,7 @@ fn within(x: f64, field: u8, [low, high]: [f64; 2]) -> Result<f64, Reason> {
 ///
 /// # Errors
 /// The first one that the gait does not allow.
-pub fn from_step(c: &StepCommand, gait: &Gait) -> Result<StepParameters, Reason> {
+pub(crate) fn from_step(c: &StepCommand, gait: &Gait) -> Result<StepParameters, Reason> {
     let l = &gait.limits;
     Ok(StepParameters {
         length: within(c.length, 0, l.length)?,
@@ -44,7 +44,7 @@ pub fn from_step(c: &StepCommand, gait: &Gait) -> Result<StepParameters, Reason>
 ///
 /// # Errors
 /// The component that the gait does not allow, with the velocities that it does.
-pub fn from_velocity(c: &VelocityCommand, gait: &Gait) -> Result<Option<StepParameters>, Reason> {
+pub(crate) fn from_velocity(c: &VelocityCommand, gait: &Gait) -> Result<Option<StepParameters>, Reason> {
     let rates = [c.forward, c.left, c.turn];
     if rates == [0.0; 3] {
         return Ok(None);

@@ -13,9 +13,9 @@ use curves::{Path, Sample};
 use messages::Plan;
 
 /// Path of one foot: x, y, z \[m\] and heading \[rad\].
-pub type FootPath = Path<4, FOOT_PIECES>;
+pub(crate) type FootPath = Path<4, FOOT_PIECES>;
 /// Pieces of a foot's path.
-pub const FOOT_PIECES: usize = 32;
+pub(crate) const FOOT_PIECES: usize = 32;
 
 /// Share of a swing after which the foot has reached its full height.
 const RISEN: f64 = 0.4;

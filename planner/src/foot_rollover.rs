@@ -19,7 +19,7 @@ use curves::{Path, Sample, least_acceleration};
 use messages::Plan;
 
 /// A toe joint or the pitch of a sole over time.
-pub type AnglePath<const N: usize> = Path<1, N>;
+pub(crate) type AnglePath<const N: usize> = Path<1, N>;
 
 /// Share of a swing after which the heel is highest: the middle of the initial swing, its first third.
 const PEAK: f64 = 1.0 / 6.0;
@@ -36,7 +36,7 @@ const RESERVE: f64 = 0.02;
 
 /// Rollover of the feet of one robot.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct FootRollover {
+pub(crate) struct FootRollover {
     toes: Option<Bend>,
     forefoot: Option<Bend>,
     heel: Option<Bend>,
@@ -49,7 +49,7 @@ pub struct FootRollover {
 
 impl FootRollover {
     /// `ranges` \[rad\] of the toe joints, right and left; a joint bends towards the farther end of its range.
-    pub fn new(gait: &Gait, ranges: [Option<[f64; 2]>; 2]) -> Self {
+    pub(crate) fn new(gait: &Gait, ranges: [Option<[f64; 2]>; 2]) -> Self {
         let farther = |[low, high]: [f64; 2]| if -low > high { low + RESERVE } else { high - RESERVE };
         Self {
             toes: gait.toes,
@@ -61,7 +61,7 @@ impl FootRollover {
     }
 
     /// Appends to the plan what both feet do in `strides`; after the last one the robot needs `settle` \[s\] to rest.
-    pub fn lay(&self, from: &PlanOrigin, strides: &[Stride], settle: f64, plan: &mut Plan) {
+    pub(crate) fn lay(&self, from: &PlanOrigin, strides: &[Stride], settle: f64, plan: &mut Plan) {
         let flat = |k: usize, landing: f64| {
             landing + LOADING * strides.get(k).map_or(settle, |next| next.lift - next.begin)
         };
@@ -86,7 +86,12 @@ impl FootRollover {
     }
 
     /// Toes down while a foot that is lifted high is still behind.
-    pub fn tilt<const N: usize>(&self, step: &gait::Step, strides: &[Stride], pitch: &mut [AnglePath<N>; 2]) {
+    pub(crate) fn tilt<const N: usize>(
+        &self,
+        step: &gait::Step,
+        strides: &[Stride],
+        pitch: &mut [AnglePath<N>; 2],
+    ) {
         let Some(tilt) = self.tilt else { return };
         let (level, down) = (Sample::rest([0.0]), Sample::rest([tilt]));
         for s in strides.iter().filter(|s| s.is_high(step)) {

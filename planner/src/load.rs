@@ -14,7 +14,7 @@ use curves::{Path, Polyline, Sample};
 use messages::LEFT;
 
 /// Load factor rho of the left foot over time.
-pub type LoadPath = Path<1, 40>;
+pub(crate) type LoadPath = Path<1, 40>;
 
 /// Shares of a piece that its corners may take, softest first.
 const CORNERS: [f64; 5] = [0.3, 0.2, 0.15, 0.1, 0.05];
@@ -25,7 +25,7 @@ const ENOUGH: f64 = 0.002;
 const PROBES: usize = 24;
 
 /// A double support: zero-moment point at its kinks, feet (right, left) and load of the left foot at both ends.
-pub struct DoubleSupport<'a> {
+pub(crate) struct DoubleSupport<'a> {
     /// Times \[s\] and zero-moment points \[m\], ascending; at most four.
     pub kinks: &'a [(f64, [f64; 2])],
     /// Sole frames: right, left.
@@ -94,7 +94,7 @@ impl DoubleSupport<'_> {
 
     /// Appends the load over this double support to `path`; returns the least distance \[m\] of the zero-moment point
     /// from the edge of what both soles can carry together.
-    pub fn lay(&self, path: &mut LoadPath) -> f64 {
+    pub(crate) fn lay(&self, path: &mut LoadPath) -> f64 {
         let n = self.kinks.len();
         if !(2..=4).contains(&n) {
             return f64::NAN;

@@ -55,7 +55,7 @@ impl KnownObstacles {
     }
 
     /// Extent of the part of each obstacle between y = `strip[0]` and `strip[1]` of the frame `at`.
-    pub fn extents(&self, at: Pose, strip: [f64; 2]) -> impl Iterator<Item = Extent> {
+    pub(crate) fn extents(&self, at: Pose, strip: [f64; 2]) -> impl Iterator<Item = Extent> {
         (0..self.count).filter_map(move |k| {
             let own = self.triangles.iter().filter(move |(_, number)| *number == k);
             own.filter_map(|(corners, _)| {

@@ -47,7 +47,7 @@ impl Pose {
 }
 
 /// R(angle) v: `v` turned to the left.
-pub fn rotate(angle: f64, v: [f64; 2]) -> [f64; 2] {
+pub(crate) fn rotate(angle: f64, v: [f64; 2]) -> [f64; 2] {
     let (s, c) = angle.sin_cos();
     [c * v[0] - s * v[1], s * v[0] + c * v[1]]
 }

@@ -100,7 +100,7 @@ pub enum Skill {
 
 /// Task to begin with from standing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SkillTask {
+pub(crate) enum SkillTask {
     /// See [`Skill::Distance`].
     Distance(DistanceCommand),
     /// See [`Skill::Platform`].
@@ -112,7 +112,7 @@ impl SkillTask {
     ///
     /// # Errors
     /// Out of the limits of the gait; a platform too high, too far for one step or too near.
-    pub fn check(&self, gait: &Gait, sole: &Sole) -> Result<(), (EventCode, u64)> {
+    pub(crate) fn check(&self, gait: &Gait, sole: &Sole) -> Result<(), (EventCode, u64)> {
         let no = |code, x: f64| Err((code, (x.abs() * 1e3).round() as u64));
         match self {
             Self::Distance(d) => match cruise(d, gait) {
@@ -137,7 +137,7 @@ impl SkillTask {
     }
 
     /// The skill that does it, from where the robot stands; `None` if it cannot.
-    pub fn begin(&self, from: &PlanOrigin, gait: &Gait, sole: &Sole) -> Option<Skill> {
+    pub(crate) fn begin(&self, from: &PlanOrigin, gait: &Gait, sole: &Sole) -> Option<Skill> {
         self.check(gait, sole).ok()?;
         let [r, l] = from.feet;
         let middle = Pose::new(0.5 * (r.x + l.x), 0.5 * (r.y + l.y), 0.5 * (r.heading + l.heading));
@@ -169,7 +169,7 @@ impl SkillTask {
 
 /// One active skill, and what comes next.
 #[derive(Clone, Copy, Debug)]
-pub struct Tasks {
+pub(crate) struct Tasks {
     /// The active one.
     pub active: Skill,
     /// Task that begins when the robot stands.
@@ -186,7 +186,7 @@ impl Default for Tasks {
 
 impl Tasks {
     /// The next skill begins, normal walking if there is none; `false` if it cannot.
-    pub fn begin(&mut self, from: &PlanOrigin, gait: &Gait, sole: &Sole) -> bool {
+    pub(crate) fn begin(&mut self, from: &PlanOrigin, gait: &Gait, sole: &Sole) -> bool {
         let next = self.next.take();
         let skill = next.map(|task| task.begin(from, gait, sole));
         (self.active, self.aborted) = (skill.flatten().unwrap_or(Skill::Walk), false);
@@ -194,12 +194,12 @@ impl Tasks {
     }
 
     /// The operator stops: nothing comes next, and what is being done is not done to its end.
-    pub fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         (self.next, self.aborted) = (None, true);
     }
 
     /// The operator walks from now on; `false` while that would leave the robot half on a platform.
-    pub fn walk(&mut self, standing: bool) -> bool {
+    pub(crate) fn walk(&mut self, standing: bool) -> bool {
         let free = standing || !matches!(self.active, Skill::Platform { .. });
         if free {
             *self = Self::default();
@@ -208,7 +208,13 @@ impl Tasks {
     }
 
     /// [`Skill::before`] of the active one.
-    pub fn before(&self, from: &PlanOrigin, starting: bool, first: f64, wish: &mut StepParameters) -> Script {
+    pub(crate) fn before(
+        &self,
+        from: &PlanOrigin,
+        starting: bool,
+        first: f64,
+        wish: &mut StepParameters,
+    ) -> Script {
         let mut as_commanded = *wish;
         let wish = if self.aborted { &mut as_commanded } else { wish };
         let script = self.active.before(from, starting, first, wish);

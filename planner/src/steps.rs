@@ -15,7 +15,7 @@ use crate::sole::Sole;
 use config::gait;
 
 /// Most steps a plan can hold: the plan's load factors have room for seven.
-pub const MAX_STEPS: usize = 7;
+pub(crate) const MAX_STEPS: usize = 7;
 
 /// \[m\] Rounding of footholds.
 pub(crate) const ROUNDING: f64 = 1e-6;
@@ -35,7 +35,7 @@ pub struct StepParameters {
 
 impl StepParameters {
     /// Stepping on the spot.
-    pub const fn on_the_spot(duration: f64) -> Self {
+    pub(crate) const fn on_the_spot(duration: f64) -> Self {
         Self { length: 0.0, side: 0.0, turn: 0.0, duration }
     }
 

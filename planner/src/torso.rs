@@ -5,7 +5,7 @@ use curves::{Path, Sample};
 use std::f64::consts::FRAC_PI_2;
 
 /// Inclinations phi_x, phi_y and heading alpha.
-pub type TorsoPath = Path<3, 16>;
+pub(crate) type TorsoPath = Path<3, 16>;
 
 /// Writes the path of the upper body: from `start`, at the end of each step half-way between the feet, at `end` at rest.
 pub fn follow(path: &mut TorsoPath, start: &Sample<3>, strides: &[Stride], end: f64) {

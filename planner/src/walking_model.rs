@@ -6,7 +6,7 @@ use config::{Gait, gait};
 
 /// Gait and geometry that plans are made with.
 #[derive(Clone)]
-pub struct WalkingModel {
+pub(crate) struct WalkingModel {
     /// Steps; its values may be changed between two plans.
     pub step: gait::Step,
     /// The model the centre of gravity is planned with.
@@ -19,17 +19,17 @@ pub struct WalkingModel {
 
 impl WalkingModel {
     /// For feet with these support rectangles, with a cycle of 1 ms until it is set.
-    pub fn new(gait: &Gait, soles: [Sole; 2]) -> Self {
+    pub(crate) fn new(gait: &Gait, soles: [Sole; 2]) -> Self {
         Self { step: gait.step.clone(), model: gait.model, soles, cycle_s: 1e-3 }
     }
 
     /// Whole cycles nearest to `t` \[s\], at least one.
-    pub fn cycles(&self, t: f64) -> u64 {
+    pub(crate) fn cycles(&self, t: f64) -> u64 {
         (t / self.cycle_s).round().max(1.0) as u64
     }
 
     /// \[m\] Point at which the centre of gravity rests between two feet.
-    pub fn standing_point(&self, feet: &[Pose; 2]) -> [f64; 2] {
+    pub(crate) fn standing_point(&self, feet: &[Pose; 2]) -> [f64; 2] {
         let heading = 0.5 * (feet[0].heading + feet[1].heading);
         let ahead = rotate(heading, [self.model.com_forward, 0.0]);
         [0.5 * (feet[0].x + feet[1].x) + ahead[0], 0.5 * (feet[0].y + feet[1].y) + ahead[1]]

@@ -188,7 +188,7 @@ impl ZmpProblem {
 
     /// Solves (4.42) for a problem whose last point is the first one moved by the rigid motion that takes the pose
     /// `from` to `to` (gap 12).
-    pub fn solve_periodic(&mut self, from: &Pose, to: &Pose) -> PlanVerdict {
+    pub(crate) fn solve_periodic(&mut self, from: &Pose, to: &Pose) -> PlanVerdict {
         let wrong = self.posed();
         let n = self.len;
         if wrong != PlanVerdict::Sound || n < 3 {

@@ -27,7 +27,7 @@ pub enum Follows {
 
 /// Cycles without commands, node by node.
 #[derive(Clone, Debug)]
-pub struct CommandTimeout {
+pub(crate) struct CommandTimeout {
     node_of: [usize; MAX_JOINTS],
     nodes: usize,
     /// Cycles since each node received its targets.
@@ -38,7 +38,7 @@ pub struct CommandTimeout {
 
 impl CommandTimeout {
     /// Of a robot with this layout.
-    pub fn new(layout: &Layout) -> Self {
+    pub(crate) fn new(layout: &Layout) -> Self {
         let mut node_of = [0; MAX_JOINTS];
         for message in layout.sent(true) {
             for signal in &message.signals {
@@ -51,7 +51,7 @@ impl CommandTimeout {
     }
 
     /// One cycle with the frames received, if any; true if some node has its targets.
-    pub fn step(&mut self, received: Option<&Received>) -> bool {
+    pub(crate) fn step(&mut self, received: Option<&Received>) -> bool {
         let mut any = false;
         for i in 0..self.nodes {
             let complete = received.is_some_and(|received| received.complete(i));
@@ -63,7 +63,7 @@ impl CommandTimeout {
     }
 
     /// Motion of a joint whose new target is so far \[rad\] away; `reach` \[rad\] is how far the joint gets in one cycle.
-    pub fn follows(&self, joint: usize, away: f64, reach: f64) -> Follows {
+    pub(crate) fn follows(&self, joint: usize, away: f64, reach: f64) -> Follows {
         let node = self.node_of[joint];
         let cycles = f64::from(self.before[node] + 1);
         match self.silent[node] {
@@ -73,12 +73,12 @@ impl CommandTimeout {
     }
 
     /// True if the local controller of a joint has received nothing for too long.
-    pub fn is_timed_out(&self, joint: usize) -> bool {
+    pub(crate) fn is_timed_out(&self, joint: usize) -> bool {
         self.silent[self.node_of[joint]] > TIMEOUT_CYCLES
     }
 
     /// The local controller of a joint.
-    pub fn node_of(&self, joint: usize) -> usize {
+    pub(crate) fn node_of(&self, joint: usize) -> usize {
         self.node_of[joint]
     }
 }

@@ -25,7 +25,7 @@ pub struct Rope {
 
 impl Rope {
     /// Tension \[N\] in a state x with these speeds.
-    pub fn tension(&self, x: &[f64], speed: &[f64]) -> f64 {
+    pub(crate) fn tension(&self, x: &[f64], speed: &[f64]) -> f64 {
         self.in_state(x, speed).0.norm()
     }
 

@@ -141,7 +141,7 @@ impl Feet {
     }
 
     /// Worst end of the solver of the pads since the last call.
-    pub fn take_worst(&mut self) -> Report {
+    pub(crate) fn take_worst(&mut self) -> Report {
         std::mem::replace(&mut self.worst, CONVERGED)
     }
 
@@ -218,7 +218,7 @@ impl Feet {
     }
 
     /// Adds what the ground does to a generalized force (2.40), after [`Feet::update`].
-    pub fn add_to(&self, model: &Model, data: &Data, generalized: &mut [f64]) {
+    pub(crate) fn add_to(&self, model: &Model, data: &Data, generalized: &mut [f64]) {
         for s in self.loaded() {
             model.add_wrench(data, &s.frame, &s.force, &s.moment, generalized);
         }

@@ -339,7 +339,7 @@ impl Plant {
     }
 
     /// Worst end of the solver of the pads since the last call.
-    pub fn take_contact_report(&mut self) -> contact::Report {
+    pub(crate) fn take_contact_report(&mut self) -> contact::Report {
         self.ground.feet.take_worst()
     }
 

@@ -110,7 +110,7 @@ impl Train {
     }
 
     /// True if a controller is sampled.
-    pub fn is_sampled(&self) -> bool {
+    pub(crate) fn is_sampled(&self) -> bool {
         self.drives.iter().any(|d| d.shaft.drive.control.sampling != Sampling::Continuous)
     }
 
@@ -154,7 +154,7 @@ impl Train {
     }
 
     /// Gives the model the ratios that never change.
-    pub fn set_constant_gears(&self, data: &mut Data) {
+    pub(crate) fn set_constant_gears(&self, data: &mut Data) {
         let stiff = self.drives.iter().enumerate().filter(|(_, d)| d.shaft.elastic.is_none());
         for (k, DriveTrain { shaft, .. }) in stiff {
             data.set_gear(k, shaft.gear.ratio, shaft.gear.bias);
@@ -192,7 +192,7 @@ impl Train {
     }
 
     /// Sets the gears for prescribed joints: rotors turn with them, and nothing else of the drives is computed.
-    pub fn load_prescribed(&mut self, q: &[f64], qd: &[f64], data: &mut Data) {
+    pub(crate) fn load_prescribed(&mut self, q: &[f64], qd: &[f64], data: &mut Data) {
         let Self { drives, fault, .. } = self;
         let linkages = drives.iter().enumerate().filter(|(_, d)| d.shaft.is_linkage());
         for (drive, DriveTrain { shaft, .. }) in linkages {
@@ -226,7 +226,7 @@ impl Train {
     }
 
     /// Rates of the elastic rotors' speeds, after the forward dynamics.
-    pub fn rotor_rates(&self, model: &Model, data: &Data, rate: &mut [f64]) {
+    pub(crate) fn rotor_rates(&self, model: &Model, data: &Data, rate: &mut [f64]) {
         for (k, DriveTrain { shaft, .. }) in self.drives.iter().enumerate() {
             if let Some((e, _)) = shaft.elastic {
                 rate[e] = model.rotor_acceleration(data, k) / shaft.gear.ratio[0];

@@ -67,14 +67,14 @@ impl Train {
     }
 
     /// Gives the model the torques between free rotors and their stators that the step before found.
-    pub fn free_rotors(&mut self, data: &mut Data) {
+    pub(crate) fn free_rotors(&mut self, data: &mut Data) {
         for d in self.drives.iter_mut().filter(|d| d.shaft.elastic.is_some()) {
             d.step.give_free_rotor(&d.shaft, data);
         }
     }
 
     /// Notes how the stators of the free rotors turn, after the acceleration has been taken to the bodies.
-    pub fn turn_along(&mut self, model: &Model, data: &Data) {
+    pub(crate) fn turn_along(&mut self, model: &Model, data: &Data) {
         for d in self.drives.iter_mut().filter(|d| d.shaft.elastic.is_some()) {
             d.step.turn_along(&d.shaft, model, data);
         }
@@ -104,7 +104,7 @@ impl Train {
     }
 
     /// Joints whose only drive is held by friction at the end of the step.
-    pub fn held_joints(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn held_joints(&self) -> impl Iterator<Item = usize> + '_ {
         let held =
             |d: &&DriveTrain| d.step.sticks() && d.shaft.elastic.is_none() && d.shaft.drive.joints.len() == 1;
         self.drives.iter().filter(held).map(|d| d.shaft.joints[0])

@@ -55,7 +55,7 @@ pub const fn fixed(path: &'static str, head: &'static str, decimals: usize) -> C
 }
 
 /// A column of numbers with so many decimals and an exponent.
-pub const fn scientific(path: &'static str, head: &'static str, decimals: usize) -> Column {
+pub(crate) const fn scientific(path: &'static str, head: &'static str, decimals: usize) -> Column {
     Column { digits: Digits::Scientific(decimals), ..plain(path, head) }
 }
 
@@ -105,12 +105,12 @@ impl Column {
 
 impl Sheet {
     /// A sheet with one line above everything.
-    pub fn titled(title: impl Into<String>) -> Self {
+    pub(crate) fn titled(title: impl Into<String>) -> Self {
         Self { parts: vec![Part::Line(title.into())], ..Self::default() }
     }
 
     /// A fact for other programs, under its key.
-    pub fn fact(&mut self, key: &str, value: impl Serialize) {
+    pub(crate) fn fact(&mut self, key: &str, value: impl Serialize) {
         self.facts.insert(key.into(), of(value));
     }
 

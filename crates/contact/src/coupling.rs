@@ -85,7 +85,7 @@ impl Coupling {
     }
 
     /// S_ii^-1: its velocity under its own force when all others are held.
-    pub fn held_mobility(&self, node: usize) -> &Matrix3<f64> {
+    pub(crate) fn held_mobility(&self, node: usize) -> &Matrix3<f64> {
         &self.yielding[node]
     }
 

@@ -55,7 +55,7 @@ pub struct Report {
 }
 
 /// Residual 1: force \[N\] and velocity \[m/s\].
-pub const SCALE: (f64, f64) = (0.1, 1e-3);
+pub(crate) const SCALE: (f64, f64) = (0.1, 1e-3);
 
 /// \[m\] Height below which a node may carry force: a node at rest is at the ground only up to rounding.
 pub const TOUCHING: f64 = 1e-6;

@@ -51,13 +51,13 @@ pub enum State {
 /// Controlword: shutdown, transitions 2, 6, 8.
 pub const SHUTDOWN: u16 = 0x06;
 /// Controlword: switch on, and disable operation: transitions 3, 5.
-pub const SWITCH_ON: u16 = 0x07;
+pub(crate) const SWITCH_ON: u16 = 0x07;
 /// Controlword: enable operation, transitions 3 and 4, 16.
 pub const ENABLE_OPERATION: u16 = 0x0F;
 /// Controlword: disable voltage, transitions 7, 9, 10, 12.
 pub const DISABLE_VOLTAGE: u16 = 0x00;
 /// Controlword: quick stop, transition 11; elsewhere 7, 10.
-pub const QUICK_STOP: u16 = 0x02;
+pub(crate) const QUICK_STOP: u16 = 0x02;
 /// Bit of the controlword whose rising edge resets a fault, transition 15.
 const RESET: u16 = 1 << 7;
 /// Controlword: fault reset. Its other bits mean nothing there, and keep it three bits away from [`DISABLE_VOLTAGE`].

@@ -30,7 +30,7 @@ impl Bounds {
 
     /// \[m^2\] Squared distance from `p` \[m\] to the box; 0 inside.
     #[inline]
-    pub fn distance_squared(&self, p: &Vector3<f64>) -> f64 {
+    pub(crate) fn distance_squared(&self, p: &Vector3<f64>) -> f64 {
         let mut sum = 0.0;
         for i in 0..3 {
             let d = (self.lo[i] - p[i]).max(p[i] - self.hi[i]).max(0.0);

@@ -187,7 +187,7 @@ pub fn write(text: &mut String, name: &str, width: usize, frame: &Captured) {
 }
 
 /// Appends `ID#DATA`.
-pub fn write_frame(text: &mut String, frame: &Captured) {
+pub(crate) fn write_frame(text: &mut String, frame: &Captured) {
     let id = frame.id;
     let _ = match id {
         _ if id & ERROR != 0 => write!(text, "{:08X}#", id & (ERROR | EXTENDED_BITS)),

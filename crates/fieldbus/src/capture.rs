@@ -14,10 +14,10 @@ pub const EXTENDED_BITS: u32 = 0x1fff_ffff;
 /// The 11 bits of a base identifier.
 pub const BASE_BITS: u32 = 0x7ff;
 /// Flag of a CAN FD frame: its data went at the higher bit rate (CANFD_BRS).
-pub const BIT_RATE_SWITCH: u8 = 1;
+pub(crate) const BIT_RATE_SWITCH: u8 = 1;
 
 /// Longest payload of a classic frame \[B\].
-pub const CLASSIC_BYTES: usize = 8;
+pub(crate) const CLASSIC_BYTES: usize = 8;
 /// Lengths that a CAN FD frame can have \[B\].
 pub const FD_LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
 

@@ -56,14 +56,14 @@ impl ErrorCounters {
     }
 
     /// A frame of its own was destroyed.
-    pub fn failed_to_send(&mut self) {
+    pub(crate) fn failed_to_send(&mut self) {
         if self.state() != ErrorState::Off {
             self.sending += 8;
         }
     }
 
     /// Nobody acknowledged a frame of its own: a controller alone on its line becomes passive and stays that.
-    pub fn not_acknowledged(&mut self) {
+    pub(crate) fn not_acknowledged(&mut self) {
         if self.state() < ErrorState::Passive {
             self.failed_to_send();
         }
@@ -75,7 +75,7 @@ impl ErrorCounters {
     }
 
     /// A frame of another one was destroyed.
-    pub fn failed_to_receive(&mut self) {
+    pub(crate) fn failed_to_receive(&mut self) {
         self.receiving = (self.receiving + 1).min(PASSIVE + 7);
     }
 

@@ -21,7 +21,7 @@ pub struct Rates {
 }
 
 /// Longest time \[s\] that a frame with `n` bytes takes.
-pub fn frame_time(n: u32, rates: Rates) -> f64 {
+pub(crate) fn frame_time(n: u32, rates: Rates) -> f64 {
     match rates.data {
         None => f64::from(classic_bits(n)) / rates.nominal,
         Some(data) => {
@@ -38,7 +38,7 @@ pub fn frame_time(n: u32, rates: Rates) -> f64 {
 }
 
 /// Most bits of a classic frame with `n` bytes, until the next frame may begin.
-pub fn classic_bits(n: u32) -> u32 {
+pub(crate) fn classic_bits(n: u32) -> u32 {
     44 + 8 * n + (34 + 8 * n - 1) / 4 + 3
 }
 

@@ -224,7 +224,7 @@ impl Command {
     }
 
     /// The command with this address and these numbers, whatever they are; none if there is no such command.
-    pub fn of_values(address: (Domain, u16), values: &[f64; MAX_FIELDS]) -> Option<Self> {
+    pub(crate) fn of_values(address: (Domain, u16), values: &[f64; MAX_FIELDS]) -> Option<Self> {
         let info = COMMANDS.iter().find(|info| info.example().address() == address)?;
         Some((info.build)(values))
     }

@@ -3,7 +3,7 @@
 use crate::{Header, record};
 
 /// Room for parameters in a record.
-pub const MAX_PARAMETERS: usize = 64;
+pub(crate) const MAX_PARAMETERS: usize = 64;
 
 record! {
     /// Present values of all parameters, in the order of their table. Written at start and after a change.

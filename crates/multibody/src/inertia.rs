@@ -27,7 +27,7 @@ impl Inertia {
     }
 
     /// \[kg m^2\] Moments about the origin of the frame.
-    pub fn moments_about_origin(&self) -> Matrix3<f64> {
+    pub(crate) fn moments_about_origin(&self) -> Matrix3<f64> {
         self.moments + steiner(self.mass, &self.center)
     }
 

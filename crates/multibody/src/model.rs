@@ -98,11 +98,6 @@ impl Model {
         self.carried[0]
     }
 
-    /// Names of the joints in the order of their coordinates.
-    pub fn joint_names(&self) -> &[String] {
-        &self.joint_names
-    }
-
     /// Index of a joint (0..n); its coordinate is q\[7 + i\], its speed v\[6 + i\].
     pub fn joint_index(&self, name: &str) -> Option<usize> {
         self.joint_names.iter().position(|j| j == name)

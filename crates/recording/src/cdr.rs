@@ -69,7 +69,7 @@ impl Encoder {
     }
 
     /// Elements without a count: `float64[N]`, or the rest of a sequence.
-    pub fn f64s(&mut self, values: &[f64]) {
+    pub(crate) fn f64s(&mut self, values: &[f64]) {
         for &x in values {
             self.f64(x);
         }

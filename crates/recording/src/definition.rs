@@ -4,7 +4,7 @@
 use messages::Record;
 
 /// The package our own types belong to.
-pub const PACKAGE: &str = "gangwerk_msgs";
+pub(crate) const PACKAGE: &str = "gangwerk_msgs";
 
 const SEPARATOR: &str = "================================================================================\n";
 const SCALARS: [&str; 4] = ["float64", "uint64", "uint32", "uint8"];

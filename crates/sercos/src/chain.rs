@@ -80,11 +80,6 @@ impl Chain {
         self.slaves.iter_mut().for_each(Slave::silence);
     }
 
-    /// Whether ATs wait for [`Chain::release`].
-    pub fn is_waiting(&self) -> bool {
-        self.waiting > 0
-    }
-
     /// A frame came in at this end; `out` takes what leaves the chain.
     pub fn take(&mut self, end: Side, frame: &[u8], out: &mut impl FnMut(Side, &[u8])) {
         let header = Header::read(frame);

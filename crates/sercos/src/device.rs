@@ -90,13 +90,8 @@ impl Status {
         self.0 & 1 << 8 != 0
     }
 
-    /// Bit 9: an error of a connection.
-    pub fn connection_error(self) -> bool {
-        self.0 & 1 << 9 != 0
-    }
-
     /// With bit 9.
-    pub fn with_connection_error(self, error: bool) -> Self {
+    pub(crate) fn with_connection_error(self, error: bool) -> Self {
         Self(self.0 & !(1 << 9) | u16::from(error) << 9)
     }
 

@@ -12,7 +12,7 @@
 use crate::crc::crc32;
 
 /// EtherType of Sercos III.
-pub const ETHERTYPE: u16 = 0x88CD;
+pub(crate) const ETHERTYPE: u16 = 0x88CD;
 /// Ethernet header and Sercos header \[B\].
 pub const HEADER: usize = 20;
 /// Longest data field behind the headers \[B\].
@@ -20,9 +20,9 @@ pub const MAX_DATA: usize = 1494;
 /// Shortest data field: Ethernet pads to it \[B\].
 pub const MIN_DATA: usize = 40;
 /// Longest telegram without the frame check sequence \[B\].
-pub const MAX_FRAME: usize = HEADER + MAX_DATA;
+pub(crate) const MAX_FRAME: usize = HEADER + MAX_DATA;
 /// Telegrams of one kind in a cycle, at most.
-pub const TELEGRAMS: usize = 4;
+pub(crate) const TELEGRAMS: usize = 4;
 /// The cycle counter counts modulo this.
 pub const CYCLES: u8 = 8;
 
@@ -162,7 +162,7 @@ impl Header {
     }
 
     /// Whether this is the head of MDT0, the master's beat: the MST.
-    pub fn is_beat(&self) -> bool {
+    pub(crate) fn is_beat(&self) -> bool {
         self.kind == Kind::Mdt && self.number == 0
     }
 }

@@ -28,34 +28,34 @@ impl fmt::Debug for Idn {
 }
 
 /// Check before CP3 (procedure command).
-pub const CHECK_CP3: Idn = Idn::standard(127, 0, 0);
+pub(crate) const CHECK_CP3: Idn = Idn::standard(127, 0, 0);
 /// Check before CP4 (procedure command).
-pub const CHECK_CP4: Idn = Idn::standard(128, 0, 0);
+pub(crate) const CHECK_CP4: Idn = Idn::standard(128, 0, 0);
 /// Cycle time tScyc \[ns\].
 pub const CYCLE_TIME: Idn = Idn::standard(1002, 0, 0);
 /// Beats in a row that a slave may miss in CP3 and CP4 \[1\].
-pub const BEAT_LOSSES: Idn = Idn::standard(1003, 0, 0);
+pub(crate) const BEAT_LOSSES: Idn = Idn::standard(1003, 0, 0);
 /// Time of AT0 in the cycle, t1 \[ns\].
-pub const AT_TIME: Idn = Idn::standard(1006, 0, 0);
+pub(crate) const AT_TIME: Idn = Idn::standard(1006, 0, 0);
 /// Place of C-DEV.
-pub const CONTROL_OFFSET: Idn = Idn::standard(1009, 0, 0);
+pub(crate) const CONTROL_OFFSET: Idn = Idn::standard(1009, 0, 0);
 /// Lengths of the MDTs \[B\].
-pub const MDT_LENGTHS: Idn = Idn::standard(1010, 0, 0);
+pub(crate) const MDT_LENGTHS: Idn = Idn::standard(1010, 0, 0);
 /// Place of S-DEV.
-pub const STATUS_OFFSET: Idn = Idn::standard(1011, 0, 0);
+pub(crate) const STATUS_OFFSET: Idn = Idn::standard(1011, 0, 0);
 /// Lengths of the ATs \[B\].
-pub const AT_LENGTHS: Idn = Idn::standard(1012, 0, 0);
+pub(crate) const AT_LENGTHS: Idn = Idn::standard(1012, 0, 0);
 /// Offset of the service channel in the MDT.
-pub const MDT_SERVICE_OFFSET: Idn = Idn::standard(1013, 0, 0);
+pub(crate) const MDT_SERVICE_OFFSET: Idn = Idn::standard(1013, 0, 0);
 /// Offset of the service channel in the AT.
-pub const AT_SERVICE_OFFSET: Idn = Idn::standard(1014, 0, 0);
+pub(crate) const AT_SERVICE_OFFSET: Idn = Idn::standard(1014, 0, 0);
 /// Sercos address \[1\].
 pub const ADDRESS: Idn = Idn::standard(1040, 0, 0);
 
 /// The connection with the data for the slave.
 pub const COMMAND: u8 = 0;
 /// The connection with the data of the slave.
-pub const FEEDBACK: u8 = 1;
+pub(crate) const FEEDBACK: u8 = 1;
 
 /// An element of a connection, S-0-1050.
 pub const fn connection(instance: u8, element: u8) -> Idn {
@@ -63,26 +63,26 @@ pub const fn connection(instance: u8, element: u8) -> Idn {
 }
 
 /// Element 1 of a connection: what it is.
-pub const SETUP: u8 = 1;
+pub(crate) const SETUP: u8 = 1;
 /// Element 2 of a connection: its number.
-pub const NUMBER: u8 = 2;
+pub(crate) const NUMBER: u8 = 2;
 /// Element 3 of a connection: telegram and offset.
-pub const ASSIGNMENT: u8 = 3;
+pub(crate) const ASSIGNMENT: u8 = 3;
 /// Element 5 of a connection: its length with C-CON \[B\].
 pub const LENGTH: u8 = 5;
 /// Element 10 of a connection: cycle time of its producer \[ns\].
-pub const PRODUCER_TIME: u8 = 10;
+pub(crate) const PRODUCER_TIME: u8 = 10;
 /// Element 11 of a connection: losses in a row that its consumer permits \[1\].
 pub const LOSSES: u8 = 11;
 
 /// Set-up of a connection that the slave consumes: active, container, synchronous with the cycle.
-pub const CONSUMER: u16 = 0x8010;
+pub(crate) const CONSUMER: u16 = 0x8010;
 /// Set-up of a connection that the slave produces.
-pub const PRODUCER: u16 = 0xC010;
+pub(crate) const PRODUCER: u16 = 0xC010;
 
 /// Element of a parameter in the service channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Element {
+pub(crate) enum Element {
     /// Nothing: the channel is closed.
     Close,
     /// The identification number; read: state of a procedure command.
@@ -95,7 +95,7 @@ pub enum Element {
 
 impl Element {
     /// Its number in the control word.
-    pub const fn number(self) -> u16 {
+    pub(crate) const fn number(self) -> u16 {
         match self {
             Self::Close => 0,
             Self::Idn => 1,
@@ -143,7 +143,7 @@ impl Attribute {
     }
 
     /// Whether it is a procedure command.
-    pub fn is_command(self) -> bool {
+    pub(crate) fn is_command(self) -> bool {
         self.0 & 1 << 19 != 0
     }
 
@@ -159,21 +159,19 @@ impl Attribute {
 /// Codes of errors in the service channel.
 pub mod code {
     /// The channel is not open.
-    pub const NOT_OPEN: u16 = 0x0001;
+    pub(crate) const NOT_OPEN: u16 = 0x0001;
     /// There is no such parameter.
-    pub const NO_IDN: u16 = 0x1001;
-    /// Access to the identification number that is not allowed.
-    pub const ELEMENT_1: u16 = 0x1009;
+    pub(crate) const NO_IDN: u16 = 0x1001;
     /// The attribute is only read.
-    pub const ATTRIBUTE_FIXED: u16 = 0x3004;
+    pub(crate) const ATTRIBUTE_FIXED: u16 = 0x3004;
     /// Fewer data than the parameter has.
-    pub const TOO_SHORT: u16 = 0x7002;
+    pub(crate) const TOO_SHORT: u16 = 0x7002;
     /// More data than the parameter has.
-    pub const TOO_LONG: u16 = 0x7003;
+    pub(crate) const TOO_LONG: u16 = 0x7003;
     /// The value is only read.
-    pub const READ_ONLY: u16 = 0x7004;
+    pub(crate) const READ_ONLY: u16 = 0x7004;
     /// The value is not written in this phase.
-    pub const PROTECTED: u16 = 0x7005;
+    pub(crate) const PROTECTED: u16 = 0x7005;
     /// The value makes no sense.
-    pub const INVALID: u16 = 0x7008;
+    pub(crate) const INVALID: u16 = 0x7008;
 }

@@ -7,15 +7,15 @@ use crate::header::{Kind, MAX_DATA, MIN_DATA, TELEGRAMS};
 use std::fmt;
 
 /// Hot-plug field at the begin of MDT0 and AT0 \[B\].
-pub const HOT_PLUG: usize = 8;
+pub(crate) const HOT_PLUG: usize = 8;
 /// Service channel \[B\].
 pub const SERVICE: usize = 6;
 /// Device control or status \[B\].
 pub const DEVICE: usize = 2;
 /// Connection control in front of the data of a connection \[B\].
-pub const CONNECTION: usize = 2;
+pub(crate) const CONNECTION: usize = 2;
 /// Most stations.
-pub const STATIONS: usize = crate::telegram::cp0::SLAVES;
+pub(crate) const STATIONS: usize = crate::telegram::cp0::SLAVES;
 
 /// A slave as the master expects it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

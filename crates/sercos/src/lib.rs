@@ -5,39 +5,41 @@
 //! | part | where |
 //! |---|---|
 //! | bytes | [`header`], [`telegram`], [`device`], [`idn`], [`layout`] |
-//! | service channel and parameters | [`service`], [`parameters`], [`programme`] |
-//! | master, ring | [`master`], [`ring`], [`trouble`] |
-//! | simulated slaves | [`slave`], [`chain`] |
+//! | service channel and parameters | `service`, `parameters`, `programme` |
+//! | master, ring | `master`, `ring`, `trouble` |
+//! | simulated slaves | `slave`, `chain` |
 //! | frames of a robot as data of connections | [`packing`] |
-//! | interfaces | [`socket`], [`near`] (master), [`far`] (slaves) |
+//! | interfaces | `socket`, `near` (master), `far` (slaves) |
 //!
 //! All but the last row are pure: no clock, no socket. Nothing allocates once a cycle has begun.
 
-pub mod chain;
-pub mod crc;
+mod chain;
+mod crc;
 pub mod device;
-pub mod far;
+mod far;
 pub mod header;
 pub mod idn;
 pub mod layout;
-pub mod master;
-pub mod near;
+mod master;
+mod near;
 pub mod packing;
-pub mod parameters;
-pub mod programme;
-pub mod ring;
-pub mod service;
-pub mod slave;
-pub mod socket;
+mod parameters;
+mod programme;
+mod ring;
+mod service;
+mod slave;
+mod socket;
 pub mod telegram;
-pub mod trouble;
+mod trouble;
 
 pub use chain::Chain;
+pub use crc::crc32;
 pub use far::Far;
 pub use header::Phase;
 pub use layout::Station;
 pub use master::{Master, Setup, Stage};
 pub use near::Near;
-pub use slave::{Side, Slave};
+pub use service::Refusal;
+pub use slave::{Counts, Side, Slave};
 pub use socket::{Socket, SocketError};
 pub use trouble::{Event, Trouble};

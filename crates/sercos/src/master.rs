@@ -30,9 +30,9 @@ use crate::trouble::{Event, Trouble};
 use std::collections::VecDeque;
 
 /// Cycles of CP0 without the expected ring after which the master gives up.
-pub const GIVE_UP: u32 = 1000;
+pub(crate) const GIVE_UP: u32 = 1000;
 /// Beats that announce a phase.
-pub const ANNOUNCED: u32 = 3;
+pub(crate) const ANNOUNCED: u32 = 3;
 /// Pause before a phase \[ns\]; a fast switch takes 20 ms at most.
 const PAUSE: u32 = 10_000_000;
 /// Timeout of a slave for a step in the service channel \[ns\].

@@ -6,7 +6,7 @@ use crate::layout::{CONNECTION, DEVICE, Place, SERVICE};
 use crate::telegram::{set_word, word};
 
 /// Longest value on the wire \[B\]: a list of four words behind its two lengths.
-pub const VALUE: usize = 12;
+pub(crate) const VALUE: usize = 12;
 
 /// A value as it is on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,9 +74,9 @@ impl Value {
 }
 
 /// Acknowledgement of a procedure command: set, enabled and finished.
-pub const COMMAND_DONE: u16 = 3;
+pub(crate) const COMMAND_DONE: u16 = 3;
 /// Acknowledgement of a procedure command that failed.
-pub const COMMAND_FAILED: u16 = 0xF;
+pub(crate) const COMMAND_FAILED: u16 = 0xF;
 
 struct Parameter {
     idn: Idn,
@@ -90,7 +90,7 @@ struct Parameter {
 }
 
 /// All parameters of a slave.
-pub struct Parameters {
+pub(crate) struct Parameters {
     all: Vec<Parameter>,
     command: usize,
     feedback: usize,
@@ -98,7 +98,7 @@ pub struct Parameters {
 
 impl Parameters {
     /// Parameters of a slave with this address that takes `command` and gives `feedback` bytes in a cycle.
-    pub fn new(address: u16, command: usize, feedback: usize) -> Self {
+    pub(crate) fn new(address: u16, command: usize, feedback: usize) -> Self {
         let mut all = Vec::new();
         let mut add = |idn, value: Value, fixed: bool| {
             let writable = !fixed;
@@ -143,7 +143,7 @@ impl Parameters {
     }
 
     /// Everything as after switching on.
-    pub fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         for p in self.all.iter_mut().filter(|p| !p.fixed) {
             p.value = match p.value.shape() {
                 Shape::Word => Value::word(0),
@@ -155,22 +155,22 @@ impl Parameters {
     }
 
     /// Place of a parameter in the table.
-    pub fn find(&self, idn: Idn) -> Option<usize> {
+    pub(crate) fn find(&self, idn: Idn) -> Option<usize> {
         self.all.iter().position(|p| p.idn == idn)
     }
 
     /// Attribute of parameter `i`.
-    pub fn attribute(&self, i: usize) -> Attribute {
+    pub(crate) fn attribute(&self, i: usize) -> Attribute {
         self.all[i].attribute
     }
 
     /// Value of parameter `i`.
-    pub fn value(&self, i: usize) -> Value {
+    pub(crate) fn value(&self, i: usize) -> Value {
         self.all[i].value
     }
 
     /// Acknowledgement of parameter `i` as a procedure command.
-    pub fn state(&self, i: usize) -> u16 {
+    pub(crate) fn state(&self, i: usize) -> u16 {
         self.all[i].state
     }
 
@@ -178,7 +178,7 @@ impl Parameters {
     ///
     /// # Errors
     /// The code for the service channel; nothing is written.
-    pub fn write(&mut self, i: usize, bytes: &[u8], phase: Phase) -> Result<(), u16> {
+    pub(crate) fn write(&mut self, i: usize, bytes: &[u8], phase: Phase) -> Result<(), u16> {
         let p = &self.all[i];
         if p.fixed {
             return Err(code::READ_ONLY);
@@ -222,7 +222,7 @@ impl Parameters {
     }
 
     /// Whether the master's parameters can be worked with: a permitted cycle time, and every field within its telegram.
-    pub fn is_ready(&self) -> bool {
+    pub(crate) fn is_ready(&self) -> bool {
         let fits = |idn, kind: Option<Kind>, lengths: Idn, len| {
             let (found, place) = self.place(idn);
             let room = usize::from(self.get(lengths).item(place.telegram));
@@ -240,7 +240,7 @@ impl Parameters {
     }
 
     /// The places that the master has given.
-    pub fn places(&self) -> crate::layout::Places {
+    pub(crate) fn places(&self) -> crate::layout::Places {
         let place = |idn| self.place(idn).1;
         crate::layout::Places {
             mdt_service: place(idn::MDT_SERVICE_OFFSET),
@@ -253,23 +253,23 @@ impl Parameters {
     }
 
     /// Whether this procedure command was executed without error.
-    pub fn passed(&self, command: Idn) -> bool {
+    pub(crate) fn passed(&self, command: Idn) -> bool {
         self.find(command).is_some_and(|i| self.all[i].passed)
     }
 
     /// Beats in a row that may be missed.
-    pub fn beat_losses(&self) -> u32 {
+    pub(crate) fn beat_losses(&self) -> u32 {
         self.get(idn::BEAT_LOSSES).number()
     }
 
     /// Losses in a row that the connection with the data for the slave permits.
-    pub fn command_losses(&self) -> u32 {
+    pub(crate) fn command_losses(&self) -> u32 {
         self.get(idn::connection(idn::COMMAND, idn::LOSSES)).number()
     }
 }
 
 /// Whether this is a cycle time of Sercos III \[ns\]: 31.25, 62.5, 125 µs, or a multiple of 250 µs up to 65 ms.
-pub fn is_cycle_time(ns: u32) -> bool {
+pub(crate) fn is_cycle_time(ns: u32) -> bool {
     [31_250, 62_500, 125_000].contains(&ns)
         || (250_000..=65_000_000).contains(&ns) && ns.is_multiple_of(250_000)
 }

@@ -8,7 +8,7 @@ use crate::service::Request;
 
 /// Data for all stations.
 #[derive(Clone, Copy, Debug)]
-pub struct Timing {
+pub(crate) struct Timing {
     /// Cycle time \[ns\].
     pub cycle: u32,
     /// Losses in a row that are permitted: of the data of a connection.
@@ -18,7 +18,7 @@ pub struct Timing {
 }
 
 /// Requests of a phase for station `i`.
-pub fn requests(
+pub(crate) fn requests(
     phase: Phase,
     timing: Timing,
     stations: &[Station],

@@ -15,9 +15,9 @@
 use crate::device::{Control, Idle, Status, Topology};
 
 /// Cycles in which the topology must not change before it counts.
-pub const STABLE: u32 = 100;
+pub(crate) const STABLE: u32 = 100;
 /// Cycles for a slave to obey a command to change the topology.
-pub const PATIENCE: u32 = 12;
+pub(crate) const PATIENCE: u32 = 12;
 
 /// Shape of the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +68,7 @@ enum State {
 }
 
 /// Closes a ring again.
-pub struct Repair {
+pub(crate) struct Repair {
     state: State,
     /// States of the stations before the command, to go back to.
     before: Vec<Topology>,
@@ -76,17 +76,17 @@ pub struct Repair {
 
 impl Repair {
     /// For so many stations.
-    pub fn new(stations: usize) -> Self {
+    pub(crate) fn new(stations: usize) -> Self {
         Self { state: State::Watch, before: vec![Topology::Through; stations] }
     }
 
     /// Begins anew.
-    pub fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.state = State::Watch;
     }
 
     /// One cycle: looks at the device states, and commands. The stations are those that answered.
-    pub fn step(&mut self, states: &[Option<Status>], controls: &mut [Control]) {
+    pub(crate) fn step(&mut self, states: &[Option<Status>], controls: &mut [Control]) {
         match self.state {
             State::Watch => {
                 if all_ends_see(states) {

@@ -21,7 +21,7 @@ const VALID: u16 = 1 << 3;
 
 /// The slave's side.
 #[derive(Default)]
-pub struct Server {
+pub(crate) struct Server {
     ahs: bool,
     error: bool,
     info: u32,
@@ -33,7 +33,7 @@ pub struct Server {
 
 impl Server {
     /// Takes what the master sent. The same step twice, from both channels, is one step.
-    pub fn take(&mut self, control: u16, info: u32, parameters: &mut Parameters, phase: Phase) {
+    pub(crate) fn take(&mut self, control: u16, info: u32, parameters: &mut Parameters, phase: Phase) {
         if (control & HANDSHAKE != 0) == self.ahs {
             return;
         }
@@ -51,7 +51,7 @@ impl Server {
     }
 
     /// Data of the slave: status and four bytes.
-    pub fn give(&self) -> (u16, u32) {
+    pub(crate) fn give(&self) -> (u16, u32) {
         let bits = if self.error { ERROR } else { 0 };
         (u16::from(self.ahs) | bits | VALID, self.info)
     }
@@ -115,7 +115,7 @@ impl Server {
 
 /// Request of the master to a slave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Request {
+pub(crate) enum Request {
     /// The parameter has this value, or the slave is another one.
     Expect(Idn, Value),
     /// The parameter takes this value.
@@ -126,7 +126,7 @@ pub enum Request {
 
 impl Request {
     /// The parameter.
-    pub fn idn(&self) -> Idn {
+    pub(crate) fn idn(&self) -> Idn {
         match *self {
             Self::Expect(idn, _) | Self::Write(idn, _) | Self::Execute(idn) => idn,
         }
@@ -150,7 +150,7 @@ pub enum Refusal {
 
 /// Progress of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
+pub(crate) enum Progress {
     /// Nothing is asked for.
     Idle,
     /// A step is under way.
@@ -173,7 +173,7 @@ enum Step {
 }
 
 /// The master's side.
-pub struct Client {
+pub(crate) struct Client {
     mhs: bool,
     control: u16,
     info: u32,
@@ -187,7 +187,7 @@ pub struct Client {
 
 impl Client {
     /// A client that waits so many cycles for a step to end.
-    pub fn new(patience: u32) -> Self {
+    pub(crate) fn new(patience: u32) -> Self {
         Self {
             mhs: false,
             control: 0,
@@ -202,14 +202,14 @@ impl Client {
     }
 
     /// Begins a request.
-    pub fn ask(&mut self, request: Request) {
+    pub(crate) fn ask(&mut self, request: Request) {
         self.request = Some(request);
         (self.step, self.at) = (Step::Open, 0);
         self.send(Element::Idn, true, true, request.idn().0);
     }
 
     /// Data of the master: control and four bytes.
-    pub fn give(&self) -> (u16, u32) {
+    pub(crate) fn give(&self) -> (u16, u32) {
         (self.control, self.info)
     }
 
@@ -224,7 +224,7 @@ impl Client {
     }
 
     /// Takes what the slave sent in this cycle, and goes on.
-    pub fn take(&mut self, status: u16, info: u32) -> Progress {
+    pub(crate) fn take(&mut self, status: u16, info: u32) -> Progress {
         let Some(request) = self.request else {
             return Progress::Idle;
         };
@@ -242,7 +242,7 @@ impl Client {
     }
 
     /// A cycle without an answer.
-    pub fn wait(&mut self) -> Progress {
+    pub(crate) fn wait(&mut self) -> Progress {
         if self.request.is_none() {
             return Progress::Idle;
         }

@@ -161,7 +161,7 @@ impl Slave {
     }
 
     /// A cable was plugged or pulled.
-    pub fn set_link(&mut self, side: Side, up: bool) {
+    pub(crate) fn set_link(&mut self, side: Side, up: bool) {
         self.links[side as usize] = up;
         if up && self.phase <= Some(Phase::Cp0) && self.idle == Some(side) {
             // Nobody can command it yet.

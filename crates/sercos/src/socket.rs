@@ -107,7 +107,7 @@ impl Socket {
     }
 
     /// Whether the interface is on and somebody is at the far end of the cable.
-    pub fn has_link(&self) -> bool {
+    pub(crate) fn has_link(&self) -> bool {
         self.has(libc::IFF_UP | libc::IFF_RUNNING).unwrap_or(false)
     }
 

@@ -4,52 +4,52 @@ use crate::header::{HEADER, Header, Kind, MAX_FRAME, Phase};
 
 /// One telegram with its headers.
 #[derive(Clone, Copy)]
-pub struct Telegram {
+pub(crate) struct Telegram {
     bytes: [u8; MAX_FRAME],
     len: usize,
 }
 
 impl Telegram {
     /// Begins a telegram with `len` bytes of zeros behind its headers; `len` at most [`crate::header::MAX_DATA`].
-    pub fn begin(&mut self, header: &Header, len: usize) {
+    pub(crate) fn begin(&mut self, header: &Header, len: usize) {
         self.len = HEADER + len;
         self.bytes[HEADER..HEADER + len].fill(0);
         header.write(&mut self.bytes);
     }
 
     /// An empty place for a telegram.
-    pub const EMPTY: Self = Self { bytes: [0; MAX_FRAME], len: 0 };
+    pub(crate) const EMPTY: Self = Self { bytes: [0; MAX_FRAME], len: 0 };
 
     /// Copies a received frame; frames longer than a telegram are cut.
-    pub fn copy_from(&mut self, frame: &[u8]) {
+    pub(crate) fn copy_from(&mut self, frame: &[u8]) {
         self.len = frame.len().min(MAX_FRAME);
         self.bytes[..self.len].copy_from_slice(&frame[..self.len]);
     }
 
     /// All bytes, as on the wire.
-    pub fn bytes(&self) -> &[u8] {
+    pub(crate) fn bytes(&self) -> &[u8] {
         &self.bytes[..self.len]
     }
 
     /// All bytes, as on the wire.
-    pub fn bytes_mut(&mut self) -> &mut [u8] {
+    pub(crate) fn bytes_mut(&mut self) -> &mut [u8] {
         &mut self.bytes[..self.len]
     }
 
     /// Payload behind the headers.
-    pub fn data(&self) -> &[u8] {
+    pub(crate) fn data(&self) -> &[u8] {
         &self.bytes[HEADER.min(self.len)..self.len]
     }
 
     /// Payload behind the headers.
-    pub fn data_mut(&mut self) -> &mut [u8] {
+    pub(crate) fn data_mut(&mut self) -> &mut [u8] {
         let len = self.len;
         &mut self.bytes[HEADER.min(len)..len]
     }
 }
 
 /// Length of the data of a telegram before anything is configured \[B\].
-pub fn early_len(kind: Kind, phase: Phase) -> usize {
+pub(crate) fn early_len(kind: Kind, phase: Phase) -> usize {
     match (kind, phase) {
         (Kind::Mdt, Phase::Cp0) => cp0::MDT,
         (Kind::At, Phase::Cp0) => cp0::AT,
@@ -63,7 +63,7 @@ pub fn word(data: &[u8], at: usize) -> u16 {
 }
 
 /// Writes sixteen bits at `at`; nothing beyond the end.
-pub fn set_word(data: &mut [u8], at: usize, value: u16) {
+pub(crate) fn set_word(data: &mut [u8], at: usize, value: u16) {
     if let Some(place) = data.get_mut(at..at + 2) {
         place.copy_from_slice(&value.to_le_bytes());
     }
@@ -75,7 +75,7 @@ pub fn long(data: &[u8], at: usize) -> u32 {
 }
 
 /// Writes thirty-two bits at `at`; nothing beyond the end.
-pub fn set_long(data: &mut [u8], at: usize, value: u32) {
+pub(crate) fn set_long(data: &mut [u8], at: usize, value: u32) {
     set_word(data, at, value as u16);
     set_word(data, at + 2, (value >> 16) as u16);
 }
@@ -89,7 +89,7 @@ pub mod cp0 {
     /// Length of AT0: sequence counter and 511 addresses \[B\].
     pub const AT: usize = 1024;
     /// Most slaves with two telegrams of each kind in CP1 and CP2: 256 places, of which the first is the master's.
-    pub const SLAVES: usize = 255;
+    pub(crate) const SLAVES: usize = 255;
     /// Communication version: addresses are given (bit 0), two telegrams of each kind (bits 17-16), fast switch (bit 21).
     pub const VERSION: u32 = 1 | 1 << 21;
 
@@ -119,10 +119,8 @@ pub mod cp0 {
 
 /// CP1 and CP2: every telegram serves 128 slaves, telegram n those with the topology addresses from 128 n.
 pub mod cp12 {
-    /// Telegrams of each kind, as [`super::cp0::VERSION`] says.
-    pub const TELEGRAMS: usize = 2;
     /// Slaves of one telegram.
-    pub const GROUP: usize = 128;
+    pub(crate) const GROUP: usize = 128;
     /// Length of a service channel \[B\].
     pub const SERVICE: usize = 6;
     /// Length of device control or status with its reserve \[B\].

@@ -72,7 +72,7 @@ impl Trouble {
     ///
     /// # Errors
     /// It cannot.
-    pub fn check_cycle_time(ns: u32) -> Result<(), Self> {
+    pub(crate) fn check_cycle_time(ns: u32) -> Result<(), Self> {
         if is_cycle_time(ns) { Ok(()) } else { Err(Self::CycleTime(ns)) }
     }
 }

@@ -1,7 +1,7 @@
 //! Bytes: checksum, heads, words, against values from other programs and against what was written.
 
 use proptest::prelude::*;
-use sercos::crc::crc32;
+use sercos::crc32;
 use sercos::device::{Connection, Control, Idle, Status, Topology};
 use sercos::header::{CYCLES, Channel, HEADER, Header, Kind, MAX_DATA, MIN_DATA, Malformed, Phase};
 use sercos::idn::{self, Attribute, Idn, Shape};

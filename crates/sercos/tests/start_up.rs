@@ -2,10 +2,10 @@
 
 mod wire;
 
+use sercos::Refusal;
 use sercos::header::{Header, Kind};
 use sercos::idn::{self, connection};
 use sercos::layout::LayoutError;
-use sercos::service::Refusal;
 use sercos::{Chain, Event, Master, Phase, Side, Slave, Stage, Trouble};
 use wire::{Wire, setup};
 

@@ -4,7 +4,7 @@ use super::noise::Noise;
 
 /// White noise, then rounding to the nearest step, then a limit. Zeros and an infinite range change no bit.
 #[derive(Clone, Debug)]
-pub struct Converter {
+pub(crate) struct Converter {
     /// Standard deviation.
     deviation: f64,
     /// Quantisation.
@@ -16,17 +16,17 @@ pub struct Converter {
 
 impl Converter {
     /// All three in the unit of the signal; noise from `stream`.
-    pub fn new(deviation: f64, step: f64, range: f64, stream: Noise) -> Self {
+    pub(crate) fn new(deviation: f64, step: f64, range: f64, stream: Noise) -> Self {
         Self { deviation, step, range, noise: stream }
     }
 
     /// Noise alone.
-    pub fn noise(&mut self) -> f64 {
+    pub(crate) fn noise(&mut self) -> f64 {
         if self.deviation > 0.0 { self.deviation * self.noise.gaussian() } else { 0.0 }
     }
 
     /// Converts a number and adds to `clipped` if it was out of range. What is not finite becomes NaN.
-    pub fn convert(&mut self, x: f64, clipped: &mut u32) -> f64 {
+    pub(crate) fn convert(&mut self, x: f64, clipped: &mut u32) -> f64 {
         if !x.is_finite() {
             return f64::NAN;
         }
@@ -44,6 +44,6 @@ impl Converter {
 }
 
 /// The nearest multiple of `step`; `x` itself if `step` is 0.
-pub fn round_to(x: f64, step: f64) -> f64 {
+pub(crate) fn round_to(x: f64, step: f64) -> f64 {
     if step > 0.0 { (x / step).round() * step } else { x }
 }

@@ -38,7 +38,7 @@ impl Encoder {
 
 /// The encoders of one side of all joints.
 #[derive(Clone, Debug)]
-pub struct Encoders {
+pub(crate) struct Encoders {
     encoders: Vec<Encoder>,
     /// \[s\] Cycle T of the differences; none: the speed is measured by itself.
     difference: Option<f64>,
@@ -47,7 +47,7 @@ pub struct Encoders {
 
 impl Encoders {
     /// Encoders for the joints of `robot`, read once per `cycle` \[s\].
-    pub fn new(errors: &config::sensors::Encoder, robot: &Robot, cycle: f64) -> Self {
+    pub(crate) fn new(errors: &config::sensors::Encoder, robot: &Robot, cycle: f64) -> Self {
         let encoder = |joint: &config::robot::Joint| Encoder {
             step: errors.counts.of(&joint.name).map_or(0.0, |counts| TAU / counts),
             bias: errors.bias.of(&joint.name).unwrap_or(0.0),
@@ -64,7 +64,7 @@ impl Encoders {
     ///
     /// The first difference is that of a joint at rest. An angle that is not finite is read as NaN, and so are the two
     /// speeds that would need it.
-    pub fn measure(&mut self, [angle, speed]: [&Joints; 2], out: [&mut Joints; 2]) {
+    pub(crate) fn measure(&mut self, [angle, speed]: [&Joints; 2], out: [&mut Joints; 2]) {
         let mut read = [[0.0; MAX_JOINTS]; 2];
         for (j, encoder) in self.encoders.iter_mut().enumerate() {
             let now = if angle[j].is_finite() { encoder.read(angle[j]) } else { f64::NAN };

@@ -38,7 +38,7 @@ pub fn time_constant(bandwidth: f64) -> f64 {
 
 /// Low pass of `N` numbers.
 #[derive(Clone, Debug)]
-pub struct LowPass<const N: usize> {
+pub(crate) struct LowPass<const N: usize> {
     step: Option<Step>,
     /// Output and input of the last cycle.
     last: Option<([f64; N], [f64; N])>,
@@ -46,12 +46,12 @@ pub struct LowPass<const N: usize> {
 
 impl<const N: usize> LowPass<N> {
     /// Time constant and cycle \[s\]; a time constant of 0 gives the input back, bit for bit.
-    pub fn new(time: f64, cycle: f64) -> Self {
+    pub(crate) fn new(time: f64, cycle: f64) -> Self {
         Self { step: Step::new(time, cycle), last: None }
     }
 
     /// One cycle. The first input is taken as the steady state. An input that is not finite gives NaN and is forgotten.
-    pub fn filter(&mut self, u: [f64; N]) -> [f64; N] {
+    pub(crate) fn filter(&mut self, u: [f64; N]) -> [f64; N] {
         let Some(Step { old, new }) = self.step else { return u };
         if !u.iter().all(|u| u.is_finite()) {
             return [f64::NAN; N];
@@ -65,19 +65,19 @@ impl<const N: usize> LowPass<N> {
 
 /// Low pass of an orientation: the filter's error is the rotation vector from its output to the input.
 #[derive(Clone, Debug)]
-pub struct OrientationLowPass {
+pub(crate) struct OrientationLowPass {
     step: Option<Step>,
     last: Option<[UnitQuaternion<f64>; 2]>,
 }
 
 impl OrientationLowPass {
     /// Time constant and cycle \[s\].
-    pub fn new(time: f64, cycle: f64) -> Self {
+    pub(crate) fn new(time: f64, cycle: f64) -> Self {
         Self { step: Step::new(time, cycle), last: None }
     }
 
     /// One cycle. The first input is taken as the steady state; all inputs must be finite.
-    pub fn filter(&mut self, u: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+    pub(crate) fn filter(&mut self, u: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
         let Some(Step { old, new }) = self.step else { return u };
         let [y0, u0] = self.last.unwrap_or([u, u]);
         let [error, to_new] = [u0, u].map(|u| (y0.inverse() * u).scaled_axis());

@@ -42,7 +42,7 @@ impl Noise {
     }
 
     /// Gaussian, mean 0, standard deviation 1. At most 6.1 after about 10^9 numbers; never infinite.
-    pub fn gaussian(&mut self) -> f64 {
+    pub(crate) fn gaussian(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;
         }

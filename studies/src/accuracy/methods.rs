@@ -28,7 +28,7 @@ pub struct Method {
 
 impl Method {
     /// With so many steps in a cycle.
-    pub fn stepping(integrator: Integrator, steps: u32) -> Self {
+    pub(crate) fn stepping(integrator: Integrator, steps: u32) -> Self {
         Self { integrator, steps, tolerance: None }
     }
 
@@ -47,7 +47,7 @@ impl Method {
     }
 
     /// Whether it sees dry friction as it is.
-    pub fn exact_friction(&self) -> bool {
+    pub(crate) fn exact_friction(&self) -> bool {
         self.integrator == Integrator::SemiImplicit
     }
 

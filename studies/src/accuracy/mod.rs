@@ -136,7 +136,7 @@ impl Chart {
     }
 
     /// The same without lines.
-    pub fn scattered(self) -> Self {
+    pub(crate) fn scattered(self) -> Self {
         Self { scattered: true, ..self }
     }
 
@@ -158,7 +158,12 @@ impl Chart {
     }
 
     /// Measures the order of a method by its points with steps in `steps` \[s\], beside the predicted one.
-    pub fn expect_order(&mut self, method: &str, predicted: f64, steps: std::ops::RangeInclusive<f64>) {
+    pub(crate) fn expect_order(
+        &mut self,
+        method: &str,
+        predicted: f64,
+        steps: std::ops::RangeInclusive<f64>,
+    ) {
         let of_method = self.points.iter().filter(|p| p.method == method && !p.diverged);
         let pairs = of_method.filter_map(|p| Some([p.step.filter(|h| steps.contains(h))?, p.error]));
         let measured = slope(&pairs.collect::<Vec<_>>());

@@ -16,7 +16,7 @@ pub struct Order {
 }
 
 /// A step as people write it.
-pub fn in_ms(step: f64) -> String {
+pub(crate) fn in_ms(step: f64) -> String {
     let ms = step * 1e3;
     let digits = (2 - ms.log10().floor() as i32).max(0) as usize;
     let text = format!("{ms:.digits$}");

@@ -33,7 +33,7 @@ pub struct Jacobian {
 
 /// What the differences of two step sizes say.
 #[derive(Clone, Debug)]
-pub struct Multipliers {
+pub(crate) struct Multipliers {
     /// lambda_i with the smaller step (real, imaginary), largest first.
     pub values: Vec<[f64; 2]>,
     /// |lambda|_max with the smaller and with the larger step.
@@ -50,7 +50,7 @@ pub struct Multipliers {
 
 impl Multipliers {
     /// Whether the map was smooth over the steps taken; otherwise its multipliers mean nothing.
-    pub fn smooth(&self) -> bool {
+    pub(crate) fn smooth(&self) -> bool {
         self.spread < SMOOTH && self.asymmetry.iter().all(|a| *a < SMOOTH)
     }
 }
@@ -60,7 +60,7 @@ impl Multipliers {
 ///
 /// # Errors
 /// A motion ended, or no eigenvalues were found.
-pub fn multipliers(
+pub(crate) fn multipliers(
     steps: &[f64],
     factor: f64,
     map: &(dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync),

@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 use recording::polygon::Point;
 
 /// \[N\] Forces below this one have no point to act in.
-pub const LEAST_FORCE: f64 = 1e-6;
+pub(crate) const LEAST_FORCE: f64 = 1e-6;
 
 /// A force \[N\] and its moment about the world's origin \[N m\], world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -35,7 +35,7 @@ impl Load {
     }
 
     /// Moment about `p` \[m\].
-    pub fn moment_about(&self, p: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn moment_about(&self, p: &Vector3<f64>) -> Vector3<f64> {
         self.moment - p.cross(&self.force) // (3.5)
     }
 }
@@ -67,17 +67,17 @@ pub fn zmp(ground: &Load, z: f64) -> Option<Point> {
 /// The ankle gives F_c - m g - F_a to the foot; a foot at rest would need the same with F_a = 0, so the ground would
 /// have to do F_c - F_a. For a foot at rest it is the zero-moment point; for one that turns about an edge it lies
 /// outside of the sole by the moment that turns it over the force.
-pub fn foot_rotation(ground: &Load, inertia: &Load, z: f64) -> Option<Point> {
+pub(crate) fn foot_rotation(ground: &Load, inertia: &Load, z: f64) -> Option<Point> {
     zmp(&(*ground - *inertia), z)
 }
 
 /// L' (3.2) from the ground and `other` moments about the centre of gravity `com`.
-pub fn momentum_rate(ground: &Load, com: &Vector3<f64>, other: &Vector3<f64>) -> Vector3<f64> {
+pub(crate) fn momentum_rate(ground: &Load, com: &Vector3<f64>, other: &Vector3<f64>) -> Vector3<f64> {
     ground.moment_about(com) + other
 }
 
 /// Where the ground's force would have to act for the horizontal part of L' to vanish.
-pub fn zero_rate(ground: &Load, com: &Vector3<f64>, other: &Vector3<f64>, z: f64) -> Option<Point> {
+pub(crate) fn zero_rate(ground: &Load, com: &Vector3<f64>, other: &Vector3<f64>, z: f64) -> Option<Point> {
     let (f, down) = (ground.force, z - com.z);
     (f.z > LEAST_FORCE).then(|| [com.x + (down * f.x + other.y) / f.z, com.y + (down * f.y - other.x) / f.z])
 }

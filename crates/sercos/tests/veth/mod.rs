@@ -95,9 +95,8 @@ impl Veth {
                 }
                 answer(&mut far);
             }
-            let sum = |of: fn(sercos::slave::Counts) -> u64| {
-                far.chain().slaves().iter().map(|s| of(s.counts())).sum()
-            };
+            let sum =
+                |of: fn(sercos::Counts) -> u64| far.chain().slaves().iter().map(|s| of(s.counts())).sum();
             counts.0.store(sum(|c| c.foreign), Ordering::Relaxed);
             counts.1.store(sum(|c| c.malformed), Ordering::Relaxed);
         });
