@@ -15,6 +15,7 @@
 
 use std::fmt::Write as _;
 
+use crate::dbc_words;
 use crate::section::Section;
 
 /// Most joints of a local controller on classic CAN: controlwords of 16 bits beside counter and mode in 8 bytes.
@@ -432,18 +433,10 @@ impl File {
 
     /// Comments and words of the signals that carry more than a number.
     fn words(&self, out: &mut String) {
-        let statuswords = statuswords();
         let mut words = String::new();
         for (id, signal) in self.frames.iter().flat_map(|f| f.signals.iter().map(|s| (f.id, s))) {
             let name = &signal.name;
-            let (comment, values) = match name.rsplit_once('_').map_or(name.as_str(), |(_, kind)| kind) {
-                "mode" => ("", "0 \"off\" 1 \"hold\" 2 \"track\" 3 \"stop\" 4 \"home\""),
-                "supply" => ("", "0 \"off\" 1 \"on\""),
-                "control" => (CONTROLWORD, CONTROLWORDS),
-                "status" => (STATUSWORD, statuswords.as_str()),
-                "error" => ("Error code of CiA 301 and 402.", ERRORS),
-                _ => continue,
-            };
+            let Some((comment, values)) = dbc_words::of_signal(name) else { continue };
             if !comment.is_empty() {
                 let _ = writeln!(out, "CM_ SG_ {id} {name} \"{comment}\";");
             }
@@ -482,40 +475,4 @@ fn decimal(value: f64) -> String {
         Some((digits, exponent)) => format!("{digits}e-{exponent:0>2}"),
         None => text,
     }
-}
-
-const CONTROLWORD: &str = "Controlword of CiA 402: bit 0 switch on, 1 enable voltage, 2 quick stop (0 stops), 3 enable \
-                           operation, 7 fault reset.";
-const CONTROLWORDS: &str = "0 \"disable voltage\" 2 \"quick stop\" 6 \"shutdown\" 7 \"switch on\" 15 \"enable operation\" 134 \
-                            \"fault reset\"";
-const STATUSWORD: &str = "Statusword of CiA 402: bit 0 ready to switch on, 1 switched on, 2 operation enabled, 3 fault, 4 \
-                          voltage, 5 quick stop (0 stops), 6 switch on disabled, 7 warning, 15 angle known (maker's own).";
-const ERRORS: &str = "0 \"none\" 8976 \"over-current\" 17168 \"winding too hot\" 33072 \"no frames on the bus\" 34321 \
-                      \"following error\"";
-
-/// Every statusword a drive may send, in words, smallest first.
-fn statuswords() -> String {
-    const STATES: [(u32, &str); 12] = [
-        (0x00, "not ready, no voltage"),
-        (0x08, "fault, no voltage"),
-        (0x10, "not ready"),
-        (0x17, "quick stop"),
-        (0x18, "fault"),
-        (0x1f, "fault reaction"),
-        (0x21, "ready, no voltage"),
-        (0x31, "ready"),
-        (0x33, "switched on"),
-        (0x37, "operation enabled"),
-        (0x40, "switch on disabled, no voltage"),
-        (0x50, "switch on disabled"),
-    ];
-    let mut words = Vec::new();
-    for (known, angle) in [(0, ", angle unknown"), (0x8000, "")] {
-        for (bit, warning) in [(0, ""), (0x80, ", warning")] {
-            words.extend(
-                STATES.map(|(word, state)| format!("{} \"{state}{warning}{angle}\"", known | bit | word)),
-            );
-        }
-    }
-    words.join(" ")
 }

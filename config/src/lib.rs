@@ -18,6 +18,7 @@ pub mod bus_fault;
 pub mod crane;
 pub mod database;
 pub mod dbc;
+mod dbc_words;
 pub mod dbc_writer;
 pub mod drive;
 pub mod efficiency;
