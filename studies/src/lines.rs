@@ -139,7 +139,8 @@ fn sheet(f: &Found) -> Sheet {
         f.unsent[1]
     ));
     let [near, far] = f.allocations;
-    sheet.line(format!("allocations and frees: near end {near:?}; far end {far:?}"));
+    let text = |of: [u64; 2]| format!("{}, {}", of[0], of[1]);
+    sheet.line(format!("allocations and frees: near end {}; far end {}", text(near), text(far)));
     // cyclictest beside what it measures; where it could not run, why.
     let mut rows = vec![
         json!(["wake-up after its time", f.lateness_us]),
