@@ -328,6 +328,7 @@ impl Session {
     /// Request to the broker itself in one frame.
     async fn serve_request(&mut self, message: &Message<'_>) -> Result<(), Refusal> {
         let (token, sequence) = (self.token, message.stamp.sequence);
+        // Before HELLO and without the right to read, nothing but a proof of the key is served.
         if message.id == service::PROVE {
             return self.prove(message).await;
         }
@@ -337,6 +338,7 @@ impl Session {
         if !self.rights.reads {
             return Err(Refusal::NoAccess("this connection may only stop the robot; show a key".into()));
         }
+        // The frame only becomes a request here; the thread that owns clients and lease answers it.
         let sent_ns = message.stamp.sent_ns;
         self.gate.ask(match message.id {
             service::SUBSCRIBE => {

@@ -396,6 +396,7 @@ impl StreamClient {
     }
 
     fn interpret(&mut self, frame: &[u8]) -> Result<News, String> {
+        // With a key, every frame ends with its tag: nothing is read before that is right.
         let mut bytes = frame;
         if let Some([_, from_broker]) = &mut self.halves {
             let (message, tag) = frame.split_at(frame.len().saturating_sub(TAG));
@@ -411,6 +412,7 @@ impl StreamClient {
             return message.command().map(News::Command).map_err(|e| format!("the broker sent: {e}"));
         }
         let (sequence, payload) = (message.stamp.sequence, message.payload);
+        // The broker's clock, for stamps by which it judges age: the latest one it sent, carried on by our own.
         if let Some(clock) = &mut self.clock
             && message.stamp.sent_ns > clock.0 + now().saturating_sub(clock.1)
         {

@@ -126,6 +126,7 @@ impl Gatherer {
         self.time = sim.time;
         let gait = if sim.fallen == 1 { GaitState::Fallen } else { state.gait.into() };
         self.ending.see(sim.time, sim.power == 1, gait);
+        // True state of the simulated robot: from the first cycle on.
         let [x, y, z, w] = sim.orientation;
         let heading = (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z));
         self.end_pose = [sim.position[0], sim.position[1], heading];
@@ -137,6 +138,7 @@ impl Gatherer {
         if state.plan_id == 0 {
             return;
         }
+        // Errors against the plan: from the first plan on.
         self.cycles += 1.0;
         for i in 0..2 {
             let e = state.inclination_error[i];
@@ -148,6 +150,7 @@ impl Gatherer {
                 self.tracking[side][j] = self.tracking[side][j].max(error.abs());
             }
         }
+        // Landings: a standing foot is put down by nobody.
         if matches!(GaitState::from(state.gait), GaitState::Walking | GaitState::Stopping) {
             for i in 0..2 {
                 self.landing[i].add(sim.time, sim.foot_wrench[i].force[2], state.wrench_desired[i].force[2]);
@@ -163,6 +166,7 @@ impl Gatherer {
     pub fn figures(&self, setup: &Setup, cpu_s: f64, log: Option<String>) -> Figures {
         let Setup { scene, robot, .. } = setup;
         let periodic = self.way.periodic();
+        // A stride is two steps; only the periodic part of the walk counts.
         let per_step = |x: f64| x / (2.0 * periodic.strides).max(1.0);
         let by_joint = |errors: [f64; MAX_JOINTS]| -> BTreeMap<String, f64> {
             robot.joints.iter().map(|j| j.name.clone()).zip(errors).collect()
@@ -173,6 +177,7 @@ impl Gatherer {
             of.map(|(_, e)| *e).fold(0.0, f64::max)
         };
         let worst = |value: fn(&Landing) -> f64| self.landing.iter().map(value).fold(0.0, f64::max);
+        // Ending, and the reason for the depth, are filled in by whoever ran the scene.
         let n = self.cycles.max(1.0);
         Figures {
             scene: scene.name.clone(),

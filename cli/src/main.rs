@@ -142,7 +142,7 @@ enum Task {
     Plot {
         /// An MCAP file.
         log: PathBuf,
-        /// Where the pictures go; default: beside the log.
+        /// Directory of the pictures; default: beside the log.
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
@@ -164,7 +164,7 @@ enum Task {
     Stability {
         /// An MCAP file of a simulated robot.
         log: PathBuf,
-        /// Where the pictures go; default: beside the log.
+        /// Directory of the pictures; default: beside the log.
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Coefficient of friction; default: that of the log's robot in the configuration.
@@ -204,7 +204,7 @@ enum Task {
     FitFriction {
         /// A table, for example config/gears/hfuc_25_100.toml.
         file: PathBuf,
-        /// Where the picture goes; default: the table's name with .png, in the current directory.
+        /// Path of the picture; default: the table's name with .png, in the current directory.
         #[arg(long, value_name = "PNG")]
         out: Option<PathBuf>,
         /// One JSON object on standard output, and no picture unless --out is given.

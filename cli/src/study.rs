@@ -38,10 +38,10 @@ pub(super) struct Realtime {
     /// The scene that is run.
     #[arg(long, default_value = "walk_60s")]
     scene: String,
-    /// How long cyclictest runs, in s; 0: not at all.
+    /// Duration of cyclictest, in s; 0: it does not run.
     #[arg(long, default_value_t = 20)]
     cyclictest: u64,
-    /// Where the log goes.
+    /// Directory of the log.
     #[arg(long, value_name = "DIR", default_value = "runs/realtime")]
     out: PathBuf,
 }

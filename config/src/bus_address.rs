@@ -23,7 +23,7 @@ pub enum BusAddress {
 }
 
 impl BusAddress {
-    /// Whether frames have 8 bytes at most.
+    /// True if frames have 8 bytes at most.
     pub fn is_classic(&self) -> bool {
         matches!(self, Self::Can { fd: false, .. })
     }

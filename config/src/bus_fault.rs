@@ -103,6 +103,7 @@ impl BusFault {
         let mut fault =
             Self::new(kind, row.number("time", "s", NOT_NEGATIVE), duration.unwrap_or(f64::INFINITY));
         fault.node = row.has("node").then(|| row.text("node"));
+        // Bus-off and a pulled cable strike whole lines: what narrows a fault to frames has no meaning.
         if kind.is_of_line() {
             for key in ["direction", "share", "cycles"].into_iter().filter(|key| row.has(key)) {
                 let word = FaultKind::WORDS[kind as usize];
@@ -117,6 +118,7 @@ impl BusFault {
         if row.has("share") {
             fault.share = row.number("share", "", 0.0..=1.0);
         }
+        // `cycles` is a delay, a number of repetitions, or the length of a burst.
         match kind {
             FaultKind::Late => fault.cycles = row.integer("cycles", 1..=MOST_LATE.into()) as u32,
             FaultKind::Duplicated if row.has("cycles") => {

@@ -83,6 +83,7 @@ impl Reader<'_> {
     fn message(&mut self, dbc: &Dbc, m: &can_dbc::Message, nodes: &[String], into: &mut Vec<Message>) {
         let line = self.line(&format!("BO_ {} ", m.id.raw()), 0);
         let to_drives = m.transmitter.as_deref() == Some(PC);
+        // The other end is the sender, or of a message of the PC whoever receives its first signal.
         let first = m.signals.first().map(|s| s.receivers.as_slice()).unwrap_or_default();
         let ends = if to_drives { first } else { m.transmitter.as_slice() };
         let at: Vec<usize> = ends.iter().filter_map(|end| nodes.iter().position(|n| n == end)).collect();
@@ -103,6 +104,7 @@ impl Reader<'_> {
                 format!("identifier {id}, {} bytes: below 2048, and 1 to 64", m.size),
             );
         }
+        // Bits in use, so that no two signals share one.
         let mut used = [0u64; 8];
         let signals =
             m.signals.iter().filter_map(|s| self.signal(dbc, m, s, to_drives, &mut used)).collect::<Vec<_>>();
@@ -132,6 +134,7 @@ impl Reader<'_> {
         let line = self.line(&format!("SG_ {} ", s.name), self.line(&format!("BO_ {} ", m.id.raw()), 0));
         let key = format!("{}.{}", m.name, s.name);
         let mut wrong = |text: String| self.problems.push(Problem { line, key: key.clone(), text });
+        // Number formats that the flat table of the codec can hold.
         let plain = s.multiplexer_indicator == MultiplexIndicator::Plain;
         if s.byte_order != ByteOrder::LittleEndian || !plain {
             wrong("must be Intel (@1) and not multiplexed".into());
@@ -146,6 +149,7 @@ impl Reader<'_> {
             wrong(format!("{}|{}: 1 to 32 bits within {} bytes", s.start_bit, s.size, m.size));
             return None;
         }
+        // Place: no overlap with another signal.
         for bit in s.start_bit as usize..(s.start_bit + s.size) as usize {
             if used[bit / 64] >> (bit % 64) & 1 == 1 {
                 wrong(format!("bit {bit} belongs to another signal, too"));
@@ -176,6 +180,7 @@ impl Reader<'_> {
             ("supply", false) => return Ok(Carries::Supply),
             _ => {}
         }
+        // Sensors: SENSOR_QUANTITY_AXIS.
         let axis = |axis: &str, most: usize| AXES[..most].iter().position(|a| *a == axis);
         let parts: Vec<&str> = name.split('_').collect();
         if let (&[what, kind, k], false) = (parts.as_slice(), to_drives) {
@@ -192,6 +197,7 @@ impl Reader<'_> {
                 return Ok(found);
             }
         }
+        // Joints, whose names have underscores themselves: JOINT_QUANTITY.
         let (joint, quantity) = name.rsplit_once('_').unwrap_or((name, ""));
         let make: fn(usize) -> Carries = match (quantity, to_drives) {
             ("target", true) => Carries::Target,
@@ -243,6 +249,7 @@ impl Reader<'_> {
             }
             all.push((signal.carries, &signal.name));
         }
+        // What a walk cannot do without; currents, temperatures and motor sides may be missing.
         let joints = self.joints;
         let mut need = |carries: Carries, name: String| {
             if !all.iter().any(|(other, _)| *other == carries) {

@@ -20,6 +20,8 @@ use crate::section::Section;
 
 /// Most joints of a local controller on classic CAN: controlwords of 16 bits beside counter and mode in 8 bytes.
 const CLASSIC_JOINTS: usize = 3;
+/// Most joints on CAN FD: target and speed of 32 bits and a controlword each, beside 4 bytes of head, in 64 bytes.
+const FD_JOINTS: usize = 6;
 /// Most local controllers on classic CAN: room between two kinds of identifiers.
 const CLASSIC_NODES: usize = 16;
 /// \[byte\] Lengths of a CAN FD frame.
@@ -68,7 +70,7 @@ impl LocalController {
 
 /// Text of a DBC file for a robot with these local controllers. `motor_side`: the drives report it, too.
 ///
-/// Whether every joint and sensor is there, once, is checked by the reader, [`crate::dbc::read`].
+/// Completeness of joints and sensors is checked by the reader, [`crate::dbc::read`].
 ///
 /// # Errors
 /// A local controller has more joints than its frames have room for.
@@ -80,7 +82,7 @@ pub fn dbc_text(
 ) -> Result<String, String> {
     let most = match form {
         FrameForm::Classic => CLASSIC_JOINTS,
-        FrameForm::Fd => 6,
+        FrameForm::Fd => FD_JOINTS,
     };
     if let Some(node) = nodes.iter().find(|node| node.joints.len() > most) {
         let (name, count) = (&node.name, node.joints.len());
@@ -90,6 +92,7 @@ pub fn dbc_text(
     if form == FrameForm::Classic && nodes.len() > CLASSIC_NODES {
         return Err(format!("can.node: {} on classic CAN; at most {CLASSIC_NODES}", nodes.len()));
     }
+    // In the order in which they are sent: commands to every controller, then the answers of each.
     let mut file = File { frames: Vec::new() };
     for (n, node) in nodes.iter().enumerate() {
         match form {
@@ -228,6 +231,7 @@ impl File {
                 "Motor side: incremental encoder, divided by the gear ratio.",
             ),
         ];
+        // Angle and speed of one side fill a frame.
         for (k, joint) in (0..).zip(&node.joints) {
             for (base, side, [angle, speed], comment) in &sides[..1 + usize::from(motor_side)] {
                 let head = (base + 4 * n + k, format!("{joint}_{side}"));
@@ -237,6 +241,7 @@ impl File {
                 });
             }
         }
+        // Slower quantities of all drives share a frame each.
         let mut of_drives = |base: u32, name: &str, comment, fill: &dyn Fn(&mut Filling)| {
             self.frame(form, (base + 4 * n, format!("node{n}_{name}")), (node, false), comment, fill);
         };

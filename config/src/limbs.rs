@@ -64,6 +64,7 @@ impl Head {
             heading_time: table.number("heading_time", "s", POSITIVE),
             nearest: table.number("nearest", "m", POSITIVE),
         };
+        // A saccade takes over at the speed of pursuit, and no joint may be asked for more than it can.
         if head.pursuit_speed > head.saccade_speed {
             table.problem("pursuit_speed", "is above saccade_speed: a jump may begin at this speed");
         }

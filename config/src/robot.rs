@@ -145,6 +145,7 @@ impl Robot {
         let limits = acceleration::least(&robot.drives, &robot.joints);
         robot.joints.iter_mut().zip(limits).for_each(|(joint, limit)| joint.acceleration = limit);
         let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+        // Frames: a file counts before what the local controllers would give.
         let of_robot = |text| ConfigError::of_file(&path, text);
         robot.layout = match &can.fd {
             Some(file) => dbc::load(&directory.join(file), &joints, hash)?,
@@ -156,6 +157,7 @@ impl Robot {
         };
         robot.spare = spare(&robot.layout, &can.spare).map_err(of_robot)?;
         robot.can = can;
+        // The URDF is parsed where models are built; here only its masses are compared.
         let urdf_path = directory.join(&robot.urdf);
         robot.urdf = file::text(&urdf_path, hash)?;
         let masses = masses(&robot.urdf).map_err(|text| ConfigError::of_file(&urdf_path, text))?;
@@ -363,7 +365,7 @@ pub struct Can {
     pub fd: Option<String>,
     /// The local controllers, in the order of their lines; needed where there is no file.
     pub nodes: Vec<LocalController>,
-    /// Whether the drives report the motor side, too.
+    /// The drives report the motor side, too.
     pub motor_side: bool,
     /// Names of the local controllers that the robot can walk without.
     spare: Vec<String>,

@@ -107,6 +107,7 @@ impl Scene {
     fn build(top: &Section<'_, '_>, name: String) -> Self {
         let (method, auto) = method(top);
         let Method { depth, integrator, substeps } = method;
+        // `tolerance` is a number for the adaptive integrator, or a table for depth "auto".
         let adaptive = auto.is_none() && top.has("tolerance") && !top.is_table("tolerance");
         if auto.is_none() && top.is_table("tolerance") {
             top.problem(
@@ -144,6 +145,7 @@ impl Scene {
         if (scene.integrator == Integrator::Bdf) != scene.tolerance.is_some() {
             top.problem("tolerance", "the integrator \"bdf\" needs a tolerance, and no other one has one");
         }
+        // Rows stand in the order of time, as everything that plays them expects.
         scene.check_times(top, "command", scene.commands.iter().map(|(time, _)| *time));
         scene.check_times(top, "push", scene.pushes.iter().map(|(time, _)| *time));
         scene.check_times(top, "bus_fault", scene.bus_faults.iter().map(|fault| fault.time));

@@ -94,6 +94,7 @@ impl Setup {
             let text = format!("robot {robot} has no pose `{pose}`{near}; there is {}", listed(&names));
             note("start_pose".to_owned(), text);
         }
+        // Commands within the gait, and to parts that the robot and the scene have.
         for (i, (time, command)) in scene.commands.iter().enumerate() {
             if let Some(text) = self.beyond_gait(command) {
                 note(format!("command[{i}]"), format!("at {time} s: {text} of gait {}", scene.gait));
@@ -116,6 +117,7 @@ impl Setup {
         if let Some(i) = scene.commands.iter().position(|(_, c)| lowers(c)) {
             note(format!("command[{i}]"), "sim/lower: the scene has no [crane]".to_owned());
         }
+        // State of the drives at the start, and what it needs of the robot.
         if scene.drives.is_some() && self.robot.protection.is_none() {
             note("drives".to_owned(), format!("robot {} has no [protection]", scene.robot));
         }
@@ -130,6 +132,7 @@ impl Setup {
             let text = format!("robot {} has no joint `{name}`; the nearest is `{near}`", scene.robot);
             note("drives.temperature".to_owned(), text);
         }
+        // Names of joints and local controllers in plant mismatch and bus faults.
         for (name, _) in &scene.unknown.joint_offset.own {
             if !joints.contains(&name.as_str()) {
                 let near = nearest(name, &joints).unwrap_or("none");
@@ -157,6 +160,7 @@ impl Setup {
         let outside = |name: &str, x: f64, [lo, hi]: [f64; 2]| {
             (x < lo || x > hi).then(|| format!("{name} = {x} lies outside of limits.{name} [{lo}, {hi}]"))
         };
+        // A scene is refused when it is loaded rather than in the middle of its walk.
         match command {
             Command::Step(step) => outside("length", step.length, limits.length)
                 .or_else(|| outside("side", step.side, limits.side))

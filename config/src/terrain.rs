@@ -73,6 +73,7 @@ pub(crate) fn object(row: &Section<'_, '_>) -> TerrainObject {
     if object.vanishes <= object.appears {
         row.problem("vanishes", format!("must be later than it appears, {} s", object.appears));
     }
+    // Moving objects are for contact only: there is no vision that would follow them.
     let changes = !object.poses.is_empty() || object.appears > 0.0 || object.vanishes.is_finite();
     if object.known && changes {
         row.problem("known", "the planner knows only what stays where it is from the beginning to the end");

@@ -13,7 +13,7 @@
 //! | targets → frames of the bus; watchdog reset | [`JointLoop::send`] |
 //! | power, references, drives, force sensors: until the robot stands | [`start_up`] |
 //!
-//! What is at the far end of the bus is behind the trait [`Fieldbus`]: shared memory, CAN lines or a Sercos ring to a
+//! The far end of the bus is behind the trait [`Fieldbus`]: shared memory, CAN lines or a Sercos ring to a
 //! simulated robot, or a robot. Which one a run uses: `bus.rs`.
 
 pub mod braking;

@@ -33,7 +33,7 @@ pub enum JointModel {
 pub enum GearModel {
     /// A rotor turns as its joints do.
     Stiff,
-    /// Where the robot's file names a spring, the rotor turns by itself (2.69).
+    /// The rotor turns by itself where the robot's file names a spring (2.69).
     Elastic,
 }
 

@@ -44,7 +44,7 @@ pub struct ArmSwing {
     /// Type of the model: 1, reduced; 2, with motors; 3, with elastic gears.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
     pub depth: u8,
-    /// Where the pictures go.
+    /// Directory of the pictures.
     #[arg(long, value_name = "DIR", default_value = "runs/study/arm_swing")]
     pub out: PathBuf,
 }

@@ -17,6 +17,7 @@ impl Exchange<'_> {
         let Ok(request) = self.inlet.requests.try_recv() else { return false };
         match request {
             Request::Join { token, name, may, out, done } => {
+                // HELLO sent twice must not make two members of one connection.
                 self.members.retain(|m| m.sender.token != token);
                 let sender = Sender { token, may, last: [0; 3] };
                 let exit = Exit::Stream(out);
@@ -52,6 +53,7 @@ impl Exchange<'_> {
                 let stamp = Stamp { origin: token, sequence, sent_ns, grant: 0 };
                 self.set_parameter(&stamp, &name, value, report);
             }
+            // The lease: renewed by a heartbeat, taken, given back; a closing link gives it up.
             Request::Alive { token, sent_ns } => self.lease.renew(token, sent_ns, self.now),
             Request::TakeLease { token, sequence, sent_ns, over } => {
                 self.take_lease(token, sequence, sent_ns, over);

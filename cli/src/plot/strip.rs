@@ -23,6 +23,7 @@ pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
     if links < 4 {
         return Err("the log has no poses of links in /tf".into());
     }
+    // Standing still is not drawn: the strip begins with the first step.
     let begin = walk
         .cycles
         .iter()
@@ -39,6 +40,7 @@ pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
         let title = format!("{first:.1} s to {last:.1} s");
         let mut chart = Chart::new(&title, "distance along the strip [m]", "z [m]").equal();
         let width = SPACING * (PER_ROW as f64 - 1.0) + 0.7;
+        // Ground line as wide as a full row, so that rows have the same scale.
         chart.styled(
             "",
             vec![[-0.45, 0.0], [width - 0.25, 0.0]],
@@ -49,6 +51,7 @@ pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
             let time = format!("{:.1} s", seconds(tree.stamp_ns, walk.start_ns));
             chart.note([SPACING * k as f64, -0.2], &time, GREY);
         }
+        // An invisible point that makes room for the times below the ground.
         chart.styled(
             "",
             vec![[-0.45, -0.22], [-0.45, -0.22]],

@@ -39,6 +39,7 @@ pub(super) trait Part {
 /// The process as it is when it begins.
 pub(super) fn of(process: Process, setup: &Setup, bus: &BusAddress) -> Result<Box<dyn Part>, Box<dyn Error>> {
     let Setup { scene, robot, gait, system, .. } = setup;
+    // Each part is built as its daemon builds it, from the configuration in the log.
     Ok(match process {
         Process::Planner => {
             let mut planner = Planner::of(gait, robot);

@@ -58,6 +58,7 @@ impl Tape {
     pub(super) fn open(log: Log, process: Process) -> Result<Self, Problem> {
         let mut queues = Vec::new();
         for topic in TOPICS.iter().filter(|t| t.logged) {
+            // Inputs are fed, own outputs compared; statistics depend on the machine and are neither.
             let input = inputs_of(process).contains(&topic.name);
             let of_statistics = topic.name.starts_with("cycle_stats/");
             let own = topic.writer == process && !of_statistics;
@@ -69,6 +70,7 @@ impl Tape {
         }
         let channels: Vec<_> =
             queues.iter().map(|q| (channel_name(q.topic.name), text_of(q.topic))).collect();
+        // The log is read by a thread of its own, a bounded number of records ahead.
         let (sender, heard) = sync_channel(AHEAD);
         let reading = move || {
             let end = read(&log, &channels, &sender).map_err(|e| e.to_string());

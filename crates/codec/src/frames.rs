@@ -108,6 +108,7 @@ pub fn decode_sensors(layout: &Layout, frames: &BusFrames, sensors: &mut Sensors
                 s.motor_speed[j] = value;
             }
         }
+        // Motor side and drives.
         Carries::Motor(j) => s.motor_angle[j] = value,
         Carries::MotorSpeed(j) => s.motor_speed[j] = value,
         Carries::Current(j) => s.motor_current[j] = value,

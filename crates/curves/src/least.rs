@@ -58,10 +58,12 @@ fn solve<const K: usize>(matrix: &Blocks<K>, given: &[[Option<f64>; 3]; K]) -> O
     let known = |i: usize| given[i / 3][i % 3];
     let mut m = *matrix;
     let mut x = [[0.0; 3]; K];
+    // Known derivatives go to the right-hand side.
     for i in (0..n).filter(|&i| known(i).is_none()) {
         let sum = |j: usize| known(j).map_or(0.0, |g| g * matrix[i / 3][j / 3][i % 3][j % 3]);
         x[i / 3][i % 3] = -(0..n).map(sum).sum::<f64>();
     }
+    // Elimination without pivoting: the matrix is symmetric and positive definite, or the problem has no answer.
     for i in (0..n).filter(|&i| known(i).is_none()) {
         let pivot = m[i / 3][i / 3][i % 3][i % 3];
         if !(pivot > 1e-9 * matrix[i / 3][i / 3][i % 3][i % 3]) {
@@ -75,6 +77,7 @@ fn solve<const K: usize>(matrix: &Blocks<K>, given: &[[Option<f64>; 3]; K]) -> O
             x[r / 3][r % 3] -= factor * x[i / 3][i % 3];
         }
     }
+    // Back substitution.
     for i in (0..n).rev() {
         x[i / 3][i % 3] = match known(i) {
             Some(value) => value,

@@ -71,6 +71,7 @@ impl Daemon {
         let method = run.method.as_deref().map(str::parse).transpose()?;
         let bus: BusAddress = run.bus.parse()?;
         let setup = Setup::load(&run.config, &run.scene)?.with_method(method)?.on_bus(bus.is_classic())?;
+        // Real time needs priority and core; in lockstep neither is asked for.
         let row = setup.system.process(process).cloned();
         let schedule = match (run.mode, &row) {
             (Mode::RealTime, Some(row)) => Schedule { priority: row.priority, core: row.core },
@@ -80,6 +81,7 @@ impl Daemon {
         for missing in &granted.missing {
             tracing::warn!("{} degraded: {missing}", process.name());
         }
+        // Building takes milliseconds: at the priority of a running joint loop it would stop that one for as long.
         granted.stand_back();
         let space = run.enter(process)?;
         let deadline = row.map_or(0, |row| row.deadline_ns);

@@ -91,6 +91,7 @@ impl Asc {
         if id.eq_ignore_ascii_case("ErrorFrame") {
             return Ok(Some((channel, error_frame())));
         }
+        // "Statistic:", "Status:" and the like are no frames.
         if id.ends_with(':') {
             return Ok(None);
         }
@@ -98,6 +99,7 @@ impl Asc {
         let Some(way) = way(words.next())? else { return Ok(None) };
         let kind = words.next().unwrap_or_default();
         let length = words.next();
+        // Classic CAN sends 8 bytes for every length code above 8.
         let code = length.map_or(Some(0), |word| number(word, 16)).filter(|code| *code < 16);
         let code = code.ok_or_else(|| format!("`{}` is not a length code", length.unwrap_or_default()))?;
         let len = CLASSIC_BYTES.min(code as usize);

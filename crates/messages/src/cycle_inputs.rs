@@ -108,6 +108,7 @@ impl CommandTaken {
             seen: seen.into(),
             ..Self::default()
         };
+        // A refusal has up to two numbers and two limits, by kind of reason; `verdict` reads them back.
         let Err(reason) = *verdict else { return taken };
         taken.refused = reason.code().into();
         (taken.about, taken.detail) = match reason {

@@ -74,6 +74,7 @@ pub fn rewrite(
                 media_type: "text/plain".into(),
                 data: bytes.into(),
             }),
+            // Numbers of schemas and channels are given anew by the writer.
             Seen::Schema(header, data) => mcap
                 .add_schema(&header.name, &header.encoding, data)
                 .map(|id| _ = schemas.insert(header.id, id)),
@@ -99,6 +100,7 @@ pub fn rewrite(
                 mcap.write_to_known_channel(&header, &payload)
             }
         };
+        // The first failed write ends the walk; its error is kept, since the walk reports only its own.
         failed = written.err();
         if failed.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });

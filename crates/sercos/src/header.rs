@@ -116,6 +116,7 @@ impl Header {
     /// # Errors
     /// Says in what way the frame is no telegram. Never panics.
     pub fn read(frame: &[u8]) -> Result<Self, Malformed> {
+        // From the outside in: Ethernet, length, checksum, then fields, so that the error names the first thing wrong.
         if frame.len() < 14 || u16::from_be_bytes([frame[12], frame[13]]) != ETHERTYPE {
             return Err(Malformed::Foreign);
         }
@@ -136,6 +137,7 @@ impl Header {
         let known = Phase::ALL.get(usize::from(phase & 0x0F));
         let mut source = [0; 6];
         source.copy_from_slice(&frame[6..12]);
+        // Type byte: channel, telegram, cycle valid, number; phase byte: switching, cycle, phase.
         Ok(Self {
             source,
             channel: if kind & 0x80 == 0 { Channel::P } else { Channel::S },

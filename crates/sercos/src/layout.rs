@@ -163,6 +163,7 @@ impl Layout {
         }
         let (mut mdt, mut at) = (Filling::new(Kind::Mdt), Filling::new(Kind::At));
         let mut places = vec![Places::default(); stations.len()];
+        // Service channels first, then device words, then connections.
         for place in &mut places {
             place.mdt_service = mdt.take(SERVICE)?;
             place.at_service = at.take(SERVICE)?;

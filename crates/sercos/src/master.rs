@@ -165,6 +165,7 @@ impl Master {
         Trouble::check_cycle_time(setup.cycle)?;
         let layout = Layout::new(&setup.stations).map_err(Trouble::Layout)?;
         let timing = Timing { cycle: setup.cycle, losses: setup.losses, beat_losses: setup.beat_losses };
+        // All requests of start-up are known beforehand: nothing allocates once a cycle has begun.
         let node = |(i, station): (usize, &Station)| Node {
             station: *station,
             topology: 0,

@@ -105,6 +105,7 @@ impl Parameters {
             let attribute = Attribute::new(value.shape(), false, writable, false, false);
             all.push(Parameter { idn, attribute, value, state: 0, passed: false, fixed });
         };
+        // Timing and places in the telegrams, written by the master in CP2; the address is the slave's own.
         add(idn::ADDRESS, Value::word(address), true);
         add(idn::CYCLE_TIME, Value::long(0), false);
         add(idn::AT_TIME, Value::long(0), false);
@@ -116,6 +117,7 @@ impl Parameters {
         }
         add(idn::MDT_LENGTHS, Value::words([0; TELEGRAMS]), false);
         add(idn::AT_LENGTHS, Value::words([0; TELEGRAMS]), false);
+        // One connection in each direction.
         for (instance, setup, len) in
             [(idn::COMMAND, idn::CONSUMER, command), (idn::FEEDBACK, idn::PRODUCER, feedback)]
         {
@@ -127,6 +129,7 @@ impl Parameters {
             add(element(idn::PRODUCER_TIME), Value::long(0), false);
             add(element(idn::LOSSES), Value::word(0), false);
         }
+        // Procedure commands by which the master asks whether the next phase may begin.
         for idn in [idn::CHECK_CP3, idn::CHECK_CP4] {
             let (cp2, cp3) = (idn == idn::CHECK_CP3, idn == idn::CHECK_CP4);
             let attribute = Attribute::new(Shape::Word, true, cp2, cp3, false);

@@ -207,10 +207,12 @@ impl Slave {
         if header.is_beat() {
             self.beat(from, &header);
         }
+        // The idle port of a loop only listens: what comes there shows whether the ring is closed.
         if self.idle == Some(from) {
             self.seen_on_idle = Some(header.channel);
             return Exits::default();
         }
+        // Data are exchanged on the way out; on the way back a telegram only passes.
         let comes_from = match header.channel {
             Channel::P => self.source,
             Channel::S => self.source.map(Side::other),
@@ -311,6 +313,7 @@ impl Slave {
             (Phase::Cp0, Kind::Mdt) => {}
             (Phase::Cp0, Kind::At) => self.write_address(header, data),
             (Phase::Cp1 | Phase::Cp2, kind) => self.process_early(kind, telegram, data),
+            // CP3 and CP4: each field may lie in another telegram.
             (_, Kind::Mdt) => {
                 let places = self.places;
                 if is(places.mdt_service) {

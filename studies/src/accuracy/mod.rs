@@ -187,7 +187,7 @@ pub struct Accuracy {
     /// Only these charts: flight, touchdown, slip, stiction, joint, solver, ...
     #[arg(long, value_name = "PART")]
     pub only: Option<String>,
-    /// What MuJoCo found in the same scenes; `sh tests/peers/mujoco.sh --points FILE` writes it.
+    /// Results of MuJoCo in the same scenes; `sh tests/peers/mujoco.sh --points FILE` writes it.
     #[arg(long, value_name = "FILE")]
     pub peers: Option<PathBuf>,
     /// Where pictures and accuracy.json go.

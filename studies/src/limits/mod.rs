@@ -136,7 +136,7 @@ const COLUMNS: &[Column] = &[
 /// The study's arguments.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Limits {
-    /// Where the picture of stable joint control goes.
+    /// Directory of the picture of stable joint control.
     #[arg(long, value_name = "DIR", default_value = "runs/study/limits")]
     pub out: PathBuf,
 }

@@ -70,7 +70,7 @@ pub struct Viability {
     /// Two instants, and borders four times as coarse.
     #[arg(long)]
     pub quick: bool,
-    /// Where the picture goes.
+    /// Directory of the picture.
     #[arg(long, value_name = "DIR", default_value = "runs/study/viability")]
     pub out: PathBuf,
 }

@@ -48,7 +48,7 @@ const WALKS: &[Column] = &[
 /// The study's arguments.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Tables {
-    /// Where the picture goes.
+    /// Directory of the picture.
     #[arg(long, value_name = "DIR", default_value = "runs/study/tables")]
     pub out: PathBuf,
 }

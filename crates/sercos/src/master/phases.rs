@@ -166,6 +166,7 @@ impl Master {
         let (answer, place) = (self.answer(i), self.places(i).at_service);
         let list = usize::from(self.phase == Phase::Cp3);
         let node = &mut self.nodes[i];
+        // A request under way: one step of the handshake per cycle.
         if node.busy {
             let progress = match answer {
                 Some(port) => {
