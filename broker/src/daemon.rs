@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use config::{Setup, System};
 use ipc::{Reader, Run, Space, Writer};
-use messages::{CommandTaken, Event, EventCode, Header, Live, Process, Sensors, topics};
+use messages::{CommandTaken, Detail, Event, EventCode, Header, Live, Process, Sensors, topics};
 use realtime::{Schedule, Stop, clock, prepare_thread};
 
 use crate::exchange::{Exchange, Report};
@@ -75,18 +75,20 @@ pub fn serve(run: &Run, tcp: &Tcp, stop: &Stop) -> Result<(), String> {
     }
     let (socket, owner) = doors::bind_socket(&run.dir)?;
     doors::serve_socket(socket, owner, gate)?;
-    events.write(EventCode::Started, 0);
+    events.write(EventCode::Started, Detail::Nothing);
     while !stop.asked() {
         let busy = exchange.turn(clock::now(), &mut |report| match report {
-            Report::Refused(address) => events.write(EventCode::CommandRefused, address.into()),
+            Report::Refused(address) => {
+                events.write(EventCode::CommandRefused, Detail::Message(address.into()))
+            }
             Report::Denied(live, code) => events.denied(&live, code),
-            Report::Lost(messages) => events.write(EventCode::MessagesLost, messages),
+            Report::Lost(messages) => events.write(EventCode::MessagesLost, Detail::Count(messages)),
         });
         if !busy {
             exchange.wait(LOOK);
         }
     }
-    events.write(EventCode::Ended, 0);
+    events.write(EventCode::Ended, Detail::Nothing);
     Ok(())
 }
 
@@ -106,9 +108,9 @@ impl Events {
         })
     }
 
-    fn write(&mut self, code: EventCode, detail: u64) {
+    fn write(&mut self, code: EventCode, detail: Detail) {
         let header = self.now();
-        self.writer.write(&Event { header, code: code as u64, detail });
+        self.writer.write(&Event::new(header, code, detail));
     }
 
     /// A command that went no further than here.

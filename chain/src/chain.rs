@@ -10,8 +10,8 @@ use config::{Setup, Timeline};
 use controller::Controller;
 use lowlevel::JointLoop;
 use messages::{
-    BusFrames, Command, ControllerState, EventCode, JointTargets, Parameters, Plan, Power, Process, Sensors,
-    SimState, WatchdogReset,
+    BusFrames, Command, ControllerState, Detail, EventCode, JointTargets, Parameters, Plan, Power, Process,
+    Sensors, SimState, WatchdogReset,
 };
 use planner::Planner;
 use sim_backend::SimBackend;
@@ -36,7 +36,7 @@ pub struct Cycle {
     /// `sim_state`
     pub sim_state: SimState,
     /// `events/PROCESS`
-    pub events: Vec<(Process, EventCode, u64)>,
+    pub events: Vec<(Process, EventCode, Detail)>,
     /// Commands that were refused.
     pub refused: u64,
 }
@@ -220,7 +220,7 @@ impl Chain {
             self.plan.header = c.sensors.header;
             c.plan = Some(self.plan.clone());
         }
-        c.events.extend(output.events.iter().map(|&(code, detail)| (Process::Planner, code, detail)));
+        c.events.extend(output.events.drain().map(|(code, detail)| (Process::Planner, code, detail)));
     }
 
     fn stabilize(&mut self) {
@@ -232,8 +232,8 @@ impl Chain {
         }
         let (targets, state) = self.controller.step(&c.sensors, (self.plan.id > 0).then_some(&*self.plan));
         (c.joint_targets, c.controller_state) = (*targets, *state);
-        let told = std::iter::from_fn(|| self.controller.take_event());
-        c.events.extend(told.map(|(code, detail)| (Process::Controller, code, detail)));
+        let events = self.controller.events().drain();
+        c.events.extend(events.map(|(code, detail)| (Process::Controller, code, detail)));
     }
 
     /// Second half of the joint loop's cycle.
@@ -270,8 +270,8 @@ impl Chain {
             if let Command::Lower(way) = command
                 && !self.sim.lower(way)
             {
-                let refused = (EventCode::CommandRefused, u64::from(command.address().1));
-                c.events.push((Process::SimBackend, refused.0, refused.1));
+                let message = Detail::Message(command.address().1.into());
+                c.events.push((Process::SimBackend, EventCode::CommandRefused, message));
                 c.refused += 1;
             }
         }
@@ -287,9 +287,10 @@ impl Chain {
     /// What joint loop and simulated robot have to report.
     fn tell(&mut self) {
         let c = &mut self.cycle;
-        let told = std::iter::from_fn(|| self.joint_loop.take_event());
-        c.events.extend(told.map(|(code, detail)| (Process::Lowlevel, code, detail)));
-        c.events.extend(self.sim.take_event().map(|(code, detail)| (Process::SimBackend, code, detail)));
+        let events = self.joint_loop.events().drain();
+        c.events.extend(events.map(|(code, detail)| (Process::Lowlevel, code, detail)));
+        let events = self.sim.events().drain();
+        c.events.extend(events.map(|(code, detail)| (Process::SimBackend, code, detail)));
     }
 }
 

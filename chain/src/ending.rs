@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use messages::{EventCode, GaitState};
+use messages::{Detail, EventCode, GaitState};
 
 /// What ended the walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,8 +51,8 @@ pub struct Ending {
 
 impl Ending {
     /// Something happened at `time` \[s\]; the same event may be told by several processes.
-    pub fn tell(&mut self, time: f64, code: EventCode, detail: u64) {
-        let reason = EventCode::from_number(detail).unwrap_or(EventCode::None);
+    pub fn tell(&mut self, time: f64, code: EventCode, detail: Detail) {
+        let reason = if let Detail::Cause(reason) = detail { reason } else { EventCode::None };
         match code {
             EventCode::Fallen | EventCode::Diverged => self.fell = self.fell.or(Some(time)),
             EventCode::PowerOff => self.off = Some((time, reason)),
@@ -122,7 +122,7 @@ mod tests {
 
     fn after(events: &[(f64, EventCode, EventCode)], powered: bool, gait: GaitState) -> (String, f64) {
         let mut ending = Ending::default();
-        events.iter().for_each(|&(time, code, detail)| ending.tell(time, code, detail as u64));
+        events.iter().for_each(|&(time, code, detail)| ending.tell(time, code, Detail::Cause(detail)));
         ending.see(20.0, powered, gait);
         let (end, time) = ending.end();
         (end.to_string(), time)

@@ -83,7 +83,7 @@ fn the_cameras_look_where_they_are_told_while_lola_walks() {
             assert!(!matches!(code, EventCode::HeadRefused | EventCode::GazeHeld), "{process:?} {code:?}");
             if *code == EventCode::Saccade {
                 assert_eq!(*process, Process::Controller);
-                saccades.push(Saccade { begin: t, planned: *detail as f64 * 1e-6 });
+                saccades.push(Saccade { begin: t, planned: detail.pack() as f64 * 1e-6 });
             }
         }
         for j in [head.pan, head.tilt] {

@@ -8,7 +8,7 @@ use chain::Chain;
 use chain::figures::Gatherer;
 use config::scene::Integrator;
 use config::{Setup, root};
-use messages::{Command, EventCode, GaitState, MAX_JOINTS, Process};
+use messages::{Command, Detail, EventCode, GaitState, MAX_JOINTS, Process};
 
 /// \[1\] What both feet carry together in the first second, in weights.
 const LOAD: [f64; 2] = [0.7, 1.3];
@@ -31,7 +31,7 @@ struct Seen {
     /// \[rad\] Largest distance of a joint from its target.
     tracking: f64,
     /// What went wrong, as reported.
-    reports: Vec<(Process, EventCode, u64)>,
+    reports: Vec<(Process, EventCode, Detail)>,
     stands: bool,
 }
 
@@ -182,7 +182,7 @@ fn the_demonstration_on_types_2_and_3() {
         setup.scene.integrator = Integrator::SemiImplicit;
         let mut chain = Chain::new(&setup).unwrap();
         let mut gatherer = Gatherer::default();
-        let mut trouble: Vec<(Process, EventCode, u64)> = Vec::new();
+        let mut trouble: Vec<(Process, EventCode, Detail)> = Vec::new();
         for _ in 0..(setup.scene.duration / setup.scene.cycle) as usize {
             let c = chain.step();
             gatherer.add(&c.sim_state, &c.controller_state);

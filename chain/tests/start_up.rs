@@ -3,7 +3,7 @@
 use chain::{Chain, Cycle};
 use config::{Setup, root};
 use messages::command::LowerCommand;
-use messages::{Command, EventCode, GaitState, Process, StartUp};
+use messages::{Command, Detail, EventCode, GaitState, Process, StartUp};
 
 /// A scene as it is shipped, with the commands that `keep` keeps.
 fn scene(keep: impl Fn(f64, &Command) -> bool) -> Setup {
@@ -15,7 +15,7 @@ fn scene(keep: impl Fn(f64, &Command) -> bool) -> Setup {
 /// What a run said, and the states of the start-up with the ticks at which they began.
 #[derive(Debug, Default)]
 struct Story {
-    events: Vec<(u64, Process, EventCode, u64)>,
+    events: Vec<(u64, Process, EventCode, Detail)>,
     states: Vec<(u64, StartUp)>,
     /// \[rad\] Furthest that any joint was from where it began.
     moved: f64,
@@ -51,7 +51,7 @@ impl Story {
         self.states.iter().map(|s| s.1).collect()
     }
 
-    fn told(&self, code: EventCode) -> Option<u64> {
+    fn told(&self, code: EventCode) -> Option<Detail> {
         self.events.iter().find(|e| e.2 == code).map(|e| e.3)
     }
 }
@@ -89,7 +89,12 @@ fn without(left_out: &[Command]) -> Setup {
 fn without_homing_no_drive_is_switched_on_and_nothing_moves() {
     let story = Story::of(&without(&[Command::Home]), 13.0);
     assert_eq!(story.order().last(), Some(&StartUp::NotHomed));
-    assert_eq!(story.told(EventCode::NotHomed), Some(22), "the camera head: {:?}", story.events);
+    assert_eq!(
+        story.told(EventCode::NotHomed),
+        Some(Detail::Joint(22)),
+        "the camera head: {:?}",
+        story.events
+    );
     assert!(story.told(EventCode::ZeroRefused).is_some() && story.told(EventCode::NotStanding).is_some());
     assert!(story.moved < 5e-3, "held until the drives are on: {} rad", story.moved);
 }
@@ -121,7 +126,7 @@ fn a_winding_that_becomes_too_hot_while_walking_is_named_and_stops_the_robot() {
     setup.robot.protection.as_mut().unwrap().windings[5].continuous_current = 1.0;
     let story = Story::of(&setup, 30.0);
     let tripped = story.told(EventCode::DriveTripped);
-    assert_eq!(tripped, Some(5 + (0x4310 << 16)), "{:?}", story.events);
+    assert_eq!(tripped, Some(Detail::Drive { joint: 5, error: 0x4310 }), "{:?}", story.events);
     assert_eq!(story.order().last(), Some(&StartUp::Stopped));
     let end = &story.last;
     assert!(end.sensors.joint_speed.iter().all(|speed| speed.abs() < 0.1), "at rest");

@@ -10,7 +10,7 @@ use messages::topics::{
     EVENTS_WATCHDOG, JOINT_TARGETS, PARAMETERS_CONTROLLER, PARAMETERS_PLANNER, PLAN, POWER, SENSORS,
     SIM_STATE,
 };
-use messages::{Event, EventCode, GaitState, Header, Process, Record, Topic};
+use messages::{Detail, Event, EventCode, GaitState, Header, Process, Record, Topic};
 use recording::Recorder;
 
 use crate::can::record::Traffic;
@@ -120,7 +120,7 @@ impl LogWriter {
         for &(process, code, detail) in &c.events {
             let topic = REPORTERS.iter().find(|(p, _)| *p == process).map(|(_, topic)| *topic);
             if let Some(topic) = topic {
-                self.put(topic, Event { header: self.last, code: code as u64, detail })?;
+                self.put(topic, Event::new(self.last, code, detail))?;
             }
         }
         Ok(())
@@ -134,7 +134,7 @@ impl LogWriter {
 
     fn all(&mut self, code: EventCode) -> Result<(), Box<dyn Error>> {
         for (_, topic) in REPORTERS {
-            self.put(topic, Event { header: self.last, code: code as u64, detail: 0 })?;
+            self.put(topic, Event::new(self.last, code, Detail::Nothing))?;
         }
         Ok(())
     }

@@ -6,8 +6,8 @@ use daemon::{Connect, Daemon};
 use ipc::Mode;
 use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, PARAMETERS_CONTROLLER, PLAN, PLANNER_TICK, SENSORS};
 use messages::{
-    Command, ControllerState, Event, EventCode, Header, JointTargets, Live, Parameters, Plan, Process,
-    Sensors,
+    Command, ControllerState, Detail, Event, EventCode, Header, JointTargets, Live, Parameters, Plan,
+    Process, Sensors,
 };
 use std::error::Error;
 use std::path::Path;
@@ -36,7 +36,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut parameters = Parameters::default();
     controller.report_parameters(&mut parameters);
     set.write(&parameters);
-    d.report(Header::default(), EventCode::Started, 0);
+    d.report(Header::default(), EventCode::Started, Detail::Nothing);
 
     let mut header = Header::default();
     while d.wait(&waiter, "lowlevel", || sensors.refresh())? {
@@ -75,17 +75,17 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         targets.write(new_targets);
         d.log.keep(&CONTROLLER_STATE, new_state);
         d.log.keep(&JOINT_TARGETS, new_targets);
-        while let Some((code, detail)) = controller.take_event() {
+        for (code, detail) in controller.events().drain() {
             d.report(header, code, detail);
         }
         if silence.begins(header.tick, planner_tick.latest()) {
-            d.report(header, EventCode::PlannerSilent, 0);
+            d.report(header, EventCode::PlannerSilent, Detail::Nothing);
         }
         // Last: the joint loop has a higher priority, and takes the core.
         d.end(header, 0);
         d.ring(bell);
     }
-    d.report(header, EventCode::Ended, 0);
+    d.report(header, EventCode::Ended, Detail::Nothing);
     Ok(())
 }
 

@@ -20,7 +20,7 @@
 
 use config::Robot;
 use config::limbs::Head;
-use messages::{Command, EventCode};
+use messages::{Command, Detail, EventCode, EventQueue};
 use multibody::ModelError;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::f64::consts::TAU;
@@ -94,10 +94,9 @@ pub(crate) struct Gaze {
     odometry: Option<Vector3<f64>>,
     beside: Vector3<f64>,
     /// Obstacle to looking at the point, as in [`EventCode::GazeHeld`].
-    held: Option<u64>,
+    held: Option<usize>,
     /// News of the point and of the way there.
-    event: Option<(EventCode, u64)>,
-    jump: Option<(EventCode, u64)>,
+    events: EventQueue,
 }
 
 impl Gaze {
@@ -127,14 +126,13 @@ impl Gaze {
             odometry: None,
             beside: Vector3::zeros(),
             held: None,
-            event: None,
-            jump: None,
+            events: EventQueue::default(),
         }))
     }
 
-    /// Something worth a line in the log, since the last step; to be called until there is none.
-    pub(crate) fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        self.event.take().or_else(|| self.jump.take())
+    /// Events that were not taken yet.
+    pub(crate) fn events(&mut self) -> &mut EventQueue {
+        &mut self.events
     }
 
     /// Takes a command to the head; `false` if it cannot be done and nothing changes.
@@ -213,7 +211,7 @@ impl Gaze {
         let here = now.map(|s| Target { p: s.p, v: 0.0 });
         let looks = self.angles(&r).zip(self.angles(&(r + rate * dt)));
         let Some((begin, end)) = looks else {
-            self.hold(Some(self.joints as u64));
+            self.hold(Some(self.joints));
             return here;
         };
         // An axis at the end of its range waits there until the point comes back.
@@ -224,7 +222,7 @@ impl Gaze {
             let turned = end[i] - begin[i];
             let v = (turned - TAU * (turned / TAU).round()) / dt;
             targets[i] = Target { p, v: if inside { v } else { 0.0 } };
-            held = held.or((!inside).then_some(joint as u64));
+            held = held.or((!inside).then_some(joint));
         }
         self.hold(held);
         targets
@@ -276,10 +274,12 @@ impl Gaze {
         Some([pan, tilt, 2.0 * (0.5 * baseline).atan2(distance)]) // (4.59)
     }
 
-    fn hold(&mut self, why: Option<u64>) {
+    fn hold(&mut self, why: Option<usize>) {
         if why != self.held {
             self.held = why;
-            self.event = Some(why.map_or((EventCode::GazeResumed, 0), |why| (EventCode::GazeHeld, why)));
+            let resumed = (EventCode::GazeResumed, Detail::Nothing);
+            let (code, detail) = why.map_or(resumed, |why| (EventCode::GazeHeld, Detail::Joint(why)));
+            self.events.push(code, detail);
         }
     }
 
@@ -297,7 +297,7 @@ impl Gaze {
         if let Some(least) = left {
             let time = saccade::duration(now, &begin, least, &limits);
             if begins {
-                self.jump = Some((EventCode::Saccade, (time * 1e6) as u64));
+                self.events.push(EventCode::Saccade, Detail::Microseconds((time * 1e6) as u64));
             }
             self.mode = if time > 1.5 * dt { GazeMode::Saccade(time - dt) } else { GazeMode::Pursuit };
             return std::array::from_fn(|i| saccade::jump(&now[i], &begin[i], time, dt));

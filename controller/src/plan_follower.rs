@@ -2,7 +2,7 @@
 
 use curves::Sample;
 use messages::record::{Field, Visit};
-use messages::{EventCode, GaitState, LEFT, Plan};
+use messages::{Detail, EventCode, EventQueue, GaitState, LEFT, Plan};
 
 /// The active plan and the one that follows it.
 #[derive(Clone)]
@@ -62,8 +62,7 @@ impl PlanFollower {
     }
 
     /// Takes note of the newest plan and switches to the next one in its start cycle, not before and not after.
-    pub(crate) fn update(&mut self, tick: u64, newest: Option<&Plan>) -> Option<(EventCode, u64)> {
-        let mut event = None;
+    pub(crate) fn update(&mut self, tick: u64, newest: Option<&Plan>, events: &mut EventQueue) {
         let valid = |p: &&Plan| self.void.is_none_or(|void| p.header.tick > void);
         if let Some(plan) = newest.filter(valid).filter(|p| p.id > self.active.id.max(self.next.id)) {
             if plan.start_tick >= tick && is_finite(plan) {
@@ -71,14 +70,13 @@ impl PlanFollower {
             } else {
                 self.next.id = plan.id; // looked at once
                 self.next.start_tick = u64::MAX;
-                event = Some((EventCode::PlanRefused, plan.id));
+                events.push(EventCode::PlanRefused, Detail::Plan(plan.id));
             }
         }
         if self.next.id > self.active.id && self.next.start_tick <= tick {
             self.active = self.next;
-            event = Some((EventCode::PlanActive, self.active.id));
+            events.push(EventCode::PlanActive, Detail::Plan(self.active.id));
         }
-        event
     }
 
     /// \[m\] Steps in the planned heights of the soles where the plan has changed since the one that was reported last:
@@ -185,24 +183,33 @@ mod tests {
         Plan { id, start_tick, state: GaitState::Standing as u64, ..Plan::default() }
     }
 
+    /// The one event of an update, if any.
+    fn update(f: &mut PlanFollower, tick: u64, newest: Option<&Plan>) -> Option<(EventCode, Detail)> {
+        let mut events = EventQueue::default();
+        f.update(tick, newest, &mut events);
+        let first = events.pop();
+        assert_eq!(events.pop(), None);
+        first
+    }
+
     #[test]
     fn switches_exactly_at_the_start_cycle() {
         let mut f = PlanFollower::new([[-0.1, 0.1]; 2]);
-        assert_eq!(f.update(5, Some(&plan(1, 10))), None);
+        assert_eq!(update(&mut f, 5, Some(&plan(1, 10))), None);
         assert_eq!(f.id(), 0);
-        assert_eq!(f.update(9, None), None);
-        assert_eq!(f.update(10, None), Some((EventCode::PlanActive, 1)));
+        assert_eq!(update(&mut f, 9, None), None);
+        assert_eq!(update(&mut f, 10, None), Some((EventCode::PlanActive, Detail::Plan(1))));
         assert_eq!(f.time(12, 1e-3), 2e-3);
     }
 
     #[test]
     fn a_plan_that_begins_in_the_past_is_refused_once() {
         let mut f = PlanFollower::new([[-0.1, 0.1]; 2]);
-        f.update(10, Some(&plan(1, 10)));
-        assert_eq!(f.update(20, Some(&plan(2, 19))), Some((EventCode::PlanRefused, 2)));
-        assert_eq!(f.update(21, Some(&plan(2, 19))), None);
+        update(&mut f, 10, Some(&plan(1, 10)));
+        assert_eq!(update(&mut f, 20, Some(&plan(2, 19))), Some((EventCode::PlanRefused, Detail::Plan(2))));
+        assert_eq!(update(&mut f, 21, Some(&plan(2, 19))), None);
         assert_eq!(f.id(), 1);
-        assert_eq!(f.update(22, Some(&plan(3, 22))), Some((EventCode::PlanActive, 3)));
+        assert_eq!(update(&mut f, 22, Some(&plan(3, 22))), Some((EventCode::PlanActive, Detail::Plan(3))));
     }
 
     /// Neither the one that was followed, nor the one to come, nor one that was under way while the supply went off.
@@ -214,14 +221,14 @@ mod tests {
             plan.header.tick = tick;
             plan
         };
-        f.update(10, Some(&made(1, 0)));
-        f.update(15, Some(&made(2, 15)));
+        update(&mut f, 10, Some(&made(1, 0)));
+        update(&mut f, 15, Some(&made(2, 15)));
         f.drop_all(20);
         assert_eq!(f.id(), 0);
-        assert_eq!(f.update(21, Some(&made(2, 15))), None);
-        assert_eq!(f.update(22, Some(&made(3, 19))), None);
-        assert_eq!((f.update(29, None), f.id()), (None, 0));
-        assert_eq!(f.update(32, Some(&made(4, 22))), Some((EventCode::PlanActive, 4)));
+        assert_eq!(update(&mut f, 21, Some(&made(2, 15))), None);
+        assert_eq!(update(&mut f, 22, Some(&made(3, 19))), None);
+        assert_eq!((update(&mut f, 29, None), f.id()), (None, 0));
+        assert_eq!(update(&mut f, 32, Some(&made(4, 22))), Some((EventCode::PlanActive, Detail::Plan(4))));
     }
 
     #[test]
@@ -229,7 +236,7 @@ mod tests {
         let mut f = PlanFollower::new([[-0.1, 0.1]; 2]);
         let mut bad = plan(1, 10);
         bad.com.coefficients[95][2][5] = f64::NAN;
-        assert_eq!(f.update(10, Some(&bad)), Some((EventCode::PlanRefused, 1)));
+        assert_eq!(update(&mut f, 10, Some(&bad)), Some((EventCode::PlanRefused, Detail::Plan(1))));
     }
 
     #[test]

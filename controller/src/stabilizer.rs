@@ -12,8 +12,8 @@ use config::gait::Control;
 use config::parameters::STABILIZER;
 use config::{Gait, Robot};
 use messages::{
-    Command, ControllerState, EventCode, JointTargets, MAX_JOINTS, Parameters, Plan, Reason, Sensors,
-    StartUp, Verdict,
+    Command, ControllerState, Detail, EventCode, EventQueue, JointTargets, MAX_JOINTS, Parameters, Plan,
+    Reason, Sensors, StartUp, Verdict,
 };
 use multibody::ModelError;
 use std::f64::consts::FRAC_PI_2;
@@ -93,19 +93,26 @@ impl Controller {
         ]
     }
 
-    /// Something worth a line in the log, since the last step; to be called until there is none.
-    pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        self.telemetry.take_event().or_else(|| self.speeds.gaze.as_mut()?.take_event())
+    /// Events that were not taken yet.
+    pub fn events(&mut self) -> &mut EventQueue {
+        if let Some(gaze) = &mut self.speeds.gaze {
+            self.telemetry.events.append(gaze.events());
+        }
+        &mut self.telemetry.events
     }
 
     /// Takes a command of the domains stabilize and head from the next cycle on; the event that came of it.
-    pub fn command(&mut self, command: &Command) -> Option<(EventCode, u64)> {
-        let id = command.address().1.into();
+    pub fn command(&mut self, command: &Command) -> Option<(EventCode, Detail)> {
+        let id = Detail::Message(command.address().1.into());
         if let Command::Parameter(change) = command {
             let parameter = STABILIZER.get(change.number as usize);
             let set = parameter.is_some_and(|p| p.set(&mut self.control, change.value));
             let refused = (EventCode::CommandRefused, id);
-            return Some(if set { (EventCode::ParameterSet, change.number.into()) } else { refused });
+            return Some(if set {
+                (EventCode::ParameterSet, Detail::Number(change.number.into()))
+            } else {
+                refused
+            });
         }
         let taken = self.speeds.gaze.as_mut().is_some_and(|gaze| gaze.command(command));
         (!taken).then_some((EventCode::HeadRefused, id))
@@ -127,9 +134,11 @@ impl Controller {
             self.plan.drop_all(tick);
         }
         // A plan that came in time is taken, if this process was stopped at its start.
-        self.telemetry.note(self.plan.update(oldest, newest));
-        let (sensors, event) = self.watch.admit(sensors, self.robot.joints.len());
-        self.telemetry.note(event.map(|code| (code, 0)));
+        self.plan.update(oldest, newest, &mut self.telemetry.events);
+        let (sensors, failed) = self.watch.admit(sensors, self.robot.joints.len());
+        if failed {
+            self.telemetry.events.push(EventCode::SensorNotFinite, Detail::Nothing);
+        }
         let sensors = &sensors;
         let (angles, speeds) = (&sensors.joint_angle, &sensors.joint_speed);
         self.measured.update_motion(angles, speeds, &sensors.imu.angular_velocity);
@@ -162,7 +171,7 @@ impl Controller {
 
     /// Joint targets for the end of the cycle `tick`.
     fn follow(&mut self, sensors: &Sensors, lag: &[f64; MAX_JOINTS], tick: u64) -> Followed {
-        self.telemetry.note(self.plan.update(tick, None));
+        self.plan.update(tick, None, &mut self.telemetry.events);
         let dt = self.clock.dt;
         let t = self.plan.time(tick, dt);
         let (now, end) = (self.plan.sample(t), self.plan.sample(t + dt));
@@ -172,8 +181,9 @@ impl Controller {
         let powered = self.plan.id() > 0 && sensors.power == 1;
         if powered {
             // A fall, or being lifted, ends the plan before anything is made of it.
-            let why = self.watch.check(sensors, &now, &estimate);
-            self.telemetry.note(why.map(|code| (code, 0)));
+            if let Some(why) = self.watch.check(sensors, &now, &estimate) {
+                self.telemetry.events.push(why, Detail::Nothing);
+            }
         }
         let wrenches = if powered && self.watch.stopped().is_none() {
             let (wrenches, limits) = self.stabilize(sensors, lag, &now, &end, &estimate);
@@ -253,7 +263,7 @@ impl Controller {
 }
 
 /// Answer to the operator: refused if the event that came of the command says so.
-pub fn verdict(event: Option<(EventCode, u64)>) -> Verdict {
+pub fn verdict(event: Option<(EventCode, Detail)>) -> Verdict {
     match event {
         Some((code @ (EventCode::HeadRefused | EventCode::CommandRefused), detail)) => {
             Err(Reason::Event { code, detail })

@@ -29,8 +29,8 @@ pub(crate) struct SafetyWatch {
 }
 
 impl SafetyWatch {
-    /// The sensor data if they are finite, otherwise the last ones that were; an event where that begins.
-    pub(crate) fn admit(&mut self, sensors: &Sensors, joints: usize) -> (Sensors, Option<EventCode>) {
+    /// The sensor data if they are finite, otherwise the last ones that were; true where that begins.
+    pub(crate) fn admit(&mut self, sensors: &Sensors, joints: usize) -> (Sensors, bool) {
         let (imu, wrench) = (&sensors.imu, &sensors.foot_wrench);
         let finite =
             sensors.joint_angle[..joints].iter().chain(&sensors.joint_speed[..joints]).all(|x| x.is_finite())
@@ -46,7 +46,7 @@ impl SafetyWatch {
             self.bad = self.bad.saturating_add(1);
             self.good.header = sensors.header;
         }
-        (self.good, (self.bad == 1).then_some(EventCode::SensorNotFinite))
+        (self.good, self.bad == 1)
     }
 
     /// Contact of each foot with the ground.

@@ -52,7 +52,7 @@ impl Rig {
 
     /// `true` if the controller has reported this since it was asked last.
     fn reported(&mut self, what: EventCode) -> bool {
-        std::iter::from_fn(|| self.controller.take_event()).any(|(code, _)| code == what)
+        self.controller.events().drain().any(|(code, _)| code == what)
     }
 
     /// A plan that moves the centre of gravity from where it is by `shift` \[m\] within 1.5 s, feet where they are.

@@ -73,7 +73,7 @@ fn a_cycle_works_in_the_memory_made_at_the_start() {
         sensors.header.tick += 1;
         let targets = controller.step(&sensors, Some(&plan)).0;
         (sensors.joint_angle, sensors.joint_speed) = (targets.angle, targets.speed);
-        while let Some((code, _)) = controller.take_event() {
+        for (code, _) in controller.events().drain() {
             saccades += usize::from(code == EventCode::Saccade);
             held += usize::from(code == EventCode::GazeHeld);
         }

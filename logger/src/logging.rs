@@ -3,7 +3,7 @@
 use crate::follow::{Follow, Follower, Source};
 use crate::output::Output;
 use messages::topics::{EVENTS_LOGGER, SENSORS};
-use messages::{Event, EventCode, Header, Record};
+use messages::{Detail, Event, EventCode, Header, Record};
 
 /// Records of one topic in a row: small, so that the file stays roughly in the order of time.
 const IN_A_ROW: usize = 8;
@@ -95,7 +95,7 @@ impl Logging {
             return None;
         }
         let header = self.newest.unwrap_or(Event::default().header);
-        let event = Event { header, code: EventCode::LogDropped as u64, detail: lost - self.lost };
+        let event = Event::new(header, EventCode::LogDropped, Detail::Count(lost - self.lost));
         self.lost = lost;
         self.output.write(&EVENTS_LOGGER, &event, 0);
         Some(event)

@@ -11,7 +11,7 @@ use messages::topics::{
     BUS_TX, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, LOG_TICK, POWER, SENSORS, WATCHDOG_RESET,
 };
 use messages::{
-    BusFrames, Event, EventCode, Header, JointTargets, Live, Power, Process, Sensors, WatchdogReset,
+    BusFrames, Detail, Event, EventCode, Header, JointTargets, Live, Power, Process, Sensors, WatchdogReset,
 };
 use realtime::{Period, Verdict, clock};
 use std::error::Error;
@@ -53,7 +53,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     if !ports.bus.start(&WaitingDaemon { daemon: &d, waiter: &ports.waiter })? {
         return Ok(());
     }
-    d.report(Header::default(), EventCode::Started, 0);
+    d.report(Header::default(), EventCode::Started, Detail::Nothing);
     let header = match d.mode {
         Mode::Lockstep => lockstep(&mut d, &mut ports, &mut joints, last)?,
         Mode::RealTime => {
@@ -62,7 +62,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             header
         }
     };
-    d.report(header, EventCode::Ended, 0);
+    d.report(header, EventCode::Ended, Detail::Nothing);
     Ok(())
 }
 
@@ -212,7 +212,7 @@ fn real_time(d: &mut Daemon, p: &mut LowlevelPorts, joints: &mut JointLoop, last
             cause = Some(EventCode::TooManyOverruns);
         }
         if verdict.skipped() > 0 {
-            d.report(header, EventCode::Overrun, verdict.skipped());
+            d.report(header, EventCode::Overrun, Detail::Count(verdict.skipped()));
         }
         d.end(header, verdict.skipped());
     }
@@ -239,10 +239,9 @@ fn wait_for_targets(p: &mut LowlevelPorts, tick: u64, until_ns: u64) {
 
 fn report(d: &mut Daemon, bus: &mut dyn Fieldbus, joints: &mut JointLoop, header: Header) {
     d.count_bus(joints.bus_counters());
-    while let Some((code, detail)) = bus.take_event() {
-        d.report(header, code, detail);
-    }
-    while let Some((code, detail)) = joints.take_event() {
+    let events = joints.events();
+    bus.report(events);
+    for (code, detail) in events.drain() {
         d.report(header, code, detail);
     }
 }

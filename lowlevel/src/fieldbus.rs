@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use codec::layout::Layout;
-use messages::{BusFrames, EventCode};
+use messages::{BusFrames, EventQueue};
 
 /// A field bus that exchanges the frames of one cycle. Implementations neither allocate nor block in [`Fieldbus::send`] and
 /// [`Fieldbus::receive`].
@@ -16,10 +16,8 @@ pub trait Fieldbus {
         Ok(true)
     }
 
-    /// Something that the bus itself wants in the log.
-    fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        None
-    }
+    /// Adds what happened to the bus itself since the last call.
+    fn report(&mut self, _: &mut EventQueue) {}
 
     /// True if the motor supply is off in this cycle: then nothing depends on the bus, and who left it may be taken back.
     fn set_idle(&mut self, _: bool) {}

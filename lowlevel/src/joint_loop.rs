@@ -8,8 +8,8 @@
 use codec::frames::{DriveCommand, Received, decode_sensors, encode_targets};
 use config::{Robot, System};
 use messages::{
-    BusCounters, BusFrames, Command, EventCode, Header, JointMode, JointTargets, Sensors, StartUp, Verdict,
-    WatchdogReset,
+    BusCounters, BusFrames, Command, Detail, EventCode, EventQueue, Header, JointMode, JointTargets, Sensors,
+    StartUp, Verdict, WatchdogReset,
 };
 
 use crate::limits::following_limit;
@@ -90,9 +90,12 @@ impl JointLoop {
         &self.output.frames
     }
 
-    /// Something worth a line in the log, since the last call.
-    pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        self.reports.take().or_else(|| self.guard.take_event()).or_else(|| self.start_up.take_event())
+    /// Events that were not taken yet.
+    pub fn events(&mut self) -> &mut EventQueue {
+        let Self { reports, guard, start_up, .. } = self;
+        reports.events().append(guard.events());
+        reports.events().append(start_up.events());
+        reports.events()
     }
 
     /// Takes a command of the domains system and joint, between [`JointLoop::receive`] and [`JointLoop::send`].
@@ -157,8 +160,9 @@ impl JointLoop {
         self.setpoints.end_cycle(self.state == LoopState::Track);
         self.follow_the_unable();
         // Checks of what will be sent; those that cut the power come before the frames, which then say so.
-        self.check_following();
+        // A line that is off is why a joint on it is not followed, and comes first.
         self.check_lines();
+        self.check_following();
         let stands = self.start_up.state() == StartUp::Standing;
         self.reports.drive_faults(&self.robot, &self.sensors, |j| stands && self.guard.spares(j));
         self.write_frames();
@@ -180,21 +184,25 @@ impl JointLoop {
             Stop(why) => Stop(why),
             // Who cannot be reached is no longer asked for anything else.
             Off | Hold | Track if mute.is_some() => self.stop_by_bus(mute),
-            Hold | Track if tripped.is_some() => self.stop(EventCode::DriveTripped, tripped.unwrap_or(0)),
+            Hold | Track if tripped.is_some() => {
+                self.stop(EventCode::DriveTripped, tripped.unwrap_or_default())
+            }
             Off => Hold,
             Hold if mode == JointMode::Track && !late && self.start_up.ready() => Track,
             Hold => Hold,
-            Track if cause.is_some() => self.stop(cause.unwrap_or(EventCode::SafeStop), 0),
-            Track if off.is_some() => self.stop(EventCode::DriveNotEnabled, off.unwrap_or(0) as u64),
-            Track if late => self.stop(EventCode::TargetsStale, self.age.cycles().into()),
-            Track if mode == JointMode::Stop => self.stop(EventCode::SafeStop, 0),
+            Track if cause.is_some() => self.stop(cause.unwrap_or(EventCode::SafeStop), Detail::Nothing),
+            Track if off.is_some() => self.stop(EventCode::DriveNotEnabled, Detail::Joint(off.unwrap_or(0))),
+            Track if late => self.stop(EventCode::TargetsStale, Detail::Cycles(self.age.cycles().into())),
+            Track if mode == JointMode::Stop => {
+                self.stop(EventCode::SafeStop, Detail::Cause(EventCode::None))
+            }
             Track if mode == JointMode::Track => Track,
             Track => Hold,
         }
     }
 
     /// A stop because of the bus.
-    fn stop_by_bus(&mut self, cause: Option<(EventCode, u64)>) -> LoopState {
+    fn stop_by_bus(&mut self, cause: Option<(EventCode, Detail)>) -> LoopState {
         match cause {
             // Reported when it happened.
             Some((EventCode::BusOff, _)) | None => LoopState::Stop(EventCode::BusOff),
@@ -202,8 +210,8 @@ impl JointLoop {
         }
     }
 
-    fn stop(&mut self, why: EventCode, detail: u64) -> LoopState {
-        self.reports.set(why, detail);
+    fn stop(&mut self, why: EventCode, detail: Detail) -> LoopState {
+        self.reports.stop(why, detail);
         LoopState::Stop(why)
     }
 
@@ -237,7 +245,7 @@ impl JointLoop {
         let fresh = targets.filter(|_| self.age.is_fresh());
         if let Some(bad) = fresh.and_then(|t| self.first_not_finite(t)) {
             self.sensors.targets_limited += 1;
-            self.state = self.stop(EventCode::TargetNotFinite, bad as u64);
+            self.state = self.stop(EventCode::TargetNotFinite, Detail::Joint(bad));
             return self.setpoints.brake_all(&self.robot, self.dt);
         }
         let Self { robot, setpoints, sensors, start_up, .. } = self;
@@ -251,10 +259,17 @@ impl JointLoop {
         (0..self.robot.joints.len()).find(|&j| !(t.angle[j].is_finite() && t.speed[j].is_finite()))
     }
 
+    /// Joints that nobody reaches must not be driven: power off.
+    fn check_lines(&mut self) {
+        if self.state != LoopState::Off && self.guard.off().is_some() {
+            self.trip(EventCode::BusOff);
+        }
+    }
+
     /// A joint that is not where it was commanded to be is broken, blocked or not ours: power off.
     fn check_following(&mut self) {
         if self.state == LoopState::Off {
-            return;
+            return self.reports.forget_following_errors();
         }
         // A joint that was not read is where it is believed to be.
         for j in 0..self.robot.joints.len() {
@@ -266,16 +281,16 @@ impl JointLoop {
             let limit =
                 following_limit(self.system.following_error, self.system.following_time, setpoint.speed);
             if error > limit {
-                self.output.reset.trip = EventCode::FollowingError as u64;
-                self.reports.set(EventCode::FollowingError, j as u64);
+                self.trip(EventCode::FollowingError);
+                self.reports.following_error(j);
             }
         }
     }
 
-    /// Joints that nobody reaches must not be driven: power off.
-    fn check_lines(&mut self) {
-        if self.state != LoopState::Off && self.guard.off().is_some() {
-            self.output.reset.trip = EventCode::BusOff as u64;
+    /// Asks for power off; the first reason of a cycle stands.
+    fn trip(&mut self, why: EventCode) {
+        if self.output.reset.trip == 0 {
+            self.output.reset.trip = why as u64;
         }
     }
 

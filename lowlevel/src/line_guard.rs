@@ -15,13 +15,9 @@ use codec::layout::{Carries, Layout};
 use config::{Robot, System};
 use drives::cia402::REFERENCED;
 use fieldbus::{ErrorFrame, ErrorState};
-use messages::event::Refused;
-use messages::{BusCounters, BusFrames, EventCode, Sensors};
+use messages::{BusCounters, BusFrames, Detail, EventCode, EventQueue, RefusedFrame, Sensors};
 
 use crate::reading::{ReadingBounds, Readings, copy_joint};
-
-/// Room for events of one cycle.
-const EVENTS: usize = 8;
 
 /// Bits of a statusword that are the state, and the state in which a drive follows (CiA 402, operation enabled).
 const STATE: u32 = 0x6f;
@@ -61,11 +57,10 @@ pub(crate) struct LineGuard {
     frames: u64,
     /// Number of times a node went missing.
     gaps: u64,
-    /// Number of times frames were refused, by [`Refused`].
+    /// Number of times frames were refused, by [`RefusedFrame`].
     refused: [u64; 6],
     layout: Layout,
-    events: [(EventCode, u64); EVENTS],
-    pending: usize,
+    events: EventQueue,
 }
 
 impl LineGuard {
@@ -94,8 +89,7 @@ impl LineGuard {
             gaps: 0,
             refused: [0; 6],
             layout: robot.layout.clone(),
-            events: [(EventCode::None, 0); EVENTS],
-            pending: 0,
+            events: EventQueue::default(),
         }
     }
 
@@ -145,7 +139,7 @@ impl LineGuard {
                     sensors.drive_status[j] ^= u32::from(REFERENCED);
                     self.referenced[j] = true;
                 }
-                self.refuse(Refused::Jump, 1);
+                self.refuse(RefusedFrame::Jump, 1);
                 complete = false;
             }
             self.note(i, complete, sensors.power == 1);
@@ -185,16 +179,16 @@ impl LineGuard {
     }
 
     /// Why the joints must come to rest.
-    pub(crate) fn cause(&self) -> Option<(EventCode, u64)> {
+    pub(crate) fn cause(&self) -> Option<(EventCode, Detail)> {
         if let Some(line) = self.off() {
-            return Some((EventCode::BusOff, line as u64));
+            return Some((EventCode::BusOff, Detail::Number(line as u64)));
         }
         let silent = |node: &GuardedNode| node.missed > self.missed;
         let i = self.nodes.iter().position(|node| silent(node) && !node.spare)?;
         let cycles = self.nodes[i].missed;
         match self.nodes.iter().all(silent) {
-            true => Some((EventCode::BusSilent, cycles.into())),
-            false => Some((EventCode::NodeSilent, detail(i, cycles))),
+            true => Some((EventCode::BusSilent, Detail::Cycles(cycles.into()))),
+            false => Some((EventCode::NodeSilent, Detail::NodeCycles(i, cycles))),
         }
     }
 
@@ -217,20 +211,9 @@ impl LineGuard {
         self.counters
     }
 
-    /// Something worth a line in the log, since the last call; what came first comes first.
-    pub(crate) fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        let first = *self.events[..self.pending].first()?;
-        self.events.copy_within(1..self.pending, 0);
-        self.pending -= 1;
-        Some(first)
-    }
-
-    /// Reports an event; more than there is room for is not reported, but counted.
-    fn report(&mut self, code: EventCode, detail: u64) {
-        if let Some(room) = self.events.get_mut(self.pending) {
-            *room = (code, detail);
-            self.pending += 1;
-        }
+    /// Events that were not taken yet.
+    pub(crate) fn events(&mut self) -> &mut EventQueue {
+        &mut self.events
     }
 
     /// Notes that all frames of a node came in this cycle, or not.
@@ -242,7 +225,7 @@ impl LineGuard {
         let missed = node.missed;
         if complete && node.line == ErrorState::Off && !powered {
             node.line = ErrorState::Active; // it sends while the supply is off: its controller was started again
-            self.report(EventCode::BusActive, i as u64);
+            self.events.push(EventCode::BusActive, Detail::Number(i as u64));
         }
         if !known {
             return;
@@ -251,13 +234,13 @@ impl LineGuard {
         if missed == 1 {
             self.gaps += 1;
             if self.gaps.is_power_of_two() {
-                self.report(EventCode::FramesLost, i as u64);
+                self.events.push(EventCode::FramesLost, Detail::Node(i));
             }
         }
         if missed == self.carried_on + 1 {
-            self.report(EventCode::NodeHeld, detail(i, missed));
+            self.events.push(EventCode::NodeHeld, Detail::NodeCycles(i, missed));
         } else if complete && was > self.carried_on {
-            self.report(EventCode::NodeBack, detail(i, was));
+            self.events.push(EventCode::NodeBack, Detail::NodeCycles(i, was));
         }
     }
 
@@ -265,24 +248,24 @@ impl LineGuard {
         self.counters.lost += u64::from(received.missed());
         self.counters.late += u64::from(received.stale);
         self.counters.duplicated += u64::from(received.repeated);
-        self.refuse(Refused::Late, received.stale);
-        self.refuse(Refused::Twice, received.repeated);
-        self.refuse(Refused::Length, received.wrong_length);
-        self.refuse(Refused::Unknown, received.unknown);
+        self.refuse(RefusedFrame::Late, received.stale);
+        self.refuse(RefusedFrame::Twice, received.repeated);
+        self.refuse(RefusedFrame::Length, received.wrong_length);
+        self.refuse(RefusedFrame::Unknown, received.unknown);
     }
 
     /// Counts frames or readings that are not used; reported at the first, second, fourth, eighth ... time.
-    fn refuse(&mut self, why: Refused, frames: u32) {
+    fn refuse(&mut self, why: RefusedFrame, frames: u32) {
         if frames == 0 {
             return;
         }
-        if !matches!(why, Refused::Late | Refused::Twice) {
+        if !matches!(why, RefusedFrame::Late | RefusedFrame::Twice) {
             self.counters.refused += u64::from(frames);
         }
         let times = &mut self.refused[why as usize];
         *times += 1;
         if times.is_power_of_two() {
-            self.report(EventCode::FrameRefused, why as u64);
+            self.events.push(EventCode::FrameRefused, Detail::Frame(why));
         }
     }
 
@@ -304,7 +287,7 @@ impl LineGuard {
                 ErrorState::Passive => EventCode::BusPassive,
                 ErrorState::Off => EventCode::BusOff,
             };
-            self.report(code, frame.line.into());
+            self.events.push(code, Detail::Number(frame.line.into()));
         }
     }
 
@@ -323,9 +306,4 @@ impl LineGuard {
         }
         votes > 0
     }
-}
-
-/// Node and cycles as a number that people can read: 1000 times the node plus the cycles.
-fn detail(node: usize, cycles: u32) -> u64 {
-    1000 * node as u64 + u64::from(cycles.min(999))
 }

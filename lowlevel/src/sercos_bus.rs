@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::time::Duration;
 
-use messages::{BusFrames, EventCode};
+use messages::{BusFrames, Detail, EventCode, EventQueue};
 use realtime::clock;
 use sercos::packing::{Interfaces, Packing, stations};
 use sercos::{Event, Near, Setup, Stage};
@@ -170,15 +170,15 @@ impl Fieldbus for SercosBus {
         Ok(!run.is_ending())
     }
 
-    fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        let address = |address: Option<u16>| u64::from(address.unwrap_or(0));
-        loop {
-            match self.near.master_mut().take_event()? {
-                Event::RingBroken(left, right) => {
-                    return Some((EventCode::RingBroken, address(left) << 16 | address(right)));
+    fn report(&mut self, events: &mut EventQueue) {
+        while let Some(event) = self.near.master_mut().take_event() {
+            match event {
+                Event::RingBroken(before, behind) => {
+                    let stations = Detail::Stations(before.unwrap_or(0), behind.unwrap_or(0));
+                    events.push(EventCode::RingBroken, stations);
                 }
-                Event::RingClosed => return Some((EventCode::RingClosed, 0)),
-                Event::Restart => return Some((EventCode::BusRestart, 0)),
+                Event::RingClosed => events.push(EventCode::RingClosed, Detail::Nothing),
+                Event::Restart => events.push(EventCode::BusRestart, Detail::Nothing),
                 // Silent nodes are reported by the joint loop, on every bus the same.
                 Event::Phase(_) | Event::Lost(_) | Event::Back(_) => {}
             }

@@ -12,7 +12,7 @@
 //! angle, but to find it out.
 
 use drives::cia402::{REFERENCED, State, Wanted, state_of};
-use messages::{Command, EventCode, Reason, Sensors, StartUp, Verdict, Wrench};
+use messages::{Command, Detail, EventCode, EventQueue, Reason, Sensors, StartUp, Verdict, Wrench};
 
 /// Share of the weight on a foot up to which it counts as unloaded: nothing but what hangs on its sensor, and its offset.
 const UNLOADED: f64 = 0.15;
@@ -55,7 +55,7 @@ pub(crate) struct StartUpSequence {
     cycles: u32,
     landed: u32,
     reset: u32,
-    event: Option<(EventCode, u64)>,
+    events: EventQueue,
 }
 
 impl StartUpSequence {
@@ -71,7 +71,7 @@ impl StartUpSequence {
             cycles: 0,
             landed: 0,
             reset: 0,
-            event: None,
+            events: EventQueue::default(),
         }
     }
 
@@ -80,9 +80,9 @@ impl StartUpSequence {
         self.state
     }
 
-    /// The event since the last call.
-    pub(crate) fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        self.event.take()
+    /// Events that were not taken yet.
+    pub(crate) fn events(&mut self) -> &mut EventQueue {
+        &mut self.events
     }
 
     /// Before new sensor data are decoded: what is missing among them stays as it was read.
@@ -114,7 +114,7 @@ impl StartUpSequence {
             Command::Home if self.state == StartUp::NotHomed => self.enter(StartUp::Homing),
             Command::Home if self.state == StartUp::Homing => {}
             Command::Home => {
-                self.report(EventCode::CommandRefused, command.address().1.into());
+                self.events.push(EventCode::CommandRefused, Detail::Message(command.address().1.into()));
                 return Err(Reason::NotNow);
             }
             Command::ZeroForce => return self.begin_zero(sensors),
@@ -154,10 +154,14 @@ impl StartUpSequence {
         };
         match (self.state, next) {
             (StartUp::NotHomed, StartUp::NotHomed) => {}
-            (_, StartUp::NotHomed) => self.report(EventCode::NotHomed, unknown.unwrap_or(0) as u64),
-            (StartUp::Homing, StartUp::Enabling) => self.report(EventCode::Homed, self.cycles.into()),
+            (_, StartUp::NotHomed) => {
+                self.events.push(EventCode::NotHomed, Detail::Joint(unknown.unwrap_or(0)))
+            }
+            (StartUp::Homing, StartUp::Enabling) => {
+                self.events.push(EventCode::Homed, Detail::Cycles(self.cycles.into()))
+            }
             (StartUp::Enabling, StartUp::Enabling) if self.cycles == ENABLE_CYCLES => {
-                self.report(EventCode::DriveNotEnabled, off.unwrap_or(0) as u64);
+                self.events.push(EventCode::DriveNotEnabled, Detail::Joint(off.unwrap_or(0)));
             }
             _ => {}
         }
@@ -192,10 +196,6 @@ impl StartUpSequence {
         }
     }
 
-    fn report(&mut self, code: EventCode, detail: u64) {
-        self.event.get_or_insert((code, detail));
-    }
-
     fn begin_zero(&mut self, sensors: &Sensors) -> Verdict {
         let (load, most) = (heaviest(sensors), UNLOADED * self.weight);
         let verdict = match self.state {
@@ -207,7 +207,7 @@ impl StartUpSequence {
             self.zero.sum = [[0.0; 6]; 2];
             self.zero.left = ZERO_CYCLES;
         } else {
-            self.report(EventCode::ZeroRefused, load as u64);
+            self.events.push(EventCode::ZeroRefused, Detail::Newtons(load as u64));
         }
         verdict
     }
@@ -220,7 +220,7 @@ impl StartUpSequence {
         let load = heaviest(sensors);
         if !(load < UNLOADED * self.weight) {
             self.zero.left = 0;
-            return self.report(EventCode::ZeroRefused, load as u64);
+            return self.events.push(EventCode::ZeroRefused, Detail::Newtons(load as u64));
         }
         for (sum, w) in self.zero.sum.iter_mut().zip(&sensors.foot_wrench) {
             for (sum, x) in sum.iter_mut().zip(w.force.iter().chain(&w.moment)) {
@@ -232,7 +232,7 @@ impl StartUpSequence {
             let mean = self.zero.sum.map(|sum| sum.map(|x| x / f64::from(ZERO_CYCLES)));
             self.zero.offset = mean.map(|[a, b, c, d, e, f]| Wrench { force: [a, b, c], moment: [d, e, f] });
             let most = mean.iter().flat_map(|m| &m[..3]).fold(0.0f64, |most, x| most.max(x.abs()));
-            self.report(EventCode::ForceZeroed, most.round() as u64);
+            self.events.push(EventCode::ForceZeroed, Detail::Newtons(most.round() as u64));
             self.enter(StartUp::Zeroed);
         }
     }

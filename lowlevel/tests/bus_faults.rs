@@ -8,7 +8,7 @@ use drives::cia402::{self, REFERENCED, status_of};
 use fieldbus::{ErrorFrame, ErrorState, Injector};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::LoopState;
-use messages::{BusFrames, EventCode, Frame, JointMode, JointTargets, Sensors};
+use messages::{BusFrames, Detail, EventCode, Frame, JointMode, JointTargets, Sensors};
 use proptest::prelude::*;
 
 #[global_allocator]
@@ -29,7 +29,7 @@ struct Rig {
     /// What lowlevel believes.
     seen: Sensors,
     trip: u64,
-    events: Vec<(EventCode, u64)>,
+    events: Vec<(EventCode, Detail)>,
 }
 
 impl Rig {
@@ -85,7 +85,7 @@ impl Rig {
             (self.drives.motor_angle[j], self.drives.motor_speed[j]) =
                 (told.targets.angle[j], told.targets.speed[j]);
         }
-        self.events.extend(std::iter::from_fn(|| self.loop_.take_event()));
+        self.events.extend(self.loop_.events().drain());
         frames
     }
 
@@ -152,8 +152,8 @@ fn a_silent_node_is_carried_on_within_bounds_then_held_then_a_stop_that_names_it
     }
     rig.cycle_without(line);
     assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::NodeSilent));
-    let detail = |cycles: u32| 1000 * u64::from(line) + u64::from(cycles);
-    assert!(rig.events.contains(&(EventCode::FramesLost, line.into())), "{:?}", rig.events);
+    let detail = |cycles: u32| Detail::NodeCycles(line as usize, cycles);
+    assert!(rig.events.contains(&(EventCode::FramesLost, Detail::Node(line as usize))), "{:?}", rig.events);
     assert!(rig.events.contains(&(EventCode::NodeHeld, detail(k + 1))), "{:?}", rig.events);
     assert!(rig.events.contains(&(EventCode::NodeSilent, detail(n + 1))), "{:?}", rig.events);
     assert_eq!(rig.trip, 0, "the supply holds the joints");
@@ -172,7 +172,7 @@ fn a_node_that_comes_back_in_time_is_told_and_nobody_stops() {
     let (answer, place) = (rig.answer(), rig.drives.joint_angle[rig.joint(KNEE)]);
     rig.cycle(Some(&answer));
     assert_eq!(rig.loop_.state(), LoopState::Track);
-    let back = (EventCode::NodeBack, 1000 * u64::from(line) + u64::from(rig.system.bus.missed));
+    let back = (EventCode::NodeBack, Detail::NodeCycles(line as usize, rig.system.bus.missed));
     assert!(rig.events.contains(&back), "{:?}", rig.events);
     assert!((rig.seen.joint_angle[rig.joint(KNEE)] - place).abs() < 2e-9, "read again");
 }
@@ -206,7 +206,7 @@ fn a_line_off_the_bus_is_no_power_and_only_the_way_over_power_off_leads_back() {
     answer.push(&off);
     rig.cycle(Some(&answer));
     assert_eq!((rig.loop_.state(), rig.trip), (LoopState::Stop(EventCode::BusOff), EventCode::BusOff as u64));
-    assert!(rig.events.contains(&(EventCode::BusOff, line.into())), "{:?}", rig.events);
+    assert!(rig.events.contains(&(EventCode::BusOff, Detail::Number(line.into()))), "{:?}", rig.events);
     for _ in 0..50 {
         let answer = rig.answer();
         rig.cycle(Some(&answer));
@@ -241,7 +241,11 @@ fn warnings_are_told_once_and_change_nothing() {
     }
     assert_eq!(
         rig.events,
-        [(EventCode::BusWarning, 2), (EventCode::BusPassive, 2), (EventCode::BusActive, 2)]
+        [
+            (EventCode::BusWarning, Detail::Number(2)),
+            (EventCode::BusPassive, Detail::Number(2)),
+            (EventCode::BusActive, Detail::Number(2))
+        ]
     );
     assert_eq!(rig.loop_.state(), LoopState::Track);
     assert_eq!(rig.loop_.bus_counters().error_frames, 4);
@@ -331,7 +335,7 @@ fn nothing_is_allocated_while_the_bus_fails() {
     for (i, answer) in answers.iter().enumerate() {
         rig.loop_.receive(tick + 1 + i as u64, 0, Some(answer));
         rig.loop_.send(None, None);
-        while rig.loop_.take_event().is_some() {}
+        rig.loop_.events().drain().for_each(drop);
     }
     realtime::allocations::disarm();
     assert_eq!(realtime::allocations::counted(), [0, 0]);

@@ -5,7 +5,7 @@ use config::{Robot, System};
 use drives::cia402::{self, REFERENCED, status_of};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::LoopState;
-use messages::{BusFrames, EventCode, JointMode, JointTargets, Sensors};
+use messages::{BusFrames, Detail, EventCode, JointMode, JointTargets, Sensors};
 use proptest::prelude::*;
 
 const DT: f64 = 1e-3;
@@ -16,7 +16,7 @@ struct Rig {
     tick: u64,
     /// What the drives say: they follow what they were told, unless blocked.
     drives: Sensors,
-    blocked: Option<usize>,
+    blocked: Vec<usize>,
     last: DriveCommand,
 }
 
@@ -32,7 +32,8 @@ impl Rig {
             drives.joint_angle[j] = *q;
         }
         let loop_ = JointLoop::new(&robot, &system, DT);
-        let mut rig = Self { robot, loop_, tick: 0, drives, blocked: None, last: DriveCommand::default() };
+        let mut rig =
+            Self { robot, loop_, tick: 0, drives, blocked: Vec::new(), last: DriveCommand::default() };
         for _ in 0..3 {
             let still = rig.still();
             rig.cycle(Some(&still));
@@ -66,7 +67,7 @@ impl Rig {
         let (frames, reset) = self.loop_.send(targets, None);
         let trip = reset.trip;
         decode_targets(&self.robot.layout, frames, &mut self.last);
-        for j in (0..self.robot.joints.len()).filter(|j| Some(*j) != self.blocked) {
+        for j in (0..self.robot.joints.len()).filter(|j| !self.blocked.contains(j)) {
             self.drives.joint_angle[j] = self.last.targets.angle[j];
             self.drives.joint_speed[j] = self.last.targets.speed[j];
         }
@@ -82,7 +83,7 @@ fn follows_targets_to_the_resolution_of_the_bus() {
     wanted.speed[5] = 0.2;
     rig.cycle(Some(&wanted));
     assert!((rig.last.targets.angle[5] - wanted.angle[5]).abs() < 2e-9);
-    assert_eq!(rig.loop_.take_event(), None);
+    assert_eq!(rig.loop_.events().pop(), None);
 }
 
 #[test]
@@ -94,7 +95,7 @@ fn one_nan_in_any_joint_is_a_controlled_stop_that_names_it() {
         bad.speed[j] = f64::NAN;
         rig.cycle(Some(&bad));
         assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::TargetNotFinite));
-        assert_eq!(rig.loop_.take_event(), Some((EventCode::TargetNotFinite, j as u64)));
+        assert_eq!(rig.loop_.events().pop(), Some((EventCode::TargetNotFinite, Detail::Joint(j))));
         assert_eq!(rig.last.targets.angle, before);
     }
 }
@@ -140,7 +141,7 @@ fn silence_of_the_controller_is_carried_on_then_stopped_and_stays_stopped() {
 #[test]
 fn a_blocked_joint_trips_the_supply() {
     let mut rig = Rig::tracking();
-    rig.blocked = Some(5);
+    rig.blocked = vec![5];
     let mut trip = 0;
     for _ in 0..200 {
         let mut t = rig.still();
@@ -152,7 +153,29 @@ fn a_blocked_joint_trips_the_supply() {
         }
     }
     assert_eq!(trip, EventCode::FollowingError as u64);
-    assert_eq!(rig.loop_.take_event(), Some((EventCode::FollowingError, 5)));
+    assert_eq!(rig.loop_.events().pop(), Some((EventCode::FollowingError, Detail::Joint(5))));
+}
+
+/// Two blocked joints, and a target that is NaN while they still do not follow: each is reported, and once.
+#[test]
+fn no_event_hides_another_one_of_its_cycle() {
+    let mut rig = Rig::tracking();
+    rig.blocked = vec![5, 11];
+    let (mut events, mut after_trip) = (Vec::new(), 0);
+    while after_trip < 5 {
+        let mut t = rig.still();
+        for j in [5, 11] {
+            t.angle[j] = rig.last.targets.angle[j] + 1.0 * DT;
+            t.speed[j] = 1.0;
+        }
+        if after_trip == 1 {
+            t.angle[2] = f64::NAN;
+        }
+        after_trip += u32::from(rig.cycle(Some(&t)) != 0 || after_trip > 0);
+        events.extend(rig.loop_.events().drain().filter(|(code, _)| *code != EventCode::TargetLimited));
+    }
+    let strayed = |j| (EventCode::FollowingError, Detail::Joint(j));
+    assert_eq!(events, [strayed(5), strayed(11), (EventCode::TargetNotFinite, Detail::Joint(2))]);
 }
 
 #[test]

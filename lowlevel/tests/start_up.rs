@@ -6,7 +6,9 @@ use config::{Robot, System};
 use drives::cia402::{self, DriveInputs, Fault, REFERENCED};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::LoopState;
-use messages::{BusFrames, Command, EventCode, JointMode, JointTargets, Reason, Sensors, StartUp, Verdict};
+use messages::{
+    BusFrames, Command, Detail, EventCode, JointMode, JointTargets, Reason, Sensors, StartUp, Verdict,
+};
 
 /// \[N\] Lola's weight.
 const WEIGHT: f64 = 60.885 * 9.81;
@@ -32,7 +34,7 @@ struct Rig {
     creeps: Option<usize>,
     /// A joint whose local controller is not heard.
     mute: Option<usize>,
-    events: Vec<(EventCode, u64)>,
+    events: Vec<(EventCode, Detail)>,
     /// To the command of the last cycle, if there was one.
     answer: Option<Verdict>,
     tick: u64,
@@ -110,7 +112,7 @@ impl Rig {
         targets.angle.iter_mut().for_each(|q| *q += step);
         let (frames, _) = self.loop_.send(Some(&targets), None);
         decode_targets(&self.robot.layout, frames, &mut self.told);
-        self.events.extend(std::iter::from_fn(|| self.loop_.take_event()));
+        self.events.extend(self.loop_.events().drain());
         let home = self.told.targets.mode == JointMode::Home as u64;
         for j in 0..self.drives.len() {
             self.drives[j].step(&DriveInputs {
@@ -182,7 +184,7 @@ fn a_joint_that_does_not_know_its_angle_keeps_all_drives_off_until_it_was_homed(
     rig.said.power = 1;
     rig.cycles(1000);
     assert_eq!((rig.state(), rig.enabled()), (StartUp::NotHomed, 0));
-    assert_eq!(rig.events, [(EventCode::NotHomed, HEAD as u64)], "told once");
+    assert_eq!(rig.events, [(EventCode::NotHomed, Detail::Joint(HEAD))], "told once");
     assert_eq!((rig.said.joint_angle, rig.loop_.state()), (before, LoopState::Hold), "nothing moves");
     rig.cycle(Some(Command::Home));
     rig.cycles(10);
@@ -197,7 +199,7 @@ fn a_joint_that_does_not_know_its_angle_keeps_all_drives_off_until_it_was_homed(
     assert!((led - 0.7).abs() < 0.01, "begins at the angle that was found: {led}");
     assert_eq!(rig.events.len(), 2, "{:?}", rig.events);
     rig.cycle(Some(Command::Home));
-    assert_eq!(rig.events.last(), Some(&(EventCode::CommandRefused, 0)), "homing is done");
+    assert_eq!(rig.events.last(), Some(&(EventCode::CommandRefused, Detail::Message(0))), "homing is done");
 }
 
 /// Every command that the joint loop decides, in every state of the start-up.
@@ -273,7 +275,7 @@ fn force_sensors_read_zero_after_zeroing_and_the_robot_stands_once_its_feet_carr
     rig.cycle(Some(Command::ZeroForce));
     rig.cycles(101);
     assert_eq!(rig.state(), StartUp::Zeroed);
-    assert_eq!(rig.events, [(EventCode::ForceZeroed, 15)]);
+    assert_eq!(rig.events, [(EventCode::ForceZeroed, Detail::Newtons(15))]);
     assert!(rig.seen.foot_wrench.iter().all(|w| w.force[2].abs() < 1e-9), "{:?}", rig.seen.foot_wrench);
     rig.load(0.85 * WEIGHT - 30.0);
     rig.cycles(300);
@@ -304,16 +306,20 @@ fn frames_that_are_missing_do_not_take_the_offset_away_twice() {
 fn zeroing_with_load_on_the_feet_is_refused() {
     let mut standing = Rig::on(WEIGHT);
     standing.cycle(Some(Command::ZeroForce));
-    assert_eq!(standing.events, [(EventCode::ZeroRefused, (0.5 * WEIGHT) as u64)]);
+    assert_eq!(standing.events, [(EventCode::ZeroRefused, Detail::Newtons((0.5 * WEIGHT) as u64))]);
     let mut off = Rig::new(0.0);
     off.cycle(Some(Command::ZeroForce));
-    assert_eq!(off.events, [(EventCode::ZeroRefused, 0)], "drives off");
+    assert_eq!(off.events, [(EventCode::ZeroRefused, Detail::Newtons(0))], "drives off");
     let mut lowered = Rig::on(0.0);
     lowered.cycle(Some(Command::ZeroForce));
     lowered.cycles(50);
     lowered.load(0.5 * WEIGHT);
     lowered.cycles(200);
-    assert_eq!(lowered.events, [(EventCode::ZeroRefused, (0.25 * WEIGHT) as u64)], "while it is measured");
+    assert_eq!(
+        lowered.events,
+        [(EventCode::ZeroRefused, Detail::Newtons((0.25 * WEIGHT) as u64))],
+        "while it is measured"
+    );
     assert!(lowered.seen.foot_wrench.iter().all(|w| w.force[2] > 0.2 * WEIGHT), "nothing taken away");
     assert_eq!(lowered.state(), StartUp::Hanging);
 }
@@ -325,7 +331,7 @@ fn a_drive_with_a_fault_is_a_controlled_stop_that_names_it_and_only_a_reset_ends
     rig.cycles(3);
     rig.fault = None;
     rig.cycles(50);
-    let named = KNEE as u64 + ((Fault::OverTemperature as u64) << 16);
+    let named = Detail::Drive { joint: KNEE, error: Fault::OverTemperature as u16 };
     assert_eq!(rig.events, [(EventCode::DriveTripped, named)]);
     assert_eq!(
         (rig.loop_.state(), rig.state()),
@@ -350,7 +356,7 @@ fn a_fault_behind_a_silent_line_is_named_when_its_frames_come_back() {
     rig.cycles(10);
     (rig.fault, rig.mute) = (None, None);
     assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::NodeSilent));
-    let named = (EventCode::DriveTripped, KNEE as u64 + (0x8130 << 16));
+    let named = (EventCode::DriveTripped, Detail::Drive { joint: KNEE, error: 0x8130 });
     assert!(!rig.events.contains(&named), "nobody has said so yet: {:?}", rig.events);
     rig.cycles(50);
     assert_eq!(rig.events.iter().filter(|event| **event == named).count(), 1, "{:?}", rig.events);
@@ -369,7 +375,7 @@ fn a_robot_that_stands_goes_on_without_a_drive_it_can_spare() {
     rig.cycles(3);
     rig.fault = None;
     rig.cycles(300);
-    let detail = ARM as u64 + (0x8130 << 16);
+    let detail = Detail::Drive { joint: ARM, error: 0x8130 };
     assert_eq!(rig.events, [(EventCode::DriveHeld, detail)]);
     assert_eq!((rig.state(), rig.loop_.state(), rig.enabled()), (StartUp::Standing, LoopState::Track, 23));
     rig.again(false);
@@ -389,7 +395,7 @@ fn a_drive_that_drops_out_or_does_not_come_is_named() {
     rig.drives[KNEE] = cia402::DriveStateMachine::default(); // its controller started again
     rig.drives[KNEE].step(&DriveInputs::default());
     rig.cycles(4);
-    assert_eq!(rig.events, [(EventCode::DriveNotEnabled, KNEE as u64)]);
+    assert_eq!(rig.events, [(EventCode::DriveNotEnabled, Detail::Joint(KNEE))]);
     assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::DriveNotEnabled));
 
     let mut dead = Rig::new(WEIGHT);
@@ -400,7 +406,7 @@ fn a_drive_that_drops_out_or_does_not_come_is_named() {
     }
     assert_eq!(
         (dead.events.clone(), dead.state()),
-        (vec![(EventCode::DriveNotEnabled, 5)], StartUp::Enabling)
+        (vec![(EventCode::DriveNotEnabled, Detail::Joint(5))], StartUp::Enabling)
     );
 }
 
@@ -411,6 +417,6 @@ fn a_joint_that_does_not_follow_is_told_to_stop_at_once() {
     while rig.events.is_empty() && rig.tick < 1000 {
         rig.cycle(None);
     }
-    assert_eq!(rig.events, [(EventCode::FollowingError, KNEE as u64)]);
+    assert_eq!(rig.events, [(EventCode::FollowingError, Detail::Joint(KNEE))]);
     assert!(rig.drives.iter().all(|drive| drive.state() == cia402::State::QuickStop));
 }

@@ -8,7 +8,7 @@ use daemon::{Connect, Daemon};
 use ipc::Mode;
 use messages::topics::{CONTROLLER_STATE, PARAMETERS_PLANNER, PLAN, PLANNER_TICK, SENSORS};
 use messages::{
-    Command, ControllerState, Event, EventCode, Header, Live, Parameters, Plan, Process, Sensors,
+    Command, ControllerState, Detail, Event, EventCode, Header, Live, Parameters, Plan, Process, Sensors,
 };
 use realtime::clock;
 use std::error::Error;
@@ -72,7 +72,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut parameters = Parameters::default();
     planner.report_parameters(&mut parameters);
     set.write(&parameters);
-    d.report(Header::default(), EventCode::Started, 0);
+    d.report(Header::default(), EventCode::Started, Detail::Nothing);
 
     let mut header = Header::default();
     while d.wait(&waiter, "lowlevel", || sensors.refresh())? {
@@ -81,7 +81,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         // A walk whose operator is gone ends first; then the scene's commands, then live ones.
         let mut inbox = Inbox::default();
         if let Some(grant) = lease.lost(commands.lease(), clock::now()) {
-            d.report(header, EventCode::LeaseLost, grant.into());
+            d.report(header, EventCode::LeaseLost, Detail::Number(grant.into()));
             inbox.add(Live::of_scene(Command::Stop));
         }
         while !inbox.is_full()
@@ -105,7 +105,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             plan.write(&made);
             d.log.keep(&PLAN, &*made);
         }
-        for &(code, detail) in output.events {
+        for (code, detail) in output.events.drain() {
             d.report(header, code, detail);
         }
         if inbox.commands().iter().any(|command| matches!(command, Command::WalkParameter(_))) {
@@ -120,6 +120,6 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         }
         d.end(header, 0);
     }
-    d.report(header, EventCode::Ended, 0);
+    d.report(header, EventCode::Ended, Detail::Nothing);
     Ok(())
 }

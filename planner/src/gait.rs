@@ -13,12 +13,12 @@ use crate::touchdown::{Touchdown, at_boundary, at_contact, is_early, touched};
 use crate::verdict::PlanVerdict;
 use crate::walk::Builder;
 use config::{Gait, Robot};
-use messages::{Command, ControllerState, EventCode, GaitState, LEFT, Plan, RIGHT, Reason};
+use messages::{
+    Command, ControllerState, Detail, EventCode, EventQueue, GaitState, LEFT, Plan, RIGHT, Reason,
+};
 
 /// Fewest cycles before its start at which a plan can still reach the controller.
 const LEAD_MIN: u64 = 3;
-/// Most events of one cycle.
-const MAX_EVENTS: usize = 16;
 /// Most commands of one cycle.
 pub const MAX_COMMANDS: usize = 16;
 
@@ -26,8 +26,8 @@ pub const MAX_COMMANDS: usize = 16;
 pub struct PlannerOutput<'a> {
     /// A new plan, in the cycle in which it was made.
     pub plan: Option<&'a Plan>,
-    /// Events of the cycle: code and detail.
-    pub events: &'a [(EventCode, u64)],
+    /// Events of the cycle.
+    pub events: &'a mut EventQueue,
     /// Answers to the commands, in their order.
     pub answers: &'a [Result<(), Reason>],
 }
@@ -57,7 +57,7 @@ pub struct Planner {
     given_up: u64,
     /// Plan and step whose early contact was looked at.
     tried: (u64, usize),
-    events: Vec<(EventCode, u64)>,
+    pub(crate) events: EventQueue,
     answers: Vec<Result<(), Reason>>,
 }
 
@@ -76,7 +76,7 @@ impl Planner {
             last_id: 0,
             given_up: 0,
             tried: (0, 0),
-            events: Vec::with_capacity(MAX_EVENTS),
+            events: EventQueue::default(),
             answers: Vec::with_capacity(MAX_COMMANDS),
         }
     }
@@ -106,7 +106,6 @@ impl Planner {
         state: Option<&ControllerState>,
         commands: &[Command],
     ) -> PlannerOutput<'_> {
-        self.events.clear();
         self.answers.clear();
         self.builder.model.cycle_s = cycle_s;
         // The controller is the one that knows which plan is executed.
@@ -122,7 +121,7 @@ impl Planner {
         for command in commands.iter().take(MAX_COMMANDS) {
             let answer = match down.filter(|_| walks(command)) {
                 Some(reason) => {
-                    self.event(EventCode::NotStanding, u64::from(command.address().1));
+                    self.events.push(EventCode::NotStanding, Detail::Message(command.address().1.into()));
                     Err(reason)
                 }
                 None => self.take(command, gait),
@@ -133,7 +132,11 @@ impl Planner {
             (Some(state), due) => self.make(tick, gait, state, due),
             (None, _) => false,
         };
-        PlannerOutput { plan: made.then_some(&*self.next.plan), events: &self.events, answers: &self.answers }
+        PlannerOutput {
+            plan: made.then_some(&*self.next.plan),
+            events: &mut self.events,
+            answers: &self.answers,
+        }
     }
 
     /// Without power, or a controller that knows of no plan: whatever was planned, wanted and begun is over. What comes
@@ -159,7 +162,7 @@ impl Planner {
                 self.intent = Intent::Rest;
             }
         } else if state.header.tick >= next.start_tick {
-            self.event(EventCode::PlanRefused, self.next.plan.id);
+            self.events.push(EventCode::PlanRefused, Detail::Plan(self.next.plan.id));
             self.next.plan.id = 0;
         }
     }
@@ -250,7 +253,7 @@ impl Planner {
                 Ok(())
             }
             Err(reason) => {
-                self.event(EventCode::CommandRefused, u64::from(command.address().1));
+                self.events.push(EventCode::CommandRefused, Detail::Message(command.address().1.into()));
                 Err(reason)
             }
         }
@@ -262,7 +265,7 @@ impl Planner {
             return Err(Reason::NotNow);
         }
         if let Err((code, detail)) = task.check(&self.gait, &self.builder.model.soles[RIGHT]) {
-            self.event(code, detail);
+            self.events.push(code, detail);
             return Err(Reason::Event { code, detail });
         }
         self.tasks.next = Some(task);
@@ -307,7 +310,7 @@ impl Planner {
             || !self.walk(&from, GaitState::Starting)
         {
             self.intent = Intent::Rest;
-            self.event(EventCode::PlanKept, self.active.plan.id);
+            self.events.push(EventCode::PlanKept, Detail::Plan(self.active.plan.id));
             return false;
         }
         let rest = self.active.plan.start_tick + self.active.end_cycle;
@@ -320,7 +323,7 @@ impl Planner {
         let blind = self.tasks.active == Skill::Walk;
         let touched = touched(&self.active, state, tick, self.builder.model.cycle_s).filter(|_| blind);
         if touched.is_some_and(|touchdown| self.end_early(&touchdown, tick, state, to)) {
-            self.event(EventCode::EarlyContact, self.last_id + 1);
+            self.events.push(EventCode::EarlyContact, Detail::Plan(self.last_id + 1));
             return self.publish(tick + LEAD, tick);
         }
         // By the clock: a plan from the next step boundary, as late as it can be made.
@@ -337,7 +340,7 @@ impl Planner {
                 self.tasks.stop();
                 self.intent = Intent::Rest;
             }
-            self.event(EventCode::PlanKept, self.active.plan.id);
+            self.events.push(EventCode::PlanKept, Detail::Plan(self.active.plan.id));
             return false;
         }
         self.publish(start, tick)
@@ -375,7 +378,7 @@ impl Planner {
         // An obstacle in the way ends the walk, and is reported to who wanted it.
         let Some((code, detail)) = self.next.blocked else { return self.next.verdict == PlanVerdict::Sound };
         if commanded {
-            self.event(code, detail);
+            self.events.push(code, detail);
             self.tasks.stop();
         }
         self.intent = Intent::Rest;
@@ -411,17 +414,11 @@ impl Planner {
     fn at_rest(&self, stance: usize) -> PlanOrigin {
         PlanOrigin::at_rest(&self.active, self.builder.model.cycle_s, stance, self.parameters.duration)
     }
-
-    pub(crate) fn event(&mut self, code: EventCode, detail: u64) {
-        if self.events.len() < MAX_EVENTS {
-            self.events.push((code, detail));
-        }
-    }
 }
 
 /// Reason why no walking command is taken in this state from a robot that does not stand.
 fn not_standing(gait: GaitState) -> Option<Reason> {
-    let event = |code| Some(Reason::Event { code, detail: 0 });
+    let event = |code| Some(Reason::Event { code, detail: Detail::Nothing });
     match gait {
         GaitState::Idle => Some(Reason::NotStanding),
         GaitState::Fallen => event(EventCode::Fallen),

@@ -3,7 +3,7 @@
 use crate::Planner;
 use config::parameters::PLANNER;
 use messages::command::ParameterCommand;
-use messages::{EventCode, Parameters, Reason};
+use messages::{Detail, EventCode, Parameters, Reason};
 
 impl Planner {
     /// Another value for a parameter, from the next step that is planned.
@@ -15,7 +15,7 @@ impl Planner {
         if !parameter.set(&mut self.builder.model.step, change.value) {
             return Err(Reason::Limit { field: 1, low, high });
         }
-        self.event(EventCode::ParameterSet, change.number.into());
+        self.events.push(EventCode::ParameterSet, Detail::Number(change.number.into()));
         Ok(())
     }
 

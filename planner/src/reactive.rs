@@ -20,7 +20,7 @@ use crate::steps::{ROUNDING, StepParameters, Stride, nu};
 use crate::verdict::Blocked;
 use crate::walking_model::WalkingModel;
 use config::gait;
-use messages::EventCode;
+use messages::{Detail, EventCode};
 
 /// Footholds that are looked ahead.
 const LOOK: usize = 8;
@@ -83,7 +83,7 @@ impl Reactive {
 
     /// Reason why a step over `e` cannot be made from ground at the height `ground`; `span` is its length.
     fn refusal(&self, e: &Extent, ground: f64, span: f64) -> Option<Blocked> {
-        let millimetres = |x: f64| (x * 1e3).round() as u64;
+        let millimetres = |x: f64| Detail::Millimetres((x * 1e3).round() as u64);
         if e.top - ground > self.rules.height {
             Some((EventCode::ObstacleTooHigh, millimetres(e.top - ground)))
         } else if span > self.rules.length + ROUNDING {
@@ -187,7 +187,8 @@ impl Reactive {
             let too_high = top - ground > self.rules.height;
             if too_high || self.touches(model, from, s) {
                 let code = if too_high { EventCode::ObstacleTooHigh } else { EventCode::NoFoothold };
-                blocked = blocked.or(Some((code, ((top - ground) * 1e3).round() as u64)));
+                let height = Detail::Millimetres(((top - ground) * 1e3).round() as u64);
+                blocked = blocked.or(Some((code, height)));
             }
         }
         blocked

@@ -15,9 +15,10 @@ use crate::pose::Pose;
 use crate::sole::Sole;
 use crate::steps::{StepParameters, Stride};
 
+use crate::verdict::Blocked;
 use config::Gait;
-use messages::EventCode;
 use messages::command::{DistanceCommand, PlatformCommand, VelocityCommand};
+use messages::{Detail, EventCode};
 
 /// \[m\] Remaining distance treated as zero.
 const NOTHING: f64 = 1e-6;
@@ -112,8 +113,8 @@ impl SkillTask {
     ///
     /// # Errors
     /// Out of the limits of the gait; a platform too high, too far for one step or too near.
-    pub(crate) fn check(&self, gait: &Gait, sole: &Sole) -> Result<(), (EventCode, u64)> {
-        let no = |code, x: f64| Err((code, (x.abs() * 1e3).round() as u64));
+    pub(crate) fn check(&self, gait: &Gait, sole: &Sole) -> Result<(), Blocked> {
+        let no = |code, x: f64| Err((code, Detail::Millimetres((x.abs() * 1e3).round() as u64)));
         match self {
             Self::Distance(d) => match cruise(d, gait) {
                 Some(_) if d.distance.is_finite() && d.acceleration > 0.0 => Ok(()),

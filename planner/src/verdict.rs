@@ -1,9 +1,9 @@
 //! Verdict on a plan: every solver gives it, the planner acts on it.
 
-use messages::EventCode;
+use messages::{Detail, EventCode};
 
 /// Obstacle in the way: code and detail of the event.
-pub(crate) type Blocked = (EventCode, u64);
+pub(crate) type Blocked = (EventCode, Detail);
 
 /// First fault of a plan, if any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

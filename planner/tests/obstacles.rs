@@ -4,7 +4,7 @@ mod robot;
 
 use config::Gait;
 use messages::command::{DistanceCommand, PlatformCommand, VelocityCommand};
-use messages::{Command, EventCode, GaitState, Plan};
+use messages::{Command, Detail, EventCode, GaitState, Plan};
 use planner::obstacles::KnownObstacles;
 use robot::checks::*;
 use robot::{Robot, SUPPORT};
@@ -125,7 +125,7 @@ fn two_bars_with_room_between_them_are_stepped_over_and_without_room_are_one() {
     let bars = [[1.3, 1.36, 0.1], [1.6, 1.65, 0.05]];
     let r = walk_at(&bars, true);
     assert_eq!(r.events.len(), 1);
-    assert_eq!((r.events[0].1, r.events[0].2), (EventCode::ObstacleTooLong, 350));
+    assert_eq!((r.events[0].1, r.events[0].2), (EventCode::ObstacleTooLong, Detail::Millimetres(350)));
     assert!(place(&r) + SUPPORT[0][1] < 1.3, "stands before them: {}", place(&r));
 }
 
@@ -136,7 +136,10 @@ fn what_cannot_be_stepped_over_is_stopped_at_and_named() {
         ([1.5, 1.8, 0.1], EventCode::ObstacleTooLong, 300),
     ] {
         let r = walk_at(&[bar], true);
-        assert_eq!(r.events.iter().map(|e| (e.1, e.2)).collect::<Vec<_>>(), [(code, detail)]);
+        assert_eq!(
+            r.events.iter().map(|e| (e.1, e.2)).collect::<Vec<_>>(),
+            [(code, Detail::Millimetres(detail))]
+        );
         check(&r, &robot::gait());
         let at = place(&r) + SUPPORT[0][1];
         assert!(at < bar[0] && at > 0.5, "stands before it: toes at {at}");

@@ -4,7 +4,7 @@ mod robot;
 
 use config::Gait;
 use messages::command::{StepCommand, VelocityCommand};
-use messages::{Command, EventCode, GaitState, Plan};
+use messages::{Command, Detail, EventCode, GaitState, Plan};
 use robot::checks::*;
 use robot::{CYCLE, Robot};
 
@@ -172,7 +172,7 @@ fn a_plan_that_was_not_taken_is_replaced_at_the_next_boundary() {
     let dropped = r.plans.pop().expect("just made");
     assert_eq!(dropped.id, lost);
     r.run(1.5);
-    assert!(r.events.iter().any(|e| e.1 == EventCode::PlanRefused && e.2 == lost));
+    assert!(r.events.iter().any(|e| e.1 == EventCode::PlanRefused && e.2 == Detail::Plan(lost)));
     assert!(r.active.id > lost && r.active.id > before);
     r.step(&[Command::Stop]);
     r.run(8.0);
@@ -211,7 +211,7 @@ fn commands_that_make_no_sense_are_refused_and_change_nothing() {
         let event = r.events.pop().expect("an event");
         assert_eq!(
             (event.1, event.2),
-            (EventCode::CommandRefused, u64::from(command.address().1)),
+            (EventCode::CommandRefused, Detail::Message(command.address().1.into())),
             "{command:?}"
         );
         calm.step(&[]);

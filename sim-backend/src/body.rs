@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use config::{Robot, Scene};
-use messages::EventCode;
+use messages::{Detail, EventCode, EventQueue};
 
 use crate::drive::{Drive, Motion};
 use crate::integrate::Stepper;
@@ -99,21 +99,25 @@ impl SimulatedBody {
     }
 
     /// Moves the objects to `time` \[s\], and reports what went wrong or changed in this cycle, the gravest first.
-    pub(crate) fn finish(&mut self, time: f64, mut report: impl FnMut(EventCode, u64)) {
+    pub(crate) fn finish(&mut self, time: f64, events: &mut EventQueue) {
         if let Some(gave_up) = self.stepper.take_gave_up() {
-            report(EventCode::IntegratorGaveUp, gave_up.state as u64);
+            events.push(EventCode::IntegratorGaveUp, Detail::Number(gave_up.state as u64));
         }
         if let Some(fault) = self.plant.take_fault() {
-            report(EventCode::DriveFault, fault.drive as u64);
+            events.push(EventCode::DriveFault, Detail::Number(fault.drive as u64));
         }
         let contact = self.plant.take_contact_report();
         if !contact.converged {
-            report(EventCode::ContactNotConverged, contact.sweeps.into());
+            events.push(EventCode::ContactNotConverged, Detail::Count(contact.sweeps.into()));
         }
         for event in self.plant.advance(time) {
             match *event {
-                environment::Event::Refused(i) => report(EventCode::ObjectHeld, i as u64),
-                environment::Event::Resumed(i) => report(EventCode::ObjectResumed, i as u64),
+                environment::Event::Refused(i) => {
+                    events.push(EventCode::ObjectHeld, Detail::Number(i as u64))
+                }
+                environment::Event::Resumed(i) => {
+                    events.push(EventCode::ObjectResumed, Detail::Number(i as u64))
+                }
                 environment::Event::Appeared(_) | environment::Event::Vanished(_) => {}
             }
         }

@@ -9,7 +9,7 @@ use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Writer};
 use messages::topics::{POWER, SIM_STATE};
-use messages::{Command, EventCode, Header, Live, Power, Process, Reason, SimState};
+use messages::{Command, Detail, EventCode, Header, Live, Power, Process, Reason, SimState};
 use realtime::clock;
 use std::error::Error;
 use std::path::Path;
@@ -35,7 +35,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         ports.timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
     }
     let mut sim = SimBackend::new(&d.setup.robot, &d.setup.scene)?.with_relay(d.setup.system.toggle_missed);
-    d.report(Header::default(), EventCode::Started, 0);
+    d.report(Header::default(), EventCode::Started, Detail::Nothing);
     let (frames, _) = sim.step(None, None);
     ports.bus.answer(&d, frames);
 
@@ -75,7 +75,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    d.report(header, EventCode::Ended, 0);
+    d.report(header, EventCode::Ended, Detail::Nothing);
     Ok(())
 }
 
@@ -97,7 +97,8 @@ fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut SimBackendPorts) -> Heade
         match live.command {
             Command::Push(push) => sim.push(&push),
             Command::Lower(way) if !sim.lower(&way) => {
-                let (code, detail) = (EventCode::CommandRefused, live.command.address().1.into());
+                let detail = Detail::Message(live.command.address().1.into());
+                let code = EventCode::CommandRefused;
                 d.report(Header { tick, ..Header::default() }, code, detail);
                 verdict = Err(Reason::Event { code, detail });
             }
@@ -117,7 +118,7 @@ fn cycle(d: &mut Daemon, sim: &mut SimBackend, p: &mut SimBackendPorts) -> Heade
     p.state.write(state);
     d.log.keep(&SIM_STATE, state);
     p.bus.answer(d, frames);
-    if let Some((code, detail)) = sim.take_event() {
+    for (code, detail) in sim.events().drain() {
         d.report(header, code, detail);
     }
     d.end(header, 0);

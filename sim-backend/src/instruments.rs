@@ -4,7 +4,7 @@ use std::error::Error;
 
 use codec::frames::encode_sensors;
 use config::{Robot, Scene};
-use messages::{BusFrames, EventCode, Header, Imu, Sensors, SimState, Wrench};
+use messages::{BusFrames, Detail, EventCode, EventQueue, Header, Imu, Sensors, SimState, Wrench};
 use multibody::Frame;
 use nalgebra::Vector3;
 
@@ -77,8 +77,7 @@ impl Instruments {
         encode_sensors(&robot.layout, &self.readings, &mut self.frames);
     }
 
-    /// Writes readings and truth at `time` \[s\]. An event says what was wrong with the readings;
-    /// [`EventCode::SensorNotFinite`]: they must not go on the bus.
+    /// Writes readings and truth at `time` \[s\]; false if a reading is NaN and none may go on the bus.
     pub(crate) fn measure(
         &mut self,
         time: f64,
@@ -86,7 +85,8 @@ impl Instruments {
         joints: &SimulatedJoints,
         snapshot: &Snapshot,
         inputs: &PlantInputs,
-    ) -> Option<(EventCode, u64)> {
+        events: &mut EventQueue,
+    ) -> bool {
         let (plant, x) = body.parts();
         let mut seen = Truth { motor_current: [f64::NAN; messages::MAX_JOINTS], ..Truth::default() };
         self.see_joints(plant, x, joints, &mut seen);
@@ -95,8 +95,13 @@ impl Instruments {
         let report = self.sensors.measure(&seen, &mut self.readings);
         joints.electronics().report(&mut self.readings);
         self.write_truth(time, plant, x, snapshot, inputs);
-        let invalid = (report.invalid > 0).then_some((EventCode::SensorNotFinite, report.invalid.into()));
-        invalid.or((report.clipped > 0).then_some((EventCode::SensorClipped, report.clipped.into())))
+        if report.invalid > 0 {
+            events.push(EventCode::SensorNotFinite, Detail::Count(report.invalid.into()));
+        }
+        if report.clipped > 0 {
+            events.push(EventCode::SensorClipped, Detail::Count(report.clipped.into()));
+        }
+        report.invalid == 0
     }
 
     /// Encoders and current sensors of the drives.

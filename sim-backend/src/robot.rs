@@ -12,7 +12,7 @@ use config::bus_fault::{BusFault, Way};
 use config::{Robot, Scene};
 use fieldbus::Injector;
 use messages::command::{LowerCommand, PushCommand};
-use messages::{BusFrames, EventCode, Power, SimState};
+use messages::{BusFrames, Detail, EventCode, EventQueue, Power, SimState};
 
 use crate::body::SimulatedBody;
 use crate::fall::FallWatch;
@@ -40,7 +40,7 @@ pub struct SimBackend {
     fall: FallWatch,
     instruments: Instruments,
     cycles: u64,
-    event: Option<(EventCode, u64)>,
+    events: EventQueue,
 }
 
 impl SimBackend {
@@ -71,16 +71,16 @@ impl SimBackend {
             body,
             instruments,
             cycles: 0,
-            event: None,
+            events: EventQueue::default(),
         };
         // The first cycle looks at readings of the robot at rest.
         sim.measure(0.0, &PlantInputs::default(), false);
         Ok(sim)
     }
 
-    /// Something worth a line in the log, since the last call.
-    pub fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        self.event.take()
+    /// Events that were not taken yet.
+    pub fn events(&mut self) -> &mut EventQueue {
+        &mut self.events
     }
 
     /// Brings about these faults of the bus from now on, instead of the scene's; times count from the start.
@@ -193,7 +193,7 @@ impl SimBackend {
     /// The stages of one cycle, in the order of the drawing above.
     fn advance(&mut self, frames: Option<&BusFrames>, powered: bool) {
         let dt = self.scene.cycle;
-        let (had_fallen, event_before) = (self.fall.has_fallen(), self.event);
+        let (had_fallen, events_before) = (self.fall.has_fallen(), self.events.len());
         let forces = self.loads.step(self.time(), dt, self.body.state());
         let mut inputs = PlantInputs { forces, switches: DriveSwitches::default() };
         if !self.fall.lies() {
@@ -210,7 +210,7 @@ impl SimBackend {
         }
         if had_fallen {
             // Sensors out of range and contacts that are not found say nothing new of a robot on its way down.
-            self.event = self.event.filter(|(code, _)| *code == EventCode::Diverged).or(event_before);
+            self.events.retain_from(events_before, |code| code == EventCode::Diverged);
         }
     }
 
@@ -226,7 +226,7 @@ impl SimBackend {
             self.scene.cycle,
         );
         if let Some(node) = stopped {
-            self.event.get_or_insert((EventCode::NodeStopped, node as u64));
+            self.events.push(EventCode::NodeStopped, Detail::Node(node));
         }
         switches
     }
@@ -234,14 +234,13 @@ impl SimBackend {
     /// Checks and tidies the state the steps have left; `lost`: the first that was not finite.
     fn end_cycle(&mut self, lost: Option<usize>) {
         if let Some(lost) = lost {
-            self.event = Some((EventCode::Diverged, lost as u64));
+            self.events.push(EventCode::Diverged, Detail::Number(lost as u64));
             self.come_to_rest();
         }
         self.body.normalize();
         self.joints.end_cycle(self.scene.cycle);
-        // A state that is NaN is the graver news, and so is what came first.
-        let (time, event) = ((self.cycles + 1) as f64 * self.scene.cycle, &mut self.event);
-        self.body.finish(time, |code, detail| _ = event.get_or_insert((code, detail)));
+        let time = (self.cycles + 1) as f64 * self.scene.cycle;
+        self.body.finish(time, &mut self.events);
     }
 
     /// The ground takes all motion.
@@ -260,17 +259,15 @@ impl SimBackend {
         let (goals, motions) = self.joints.goals_and_motions();
         self.body.joints(goals, motions);
         if self.fall.begins(self.body.state()) {
-            self.event = Some((EventCode::Fallen, 0));
+            self.events.push(EventCode::Fallen, Detail::Nothing);
         }
         if self.fall.lands(self.body.state()) {
             self.come_to_rest();
         }
         let time = self.time();
-        let event = self.instruments.measure(time, &mut self.body, &self.joints, &snapshot, inputs);
+        let Self { instruments, body, joints, events, .. } = self;
+        let valid = instruments.measure(time, body, joints, &snapshot, inputs, events);
         self.instruments.note(powered, self.fall.has_fallen());
-        if let Some(event) = event {
-            self.event.get_or_insert(event);
-        }
-        event.is_none_or(|(code, _)| code != EventCode::SensorNotFinite)
+        valid
     }
 }

@@ -89,7 +89,7 @@ fn cycles_of_the_simulated_robot() {
                         Some(&frames),
                         Some(&Power { toggle: tick, on: 1, arming: 1, ..Power::default() }),
                     );
-                    sim.take_event();
+                    sim.events().pop();
                 }
             });
             assert_eq!(counts, [0, 0], "type {depth}, {integrator:?}");

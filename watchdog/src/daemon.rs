@@ -10,7 +10,7 @@ use config::Timeline;
 use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, StopLine, Writer};
 use messages::topics::{POWER, WATCHDOG_RESET};
-use messages::{Command, EventCode, Header, Live, Power, Process, WatchdogReset};
+use messages::{Command, Detail, EventCode, Header, Live, Power, Process, WatchdogReset};
 use realtime::{Period, Schedule, clock};
 use std::error::Error;
 use std::path::Path;
@@ -42,12 +42,12 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         guard.timeline.skip_before(u64::MAX);
         guard.watchdog = guard.watchdog.restarted();
     }
-    d.report(Header::default(), EventCode::Started, 0);
+    d.report(Header::default(), EventCode::Started, Detail::Nothing);
     match d.mode {
         Mode::Lockstep => lockstep(&mut d, &mut guard)?,
         Mode::RealTime => real_time(&mut d, &mut guard),
     }
-    d.report(guard.now(), EventCode::Ended, 0);
+    d.report(guard.now(), EventCode::Ended, Detail::Nothing);
     Ok(())
 }
 
@@ -133,7 +133,7 @@ impl Guard {
             waiting[count] = Command::EmergencyStop;
             count += 1;
             if before != Supply::Off(EventCode::EmergencyStop) {
-                let detail = u64::from(asker.uid) << 32 | u64::from(asker.pid);
+                let detail = Detail::Caller { user: asker.uid, process: asker.pid };
                 d.report(self.now(), EventCode::EmergencyStop, detail);
             }
         }

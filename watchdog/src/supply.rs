@@ -14,7 +14,7 @@
 //! floods the line, gives no edge. The supply's relay is closed only while `toggle` moves, so a dead watchdog is off too;
 //! and it closes only once for each value of `arming`, so a stopped one that goes on leaves it open.
 
-use messages::{Command, EventCode, Power, Reason, Verdict, WatchdogReset};
+use messages::{Command, Detail, EventCode, Power, Reason, Verdict, WatchdogReset};
 
 /// Watchdog cycles without a command after which the next one counts as an edge.
 pub const PAUSE: u32 = 250;
@@ -34,10 +34,10 @@ pub enum Supply {
 }
 
 /// Event of a change of the supply: code and detail.
-pub fn supply_event(before: Supply, after: Supply) -> Option<(EventCode, u64)> {
+pub fn supply_event(before: Supply, after: Supply) -> Option<(EventCode, Detail)> {
     match (before, after) {
-        (Supply::On, Supply::Off(reason)) => Some((EventCode::PowerOff, reason as u64)),
-        (Supply::Ready | Supply::Off(_), Supply::On) => Some((EventCode::PowerOn, 0)),
+        (Supply::On, Supply::Off(reason)) => Some((EventCode::PowerOff, Detail::Cause(reason))),
+        (Supply::Ready | Supply::Off(_), Supply::On) => Some((EventCode::PowerOn, Detail::Nothing)),
         _ => None,
     }
 }

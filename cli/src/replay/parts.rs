@@ -112,7 +112,7 @@ impl Part for Planning {
             self.made.header = inputs.header;
             tape.compare(&PLAN, &*self.made)?;
         }
-        output.events.iter().try_for_each(|&(code, detail)| tape.event(inputs.header, code, detail))?;
+        output.events.drain().try_for_each(|(code, detail)| tape.event(inputs.header, code, detail))?;
         if commands.iter().any(|command| matches!(command, Command::WalkParameter(_))) {
             self.parameters.header = inputs.header;
             self.planner.report_parameters(&mut self.parameters);
@@ -162,7 +162,7 @@ impl Part for Stabilizing {
         let (targets, state) = self.controller.step(measured, self.plan.as_deref());
         tape.compare(&CONTROLLER_STATE, state)?;
         tape.compare(&JOINT_TARGETS, targets)?;
-        while let Some((code, detail)) = self.controller.take_event() {
+        for (code, detail) in self.controller.events().drain() {
             tape.event(header, code, detail)?;
         }
         Ok(())
@@ -203,7 +203,7 @@ impl Part for Driving {
         let (frames, reset) = self.joints.send(self.targets.as_deref(), cause);
         tape.compare(&FRAMES_OUT, frames)?;
         tape.compare(&WATCHDOG_RESET, reset)?;
-        while let Some((code, detail)) = self.joints.take_event() {
+        for (code, detail) in self.joints.events().drain() {
             tape.event(header, code, detail)?;
         }
         Ok(())

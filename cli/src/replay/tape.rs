@@ -8,7 +8,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use messages::cycle_inputs::{Used, inputs_of};
 use messages::topics::{ForType, with_type};
-use messages::{CommandTaken, CycleInputs, Event, EventCode, Header, Process, Record, TOPICS, Topic};
+use messages::{CommandTaken, CycleInputs, Detail, Event, EventCode, Header, Process, Record, TOPICS, Topic};
 use recording::{End, Log, cdr, channel_name, definition};
 
 use super::problem::Problem;
@@ -185,9 +185,9 @@ impl Tape {
     }
 
     /// The same for an event.
-    pub(super) fn event(&mut self, header: Header, code: EventCode, detail: u64) -> Result<(), Problem> {
+    pub(super) fn event(&mut self, header: Header, code: EventCode, detail: Detail) -> Result<(), Problem> {
         let at = self.queue_of("events/");
-        let made = Event { header, code: code as u64, detail };
+        let made = Event::new(header, code, detail);
         loop {
             let logged = self.needed(at)?;
             let theirs: Event = self.decode(at, &logged)?;

@@ -6,7 +6,7 @@ use config::Setup;
 use ipc::{Reader, Space};
 use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE, STATS_LOWLEVEL, TOPICS, Topic};
 use messages::{
-    CommandTaken, ControllerState, CycleStats, Event, EventCode, GaitState, Process, Record, Sensors,
+    CommandTaken, ControllerState, CycleStats, Detail, Event, EventCode, GaitState, Process, Record, Sensors,
     SimState, StartUp, Words,
 };
 use terminal::Console;
@@ -137,7 +137,7 @@ impl View {
         for (process, events) in &mut self.events {
             while let Some(e) = events.follow() {
                 let code = EventCode::from_number(e.code).unwrap_or(EventCode::None);
-                self.ending.tell(e.header.tick as f64 * self.cycle, code, e.detail);
+                self.ending.tell(e.header.tick as f64 * self.cycle, code, code.detail(e.detail));
                 if code == EventCode::LogDropped {
                     self.missing += e.detail;
                 }
@@ -147,7 +147,7 @@ impl View {
                 if self.ends && *process == Process::Watchdog && code == EventCode::PowerOff {
                     continue; // the joint loop ended first, as it should
                 }
-                self.late |= is_of_lateness(code, e.detail);
+                self.late |= is_of_lateness(code, code.detail(e.detail));
                 let sentence = self.words.sentence(e.code, e.detail);
                 if let Some(text) = self.tally.tell(*process, &sentence) {
                     let time = e.header.tick as f64 * self.cycle;
@@ -175,12 +175,13 @@ impl View {
 }
 
 /// Whether a supply that was cut, or a stop, has its cause in processes that came too late.
-fn is_of_lateness(code: EventCode, detail: u64) -> bool {
+fn is_of_lateness(code: EventCode, detail: Detail) -> bool {
     use EventCode::{PowerOff, ResetMissed, SafeStop, TargetsStale, TooManyOverruns, WatchdogSilent};
-    let cause = EventCode::from_number(detail).unwrap_or(EventCode::None);
-    match code {
-        PowerOff | SafeStop => matches!(cause, ResetMissed | TooManyOverruns | TargetsStale | WatchdogSilent),
-        WatchdogSilent => true,
+    match (code, detail) {
+        (PowerOff | SafeStop, Detail::Cause(cause)) => {
+            matches!(cause, ResetMissed | TooManyOverruns | TargetsStale | WatchdogSilent)
+        }
+        (WatchdogSilent, _) => true,
         _ => false,
     }
 }

@@ -156,11 +156,11 @@ fn what_cannot_be_looked_at_is_held_and_said() {
         let q = look(&mut gaze, &torso, 3.0, [0.0, 0.0]);
         let held = if joint == pan { q[0] } else { q[1] };
         assert!((held - ranges[joint].range[1]).abs() < 1e-3, "{q:?}");
-        assert_eq!(gaze.held, Some(joint as u64));
-        assert_eq!(gaze.take_event(), Some((EventCode::GazeHeld, joint as u64)), "said once");
-        assert!(matches!(gaze.take_event(), Some((EventCode::Saccade, _))));
+        assert_eq!(gaze.held, Some(joint));
+        assert_eq!(gaze.events().pop(), Some((EventCode::GazeHeld, Detail::Joint(joint))), "said once");
+        assert!(matches!(gaze.events().pop(), Some((EventCode::Saccade, _))));
         look(&mut gaze, &torso, 0.5, q);
-        assert_eq!(gaze.take_event(), None);
+        assert_eq!(gaze.events().pop(), None);
     }
     // On the axis of pan, in the cameras, nearer than allowed: the head stays where it is.
     let centre = gaze(|_| ()).centre;
@@ -168,13 +168,13 @@ fn what_cannot_be_looked_at_is_held_and_said() {
         let mut gaze = gaze(|_| ());
         assert!(fixate(&mut gaze, (centre + Vector3::from(r)).into()));
         assert_eq!(look(&mut gaze, &torso, 0.5, [0.3, -0.1]), [0.3, -0.1], "{r:?}");
-        assert_eq!(gaze.take_event(), Some((EventCode::GazeHeld, gaze.joints as u64)));
+        assert_eq!(gaze.events().pop(), Some((EventCode::GazeHeld, Detail::Joint(gaze.joints))));
     }
     // And resumed when the point comes within reach.
     let mut gaze = gaze(|_| ());
     fixate(&mut gaze, [-2.0, 0.3, 0.5]);
     look(&mut gaze, &torso, 3.0, [0.0, 0.0]);
-    gaze.take_event();
+    gaze.events().pop();
     let turned = Rotation3::from_axis_angle(&Vector3::z_axis(), 2.5);
     look(&mut gaze, &TorsoMotion { rotation: *turned.matrix(), ..torso }, 2.0, [1.88, 0.0]);
     assert_eq!(gaze.held, None);

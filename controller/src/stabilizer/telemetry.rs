@@ -1,7 +1,8 @@
 //! Records and events that the controller publishes: all of them are written here.
 
 use messages::{
-    ControllerState, EventCode, GaitState, JointMode, JointTargets, Parameters, Plan, Sensors, StartUp,
+    ControlLimit, ControllerState, Detail, EventCode, EventQueue, GaitState, JointMode, JointTargets,
+    Parameters, Plan, Sensors, StartUp,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -23,8 +24,7 @@ const QUIET: f64 = 1.0;
 pub(super) struct Telemetry {
     pub(super) targets: JointTargets,
     pub(super) state: ControllerState,
-    /// Events that were not fetched yet, the first one first.
-    events: [Option<(EventCode, u64)>; 4],
+    pub(super) events: EventQueue,
     /// Ticks at which each kind of limit was met last.
     met: [Option<u64>; 3],
 }
@@ -55,30 +55,17 @@ pub(super) struct CycleOutcome<'a> {
 }
 
 impl Telemetry {
-    /// Keeps an event until it is fetched; the newest ones are dropped if nobody fetches them.
-    pub(super) fn note(&mut self, event: Option<(EventCode, u64)>) {
-        if let Some(free) = self.events.iter_mut().find(|e| e.is_none()) {
-            *free = event;
-        }
-    }
-
-    /// The oldest event.
-    pub(super) fn take_event(&mut self) -> Option<(EventCode, u64)> {
-        self.events.rotate_left(1);
-        self.events[self.events.len() - 1].take()
-    }
-
-    /// Counts limits. An event where a nearly singular task begins to be damped (1), a modification (2) or a joint (3) meets
-    /// its limit, each once until it was quiet for [`QUIET`].
+    /// Counts limits. An event where a nearly singular task begins to be damped, a modification or a joint meets its limit,
+    /// each once until it was quiet for [`QUIET`].
     pub(super) fn note_limits(&mut self, limits: &MetLimits, clock: &CycleClock) {
         self.state.limited += u64::from(limits.damped) + u64::from(limits.modification) + limits.joints;
         let met = [limits.damped, limits.modification, limits.joints > 0];
         let tick = clock.tick();
-        for what in (1..=3).filter(|what| met[*what - 1]) {
-            let last = self.met[what - 1].replace(tick);
+        for (i, limit) in ControlLimit::ALL.into_iter().enumerate().filter(|(i, _)| met[*i]) {
+            let last = self.met[i].replace(tick);
             let since = |last| tick.saturating_sub(last) as f64 * clock.dt;
             if last.is_none_or(|last| since(last) > QUIET) {
-                self.note(Some((EventCode::ControlLimited, what as u64)));
+                self.events.push(EventCode::ControlLimited, Detail::Limit(limit));
             }
         }
     }

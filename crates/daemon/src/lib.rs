@@ -12,7 +12,7 @@ use config::{BusAddress, Setup};
 
 use ipc::{Bell, IpcError, Mode, Run, Space, Waiter, Woken, Writer};
 use messages::topics::{Process, Topic};
-use messages::{BusCounters, CommandSource, CycleStats, Event, EventCode, Header};
+use messages::{BusCounters, CommandSource, CycleStats, Detail, Event, EventCode, Header};
 use realtime::{CycleMeter, Granted, Schedule, Stop, clock, prepare_thread};
 use std::error::Error;
 use std::path::Path;
@@ -193,7 +193,7 @@ impl Daemon {
     }
 
     /// Writes an event. With `Started` everything is built: from here on the process has its real-time priority.
-    pub fn report(&mut self, header: Header, code: EventCode, detail: u64) {
+    pub fn report(&mut self, header: Header, code: EventCode, detail: Detail) {
         if code == EventCode::Started {
             // Which configuration it has, before anything moves: the supervisor compares.
             let stats = self.meter.stats();
@@ -201,7 +201,7 @@ impl Daemon {
             self.stats.write(stats);
             self.granted.engage();
         }
-        let event = Event { header, code: code as u64, detail };
+        let event = Event::new(header, code, detail);
         self.events.write(&event);
         self.log.keep(self.topic_of_events, &event);
     }

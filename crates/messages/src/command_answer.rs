@@ -3,7 +3,7 @@
 //! A [`Verdict`] is made in a control cycle, so it is plain numbers; its text is made later, by a thread that may
 //! allocate. The numbers of the reasons travel in the protocol (`docs/protocol.md`) and are never given twice.
 
-use crate::{Command, EventCode, Live};
+use crate::{Command, Detail, EventCode, Live};
 
 /// Outcome of a command.
 pub type Verdict = Result<(), Reason>;
@@ -54,8 +54,8 @@ pub enum Reason {
     Event {
         /// Its code.
         code: EventCode,
-        /// See the code.
-        detail: u64,
+        /// Its subject.
+        detail: Detail,
     },
 }
 
@@ -133,8 +133,8 @@ fn limit(command: &Command, field: usize, low: f64, high: f64) -> String {
     }
 }
 
-fn event(code: EventCode, detail: u64) -> String {
-    let mm = detail as f64 * 1e-3;
+fn event(code: EventCode, detail: Detail) -> String {
+    let mm = detail.pack() as f64 * 1e-3;
     match code {
         EventCode::ObstacleTooHigh => format!("{mm} m is higher than the robot steps"),
         EventCode::ObstacleTooLong => format!("a step of {mm} m over it is longer than the robot's"),
@@ -145,7 +145,7 @@ fn event(code: EventCode, detail: u64) -> String {
         EventCode::SafeStop => "its joints were stopped: secure the robot, then system/emergency_stop, \
                                 system/reset, system/enable, walk/stand"
             .into(),
-        code => crate::Words::default().sentence(code as u64, detail),
+        code => crate::Words::default().sentence(code as u64, detail.pack()),
     }
 }
 

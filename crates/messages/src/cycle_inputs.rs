@@ -122,7 +122,7 @@ impl CommandTaken {
                 taken.limits = [0.0, most];
                 (load as u64, 0)
             }
-            Reason::Event { code, detail } => (code as u64, detail),
+            Reason::Event { code, detail } => (code as u64, detail.pack()),
             Reason::LeaseLost | Reason::NotStanding | Reason::NotNow => (0, 0),
         };
         taken

@@ -1,9 +1,10 @@
 //! `events/PROCESS`: what happened, for the log.
 
+use crate::event_detail::{Detail, DetailKind};
 use crate::{Header, record};
 
 macro_rules! events {
-    ($($(#[$doc:meta])* $name:ident = $number:literal, $what:literal, $detail:literal, $advice:literal;)*) => {
+    ($($(#[$doc:meta])* $name:ident = $number:literal, $kind:ident, $what:literal, $detail:literal, $advice:literal;)*) => {
         /// Kind of event. Numbers are part of the log format: append only.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(u64)]
@@ -13,6 +14,11 @@ macro_rules! events {
             /// All codes, in order of their numbers.
             pub const ALL: [Self; [$($number),*].len()] = [$(Self::$name),*];
 
+            /// Kind of its detail.
+            pub(crate) const fn kind(self) -> DetailKind {
+                match self { $(Self::$name => DetailKind::$kind,)* }
+            }
+
             /// Words for people: what happened, what the detail says, what to do. See [`Words`](crate::event_words::Words).
             pub(crate) const fn words(self) -> [&'static str; 3] {
                 match self { $(Self::$name => [$what, $detail, $advice],)* }
@@ -21,226 +27,205 @@ macro_rules! events {
     };
 }
 
-// Code and number, what happened, what its detail says, what to do. Words in braces are those of `event_words.rs`.
+// Code and number, kind of its detail (`event_detail.rs`), what happened, what its detail says, what to do. Words in braces
+// are those of `event_words.rs`.
 events! {
     /// Nothing.
-    None = 0, "nothing", "", "";
+    None = 0, Nothing, "nothing", "", "";
     /// A process armed and began its cycles; detail: 0.
-    Started = 1, "ready", "", "";
+    Started = 1, Nothing, "ready", "", "";
     /// A process ended as asked.
-    Ended = 2, "ended as asked", "", "";
+    Ended = 2, Nothing, "ended as asked", "", "";
     /// Motor supply switched on.
-    PowerOn = 3, "motor supply on", "", "";
+    PowerOn = 3, Nothing, "motor supply on", "", "";
     /// Motor supply switched off; detail: the code of the reason.
-    PowerOff = 4, "motor supply off", "{event}",
+    PowerOff = 4, Cause, "motor supply off", "{event}",
         "system/reset, then system/enable switch it on again";
     /// The joint loop did not reset the watchdog in time; detail: cycles missed.
-    ResetMissed = 5, "the joint loop was too late for the watchdog", "{n} cycles",
+    ResetMissed = 5, Cycles, "the joint loop was too late for the watchdog", "{n} cycles",
         "`gangwerk doctor` says what keeps this machine from real time; `--lockstep` needs none";
     /// Joint targets are too old; detail: age in cycles.
-    TargetsStale = 6, "joint targets are too old", "{n} cycles",
+    TargetsStale = 6, Cycles, "joint targets are too old", "{n} cycles",
         "the stabilizer is late or gone";
     /// A target was not finite; detail: joint index.
-    TargetNotFinite = 7, "a joint target is not a number; the last good one is kept", "{joint}",
+    TargetNotFinite = 7, Joint, "a joint target is not a number; the last good one is kept", "{joint}",
         "`gangwerk replay` of the log shows where it comes from";
     /// A target left its range, or asked for more speed or acceleration than the joint has, and was held back; detail: joint
     /// index.
-    TargetLimited = 8, "a joint target was held back to what the joint may do", "{joint}", "";
+    TargetLimited = 8, Joint, "a joint target was held back to what the joint may do", "{joint}", "";
     /// A joint did not follow its target; detail: joint index.
-    FollowingError = 9, "a joint did not follow its target", "{joint}",
+    FollowingError = 9, Joint, "a joint did not follow its target", "{joint}",
         "look for something in its way, a weak drive, or too fast a walk";
     /// Bus frames are missing; detail: age in cycles.
-    BusSilent = 10, "nothing comes from the field bus", "for {n} cycles",
+    BusSilent = 10, Cycles, "nothing comes from the field bus", "for {n} cycles",
         "check cables and the supply of the drives";
     /// A cycle overran; detail: periods skipped.
-    Overrun = 11, "a cycle ended too late", "{n} periods skipped",
+    Overrun = 11, Count, "a cycle ended too late", "{n} periods skipped",
         "`gangwerk doctor` says what keeps this machine from real time; `--lockstep` needs none";
     /// Too many overruns: controlled stop.
-    TooManyOverruns = 12, "too many late cycles in a short time", "",
+    TooManyOverruns = 12, Nothing, "too many late cycles in a short time", "",
         "`gangwerk doctor` says what keeps this machine from real time; `--lockstep` needs none";
     /// The planner fell silent: the running plan is walked to its end.
-    PlannerSilent = 13, "the planner is silent; its last plan is walked to its end", "", "";
+    PlannerSilent = 13, Nothing, "the planner is silent; its last plan is walked to its end", "", "";
     /// A plan was refused; detail: the plan's id.
-    PlanRefused = 14, "a plan was refused", "plan {n}", "the one before it goes on";
+    PlanRefused = 14, Plan, "a plan was refused", "plan {n}", "the one before it goes on";
     /// A command was refused; detail: its message id.
-    CommandRefused = 15, "a command was refused", "", "its sender was told why; `gangwerk log show` names both";
+    CommandRefused = 15, Message, "a command was refused", "", "its sender was told why; `gangwerk log show` names both";
     /// The robot has fallen.
-    Fallen = 16, "the robot has fallen", "",
+    Fallen = 16, Nothing, "the robot has fallen", "",
         "what led to it stands above; `gangwerk plot` draws it";
     /// Both feet are off the ground while they should carry.
-    Lifted = 17, "both feet are off the ground while they should carry", "",
+    Lifted = 17, Nothing, "both feet are off the ground while they should carry", "",
         "put the robot down; then system/reset, system/enable";
     /// Somebody asked for the emergency stop on its own line; detail: user id << 32 | process id, zeros if unknown.
-    EmergencyStop = 18, "emergency stop", "{who}",
+    EmergencyStop = 18, Caller, "emergency stop", "{who}",
         "make the robot safe; then system/reset, system/enable";
     /// The watchdog missed cycles of its own, for so long that the supply's relay fell.
-    WatchdogSilent = 19, "the watchdog itself was too late, and the relay of the supply fell", "",
+    WatchdogSilent = 19, Nothing, "the watchdog itself was too late, and the relay of the supply fell", "",
         "`gangwerk doctor` says what keeps this machine from real time; `--lockstep` needs none";
     /// Inverse kinematics or force control met a singularity or limit; detail: which.
-    ControlLimited = 20, "the stabilizer meets a limit", "{limit}",
+    ControlLimited = 20, Limit, "the stabilizer meets a limit", "{limit}",
         "once in a while is normal; walk slower if it goes on";
     /// A controlled stop began; detail: the code of the reason.
-    SafeStop = 21, "controlled stop", "{event}",
+    SafeStop = 21, Cause, "controlled stop", "{event}",
         "secure the robot; then system/emergency_stop, system/reset, system/enable";
     /// The controller switched to a plan; detail: its id.
-    PlanActive = 22, "a plan begins", "plan {n}", "";
+    PlanActive = 22, Plan, "a plan begins", "plan {n}", "";
     /// Records were overwritten before the logger read them; detail: how many.
-    LogDropped = 23, "records are missing from the log", "{n}",
+    LogDropped = 23, Count, "records are missing from the log", "{n}",
         "its disk is too slow: another one with --out";
     /// Messages of the command plane were lost by clients that did not keep up; detail: how many since the last time.
-    MessagesLost = 24, "clients of the broker did not keep up", "{n} messages lost", "";
+    MessagesLost = 24, Count, "clients of the broker did not keep up", "{n} messages lost", "";
     /// A sensor value is not finite; the last good ones are used, then a stop.
-    SensorNotFinite = 25, "a sensor reading is not a number; the last good ones are used, then a stop", "",
+    SensorNotFinite = 25, Count, "a sensor reading is not a number; the last good ones are used, then a stop", "",
         "check the sensors and their cables";
     /// A parameter got another value; detail: its number.
-    ParameterSet = 26, "a parameter was set", "number {n} of its process",
+    ParameterSet = 26, Number, "a parameter was set", "number {n} of its process",
         "`gangwerk param list` shows all";
     /// A simulated drive left what its model holds for; detail: its number. Its gear and friction stay as they were.
-    DriveFault = 27, "a simulated drive left what its model holds for", "drive {n}",
+    DriveFault = 27, Number, "a simulated drive left what its model holds for", "drive {n}",
         "gear and friction stay as they were";
     /// Contact forces of the simulated soles were not found to their tolerance; detail: sweeps.
-    ContactNotConverged = 28, "contact forces of the simulated soles were not found to their tolerance", "{n} sweeps",
+    ContactNotConverged = 28, Count, "contact forces of the simulated soles were not found to their tolerance", "{n} sweeps",
         "more substeps in the scene";
     /// An object of the scene cannot do what its schedule says, because the robot touches it; detail: its number.
-    ObjectHeld = 29, "an object of the scene waits, because the robot touches it", "object {n}", "";
+    ObjectHeld = 29, Number, "an object of the scene waits, because the robot touches it", "object {n}", "";
     /// An object of the scene goes on with its schedule; detail: its number.
-    ObjectResumed = 30, "an object of the scene goes on with its schedule", "object {n}", "";
+    ObjectResumed = 30, Number, "an object of the scene goes on with its schedule", "object {n}", "";
     /// The simulation lost its numbers: a state is not finite. The robot stays where it was last; detail: the state.
-    Diverged = 31, "the simulation lost its numbers; the robot stays where it was last", "state {n}",
+    Diverged = 31, Number, "the simulation lost its numbers; the robot stays where it was last", "state {n}",
         "more substeps, or another integrator in the scene";
     /// A simulated sensor left its range; detail: how many numbers.
-    SensorClipped = 32, "a simulated sensor left its range", "{n} numbers", "";
+    SensorClipped = 32, Count, "a simulated sensor left its range", "{n} numbers", "";
     /// The adaptive integrator met its bounds, as at dry friction; detail: the state that would not settle. The rest of the
     /// cycle was done in one semi-implicit step.
-    IntegratorGaveUp = 33, "the adaptive integrator met its bounds; the cycle was done in one semi-implicit step", "state {n}", "";
+    IntegratorGaveUp = 33, Number, "the adaptive integrator met its bounds; the cycle was done in one semi-implicit step", "state {n}", "";
     /// A command to the camera head was refused: the robot has none, or the angles or the point are none it can take;
     /// detail: the message's id.
-    HeadRefused = 34, "a command to the camera head was refused", "{head}",
+    HeadRefused = 34, Message, "a command to the camera head was refused", "{head}",
         "its sender was told why";
     /// The point to look at is out of reach: the head holds as near as it gets; detail: the joint at the end of its
     /// range, or the number of joints if the point is too near to the cameras.
-    GazeHeld = 35, "the point to look at is out of reach; the head holds as near as it gets", "{joint}", "";
+    GazeHeld = 35, Joint, "the point to look at is out of reach; the head holds as near as it gets", "{joint}", "";
     /// The point to look at can be looked at again.
-    GazeResumed = 36, "the point to look at is in reach again", "", "";
+    GazeResumed = 36, Nothing, "the point to look at is in reach again", "", "";
     /// The head jumps to where it is to look; detail: how long it will take \[us\].
-    Saccade = 37, "the head jumps to where it is to look", "takes {n} us", "";
+    Saccade = 37, Microseconds, "the head jumps to where it is to look", "takes {n} us", "";
     /// No plan from the next step on can be walked as commanded; the active one goes on to its end; detail: its id.
-    PlanKept = 38, "what was commanded cannot be walked from the next step on; the plan goes on to its end", "plan {n}",
+    PlanKept = 38, Plan, "what was commanded cannot be walked from the next step on; the plan goes on to its end", "plan {n}",
         "command less";
     /// Something in the way is higher than the robot steps: it stops before it; detail: height \[mm\].
-    ObstacleTooHigh = 39, "something in the way is higher than the robot steps; it stops before it", "{n} mm",
+    ObstacleTooHigh = 39, Millimetres, "something in the way is higher than the robot steps; it stops before it", "{n} mm",
         "lead it around";
     /// Something in the way is longer than a step: the robot stops before it; detail: length \[mm\].
-    ObstacleTooLong = 40, "something in the way is longer than a step; the robot stops before it", "{n} mm",
+    ObstacleTooLong = 40, Millimetres, "something in the way is longer than a step; the robot stops before it", "{n} mm",
         "lead it around";
     /// A step would end on something or touch it: the robot stops before it; detail: its height, or how far it would go \[mm\].
-    NoFoothold = 41, "a step would end on something or touch it; the robot stops before it", "{n} mm",
+    NoFoothold = 41, Millimetres, "a step would end on something or touch it; the robot stops before it", "{n} mm",
         "lead it around";
     /// A swing foot met the ground early; the next step begins at once. Detail: the plan's id.
-    EarlyContact = 42, "a swing foot met the ground early; the next step begins at once", "plan {n}", "";
+    EarlyContact = 42, Plan, "a swing foot met the ground early; the next step begins at once", "plan {n}", "";
     /// Frames are missing in a cycle; told at the first, second, fourth, eighth ... time; detail: the node.
-    FramesLost = 43, "frames are missing on the field bus", "{node}", "check its cable";
+    FramesLost = 43, Node, "frames are missing on the field bus", "{node}", "check its cable";
     /// A node's frames are missing for so long that its joints are no longer carried on; detail: 1000 times the node plus
     /// the cycles.
-    NodeHeld = 44, "frames are missing for so long that joints are no longer carried on", "{node}, {cycles} cycles",
+    NodeHeld = 44, NodeCycles, "frames are missing for so long that joints are no longer carried on", "{node}, {cycles} cycles",
         "check its cable";
     /// The node is heard again; detail: 1000 times the node plus the cycles it was missing.
-    NodeBack = 45, "a local controller is heard again", "{node}, after {cycles} cycles", "";
+    NodeBack = 45, NodeCycles, "a local controller is heard again", "{node}, after {cycles} cycles", "";
     /// A node's frames are missing for too long; detail: 1000 times the node plus the cycles.
-    NodeSilent = 46, "a local controller is silent for too long", "{node}, {cycles} cycles",
+    NodeSilent = 46, NodeCycles, "a local controller is silent for too long", "{node}, {cycles} cycles",
         "check its cable and supply";
     /// A frame was refused: late, sent twice, of wrong length, unknown; or a reading that cannot be. Told at the first,
-    /// second, fourth ... time; detail: a [`Refused`].
-    FrameRefused = 47, "a frame or a reading was refused", "{refused}", "";
+    /// second, fourth ... time; detail: a [`RefusedFrame`](crate::RefusedFrame).
+    FrameRefused = 47, Frame, "a frame or a reading was refused", "{refused}", "";
     /// Errors on a line: its controller warns; detail: the line.
-    BusWarning = 48, "errors on a line of the field bus", "line {n}",
+    BusWarning = 48, Number, "errors on a line of the field bus", "line {n}",
         "check its cable and termination";
     /// More errors on a line: its controller no longer takes part in the handling of errors; detail: the line.
-    BusPassive = 49, "many errors on a line of the field bus; its controller no longer signals them", "line {n}",
+    BusPassive = 49, Number, "many errors on a line of the field bus; its controller no longer signals them", "line {n}",
         "check its cable and termination";
     /// The controller of a line left the bus; detail: the line.
-    BusOff = 50, "the controller of a line left the field bus", "line {n}",
+    BusOff = 50, Number, "the controller of a line left the field bus", "line {n}",
         "look for a short circuit";
     /// The controller of a line takes part again; detail: the line.
-    BusActive = 51, "the controller of a line takes part again", "line {n}", "";
+    BusActive = 51, Number, "the controller of a line takes part again", "line {n}", "";
     /// A local controller heard no targets for so long that its drives have a fault and bring their joints to rest by
     /// themselves; detail: the node.
-    NodeStopped = 52, "a local controller heard no targets; its drives bring their joints to rest by themselves", "{node}",
+    NodeStopped = 52, Node, "a local controller heard no targets; its drives bring their joints to rest by themselves", "{node}",
         "system/reset after the bus is back";
     /// The ring of the field bus is open; detail: address of the station before the gap << 16 | of the one behind it; 0: the
     /// master.
-    RingBroken = 53, "the ring of the field bus is open", "{stations}",
+    RingBroken = 53, Stations, "the ring of the field bus is open", "{stations}",
         "the bus goes on over both ends; mend it before a second cable goes";
     /// The ring of the field bus is closed again.
-    RingClosed = 54, "the ring of the field bus is closed again", "", "";
+    RingClosed = 54, Nothing, "the ring of the field bus is closed again", "", "";
     /// A drive has a fault of its own: controlled stop, if none was before; detail: joint index + 65536 times its error code.
-    DriveTripped = 55, "a drive has a fault", "{drive}",
+    DriveTripped = 55, Drive, "a drive has a fault", "{drive}",
         "mend its cause; then system/reset, system/enable";
     /// A drive was not switched on, or is off while the supply is on: nothing is followed; detail: joint index.
-    DriveNotEnabled = 56, "a drive is off while the supply is on; nothing is followed", "{joint}",
+    DriveNotEnabled = 56, Joint, "a drive is off while the supply is on; nothing is followed", "{joint}",
         "system/reset, then system/enable";
     /// A joint does not know its angle, so no drive is switched on; detail: joint index.
-    NotHomed = 57, "a joint does not know its angle, so no drive is switched on", "{joint}",
+    NotHomed = 57, Joint, "a joint does not know its angle, so no drive is switched on", "{joint}",
         "gangwerk topic pub joint/home";
     /// All joints know their angles; detail: cycles it took.
-    Homed = 58, "all joints know their angles", "after {n} cycles", "";
+    Homed = 58, Cycles, "all joints know their angles", "after {n} cycles", "";
     /// The force sensors read zero from now on; detail: what was taken away at most \[N\].
-    ForceZeroed = 59, "the force sensors read zero from now on", "{n} N taken away at most", "";
+    ForceZeroed = 59, Newtons, "the force sensors read zero from now on", "{n} N taken away at most", "";
     /// The force sensors cannot be set to zero: the robot does not hang still with its drives on; detail: load on its
     /// feet \[N\].
-    ZeroRefused = 60, "the force sensors cannot be set to zero, the robot does not hang still with its drives on", "{n} N on its feet",
+    ZeroRefused = 60, Newtons, "the force sensors cannot be set to zero, the robot does not hang still with its drives on", "{n} N on its feet",
         "lift it; then joint/zero_force";
     /// A walking command was refused: the robot does not stand on its feet yet; detail: its message id.
-    NotStanding = 61, "a walking command was refused, the robot does not stand on its feet yet", "{walk}",
+    NotStanding = 61, Message, "a walking command was refused, the robot does not stand on its feet yet", "{walk}",
         "system/reset, system/enable, then walk/stand";
     /// A drive that a standing robot can do without has a fault: its joint is held, the robot goes on; detail as of
     /// [`Self::DriveTripped`].
-    DriveHeld = 62, "a drive that a standing robot can do without has a fault; its joint is held", "{drive}",
+    DriveHeld = 62, Drive, "a drive that a standing robot can do without has a fault; its joint is held", "{drive}",
         "mend its cause at the next stand";
     /// Drives fell out of the operation of the field bus, after a pause of lowlevel: all are started again. That they are
     /// back is told by [`Self::NodeBack`].
-    BusRestart = 63, "drives fell out of the operation of the field bus; all are started again", "", "";
+    BusRestart = 63, Nothing, "drives fell out of the operation of the field bus; all are started again", "", "";
     /// The supply was measured off while it was to be on: its relay fell, or a fuse or a switch is open.
-    SupplyLost = 64, "the supply is off while it was to be on", "",
+    SupplyLost = 64, Nothing, "the supply is off while it was to be on", "",
         "look for an open relay, fuse or switch; then system/reset, system/enable";
     /// The walk's operator lost the command lease, by death, silence or a closed link: the robot stops. Detail: the
     /// number of the grant.
-    LeaseLost = 65, "who commanded the walk is gone; the robot stops", "grant {n}", "";
-}
-
-/// Reason for refusing a frame or a reading, in the detail of [`EventCode::FrameRefused`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refused {
-    /// Of an earlier cycle.
-    Late = 1,
-    /// Came a second time.
-    Twice = 2,
-    /// Its length is not that of its message.
-    Length = 3,
-    /// Nobody knows its identifier.
-    Unknown = 4,
-    /// Its reading is further from the last one than can be.
-    Jump = 5,
-}
-
-impl Refused {
-    /// The same in words, of a number from a record.
-    pub(crate) fn text(n: u64) -> &'static str {
-        match n {
-            1 => "of an earlier cycle",
-            2 => "came a second time",
-            3 => "its length is not that of its message",
-            4 => "nobody knows its identifier",
-            5 => "its reading is further from the last one than can be",
-            _ => "for a reason unknown",
-        }
-    }
+    LeaseLost = 65, Number, "who commanded the walk is gone; the robot stops", "grant {n}", "";
+    /// More happened in a process than its queue of events had room for; detail: how many are missing.
+    EventsLost = 66, Count, "more happened at once than is reported", "{n} events are missing", "";
 }
 
 impl EventCode {
     /// The code of a number from a record.
     pub fn from_number(n: u64) -> Option<Self> {
         Self::ALL.get(n as usize).copied()
+    }
+
+    /// The detail of an event of this kind, from the number in its record.
+    pub fn detail(self, n: u64) -> Detail {
+        Detail::unpack(self.kind(), n)
     }
 }
 
@@ -251,7 +236,14 @@ record! {
         header: Header,
         /// \[1\] An [`EventCode`].
         code: u64,
-        /// \[1\] See the code.
+        /// \[1\] Packed [`Detail`].
         detail: u64,
+    }
+}
+
+impl Event {
+    /// The record of an event.
+    pub fn new(header: Header, code: EventCode, detail: Detail) -> Self {
+        Self { header, code: code as u64, detail: detail.pack() }
     }
 }

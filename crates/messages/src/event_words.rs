@@ -2,7 +2,8 @@
 
 use crate::command::Domain;
 use crate::command_text::{COMMANDS, CommandInfo};
-use crate::event::{EventCode, Refused};
+use crate::event::EventCode;
+use crate::event_detail::Detail;
 
 /// Names of what the details of events count: those of the robot, as far as they are known.
 #[derive(Clone, Debug, Default)]
@@ -22,7 +23,8 @@ impl Words {
             return format!("event {code} with detail {detail}, which this version does not know");
         };
         let [what, says, advice] = event.words();
-        let inner = says.contains("{event}").then(|| EventCode::from_number(detail)).flatten();
+        let detail = event.detail(detail);
+        let inner = if let Detail::Cause(inner) = detail { Some(inner) } else { None };
         let unknown = inner == Some(EventCode::None);
         // What caused it says first what to do, and perhaps all of it.
         let first = inner.map_or("", |inner| inner.words()[2]);
@@ -38,44 +40,43 @@ impl Words {
         text
     }
 
-    /// Meaning of an event's detail, by the words in braces.
-    fn detail(&self, says: &str, n: u64) -> String {
-        let named = |names: &[String], kind: &str, i: u64| {
-            names.get(i as usize).cloned().unwrap_or_else(|| format!("{kind} {i}"))
+    /// What a detail says, by the words in braces.
+    fn detail(&self, says: &str, detail: Detail) -> String {
+        let named = |names: &[String], kind: &str, i: usize| {
+            names.get(i).cloned().unwrap_or_else(|| format!("{kind} {i}"))
         };
         let joint = |i| named(&self.joints, "joint", i);
         let node = |i| named(&self.nodes, "node", i);
-        let word = says.split_once('{').and_then(|(_, rest)| Some(rest.split_once('}')?.0)).unwrap_or("");
-        let value = match word {
-            "event" => EventCode::from_number(n).map_or("for a reason unknown", |e| e.words()[0]).to_owned(),
-            "joint" => joint(n),
-            "walk" => command(Domain::Walk, n),
-            "head" => command(Domain::Head, n),
-            "who" => format!("asked for by pid {} of user {}", n as u32, n >> 32),
-            "limit" => match n {
-                1 => "a task is nearly singular".into(),
-                2 => "a modification of the feet".into(),
-                3 => "speed, acceleration or range of a joint".into(),
-                n => format!("limit {n}"),
-            },
-            // A node alone, or 1000 times the node plus cycles.
-            "node" if says.contains("{cycles}") => {
-                return says.replace("{node}", &node(n / 1000)).replace("{cycles}", &(n % 1000).to_string());
+        let value = match detail {
+            Detail::NodeCycles(i, cycles) => {
+                return says.replace("{node}", &node(i)).replace("{cycles}", &cycles.to_string());
             }
-            "node" => node(n),
-            "refused" => Refused::text(n).into(),
-            "stations" => {
+            Detail::Cause(event) => event.words()[0].to_owned(),
+            Detail::Joint(i) => joint(i),
+            Detail::Node(i) => node(i),
+            Detail::Message(id) if says == "{walk}" => command(Domain::Walk, id),
+            Detail::Message(id) => command(Domain::Head, id),
+            Detail::Caller { user, process } => format!("asked for by pid {process} of user {user}"),
+            Detail::Limit(limit) => limit.text().into(),
+            Detail::Frame(why) => why.text().into(),
+            Detail::Stations(before, behind) => {
                 let name = |i| if i == 0 { "the master".to_owned() } else { format!("station {i}") };
-                format!("between {} and {}", name(n >> 16), name(n & 0xFFFF))
+                format!("between {} and {}", name(before), name(behind))
             }
-            "drive" => {
-                let error = (n >> 16) as u16;
+            Detail::Drive { joint: j, error } => {
                 let text = self.fault.map_or("", |fault| fault(error));
-                format!("{}: error {error:#06x} {text}", joint(n & 0xFFFF)).trim_end().to_owned()
+                format!("{}: error {error:#06x} {text}", joint(j)).trim_end().to_owned()
             }
-            _ => n.to_string(),
+            // A number that its kind does not have: of a later version.
+            Detail::Number(n) if !says.contains("{n}") => {
+                format!("for reason {n}, which this version does not know")
+            }
+            other => other.pack().to_string(),
         };
-        says.replace(&format!("{{{word}}}"), &value)
+        match (says.find('{'), says.find('}')) {
+            (Some(begin), Some(end)) => format!("{}{value}{}", &says[..begin], &says[end + 1..]),
+            _ => says.to_owned(),
+        }
     }
 }
 

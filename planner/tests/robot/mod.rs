@@ -5,7 +5,7 @@ pub mod checks;
 pub mod feasible;
 
 use config::gait::{CogMethod, Control, Gait, Limits, Model, Obstacles, Step};
-use messages::{Command, ControllerState, EventCode, Plan, Record};
+use messages::{Command, ControllerState, Detail, EventCode, Plan, Record};
 use planner::Planner;
 use realtime::clock;
 
@@ -127,7 +127,7 @@ pub struct Robot {
     pub active: Box<Plan>,
     pub next: Option<Box<Plan>>,
     pub plans: Vec<Box<Plan>>,
-    pub events: Vec<(u64, EventCode, u64)>,
+    pub events: Vec<(u64, EventCode, Detail)>,
     /// \[m\] Height over the planning frame below which a sole touches something; it goes no deeper.
     pub ground: f64,
 }
@@ -164,7 +164,7 @@ impl Robot {
         let out = self.planner.step(self.tick, self.cycle, Some(&self.state), commands);
         self.took = (clock::now() - start) as f64 * 1e-3;
         let tick = self.tick;
-        self.events.extend(out.events.iter().map(|e| (tick, e.0, e.1)));
+        self.events.extend(out.events.drain().map(|(code, detail)| (tick, code, detail)));
         if let Some(plan) = out.plan {
             assert!(plan.start_tick > tick, "a plan from the past");
             self.next = Some(Box::new(*plan));

@@ -47,7 +47,7 @@ impl Held {
     pub(super) fn first_event(&mut self, cycles: usize) -> Option<EventCode> {
         for _ in 0..cycles {
             self.step();
-            if let Some((event, _)) = self.sim.take_event() {
+            if let Some((event, _)) = self.sim.events().pop() {
                 return Some(event);
             }
         }
