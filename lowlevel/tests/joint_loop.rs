@@ -175,7 +175,8 @@ fn no_event_hides_another_one_of_its_cycle() {
         events.extend(rig.loop_.events().drain().filter(|(code, _)| *code != EventCode::TargetLimited));
     }
     let strayed = |j| (EventCode::FollowingError, Detail::Joint(j));
-    assert_eq!(events, [strayed(5), strayed(11), (EventCode::TargetNotFinite, Detail::Joint(2))]);
+    let expected = [strayed(5), strayed(11), (EventCode::TargetNotFinite, Detail::Joint(2))];
+    assert!(events.len() == 3 && expected.iter().all(|event| events.contains(event)), "{events:?}");
 }
 
 #[test]
