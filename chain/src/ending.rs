@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use messages::{Detail, EventCode, GaitState};
+use messages::{Detail, EventCode, GaitState, Words};
 
 /// What ended the walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,6 +13,8 @@ pub enum End {
     Asked,
     /// The robot fell.
     Fell,
+    /// The simulation lost its numbers.
+    Diverged,
     /// The motor supply went off for this reason and stayed off.
     PowerOff(EventCode),
     /// The joints were brought to rest for this reason, and held.
@@ -25,6 +27,7 @@ impl fmt::Display for End {
             Self::Done => write!(f, "done"),
             Self::Asked => write!(f, "asked"),
             Self::Fell => write!(f, "fell"),
+            Self::Diverged => write!(f, "diverged"),
             Self::PowerOff(reason) => write!(f, "power_off: {reason:?}"),
             Self::Stopped(reason) => write!(f, "stopped: {reason:?}"),
         }
@@ -41,6 +44,9 @@ pub struct Ending {
     /// Commands of the scene that were refused.
     pub refused: u64,
     fell: Option<f64>,
+    diverged: Option<f64>,
+    /// Events that say that the simulation is not to be trusted, each kind once, with their times.
+    doubts: Vec<(f64, EventCode, Detail)>,
     off: Option<(f64, EventCode)>,
     stopped: Option<(f64, EventCode)>,
     /// The last event that a stop comes of.
@@ -52,9 +58,13 @@ pub struct Ending {
 impl Ending {
     /// Something happened at `time` \[s\]; the same event may be told by several processes.
     pub fn tell(&mut self, time: f64, code: EventCode, detail: Detail) {
+        if is_doubt(code) && self.doubts.iter().all(|doubt| doubt.1 != code) {
+            self.doubts.push((time, code, detail));
+        }
         let reason = if let Detail::Cause(reason) = detail { reason } else { EventCode::None };
         match code {
-            EventCode::Fallen | EventCode::Diverged => self.fell = self.fell.or(Some(time)),
+            EventCode::Fallen => self.fell = self.fell.or(Some(time)),
+            EventCode::Diverged | EventCode::ForceImplausible => self.diverged = self.diverged.or(Some(time)),
             EventCode::PowerOff => self.off = Some((time, reason)),
             // Armed again: what was before is over, but for a fall.
             EventCode::PowerOn => (self.off, self.stopped) = (None, None),
@@ -83,8 +93,24 @@ impl Ending {
         self.fell
     }
 
+    /// When the simulation lost its numbers \[s\]; none: it did not.
+    pub fn diverged(&self) -> Option<f64> {
+        self.diverged
+    }
+
+    /// Events that say that the simulation is not to be trusted, as sentences.
+    pub fn doubts(&self) -> Vec<String> {
+        let sentence = |&(time, code, detail): &(f64, EventCode, Detail)| {
+            format!("at {time:.3} s: {}", Words::default().sentence(code as u64, detail.pack()))
+        };
+        self.doubts.iter().map(sentence).collect()
+    }
+
     /// What ended the walk, and when \[s\]: of several causes the first.
     pub fn end(&self) -> (End, f64) {
+        if let Some(time) = self.diverged {
+            return (End::Diverged, time); // nothing before it can be trusted either
+        }
         let fell = self.fell.map(|time| (End::Fell, time));
         let off = self.off.filter(|_| !self.powered).map(|(time, why)| (End::PowerOff(why), time));
         let stopped = self.stopped.map(|(time, why)| (End::Stopped(why), time));
@@ -92,6 +118,17 @@ impl Ending {
         let causes = [fell, off, stopped].into_iter().flatten();
         causes.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(orderly)
     }
+}
+
+/// True for events after which a simulation says nothing about the robot.
+pub fn is_doubt(code: EventCode) -> bool {
+    use EventCode::{
+        ContactNotConverged, Diverged, DriveFault, ForceImplausible, IntegratorGaveUp, StepTooLong,
+    };
+    matches!(
+        code,
+        ContactNotConverged | Diverged | DriveFault | ForceImplausible | IntegratorGaveUp | StepTooLong
+    )
 }
 
 /// Whether a controlled stop can come of this.

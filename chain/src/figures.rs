@@ -29,6 +29,8 @@ pub struct Figures {
     pub depth: String,
     /// Why that depth, of a scene that leaves it open.
     pub depth_reason: Option<String>,
+    /// Events after which the simulation says nothing about the robot, as sentences, each once.
+    pub doubts: Vec<String>,
     /// Whether the robot fell.
     pub fell: bool,
     /// What ended the walk: `done`, `asked`, `fell`, `power_off: REASON`, `stopped: REASON`.
@@ -96,6 +98,7 @@ impl Figures {
             ended_by: by.to_string(),
             ended_at,
             commands_refused: ending.refused,
+            doubts: ending.doubts(),
             ..self
         }
     }
@@ -184,6 +187,7 @@ impl Gatherer {
             robot: scene.robot.clone(),
             depth: format!("type {}, {:?} x {}", scene.depth, scene.integrator, scene.substeps),
             depth_reason: None,
+            doubts: Vec::new(),
             fell: false,
             ended_by: String::new(),
             ended_at: 0.0,
@@ -253,5 +257,10 @@ pub fn table(f: &Figures) -> String {
         ("real-time factor", if f.cpu_s > 0.0 { format!("{:.0}", f.real_time_factor) } else { "-".into() }),
         ("log", f.log.clone().unwrap_or_else(|| "-".into())),
     ];
-    rows.iter().map(|(name, value)| format!("{name:29}{value}")).collect::<Vec<_>>().join("\n")
+    let doubts = f.doubts.iter().map(|doubt| ("not to be trusted", doubt.clone()));
+    rows.into_iter()
+        .chain(doubts)
+        .map(|(name, value)| format!("{name:29}{value}"))
+        .collect::<Vec<_>>()
+        .join("\n")
 }

@@ -8,7 +8,7 @@ use chain::ending::{End, Ending};
 pub const HELP: &str = "\
 Exit codes:
   0    the scene was done, or ended in order by system/end
-  1    an error; a process died or hung; the log is not complete because its disk failed
+  1    an error; a process died or hung; the log is not complete because its disk failed; the simulation diverged
   2    the command line is wrong
   3    the robot fell, whatever came before
   4    the motor supply was lost, the joints were stopped, or a command of the scene was refused
@@ -39,6 +39,7 @@ impl Exit {
     /// Of a run without errors; `signal`: one asked for the end.
     pub fn of(ending: &Ending, signal: bool) -> Self {
         match ending.end().0 {
+            End::Diverged => Self::Error,
             _ if ending.fell().is_some() => Self::Fell,
             _ if signal => Self::Interrupted,
             End::PowerOff(_) | End::Stopped(_) => Self::NotDone,

@@ -61,7 +61,7 @@ pub fn run(
         if i % per_second == 0 {
             progress(i as f64 * setup.scene.cycle);
         }
-        if ending.fell().is_some_and(|fell| time > fell + AFTER_FALL) {
+        if ending.fell().or(ending.diverged()).is_some_and(|fell| time > fell + AFTER_FALL) {
             break;
         }
     }

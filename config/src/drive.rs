@@ -21,6 +21,8 @@ use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 pub struct Drive {
     /// Name of the motor.
     pub name: String,
+    /// Name of its gear in the robot's file; empty for a linkage.
+    pub gear: String,
     /// Motor angle as a function of the angles of `joints`.
     pub transmission: Transmission,
     /// Joints (indices) in the transmission's order: one, or knee, adduction and flexion.
@@ -205,6 +207,7 @@ impl Drive {
         let train = Train::build(row, joints, gears);
         let mut drive = Self {
             name: row.text("name"),
+            gear: if row.has("gear") { row.text("gear") } else { String::new() },
             transmission: train.transmission,
             joints: train.joints,
             stator: row.text("stator"),

@@ -38,6 +38,8 @@ pub struct Scene {
     pub integrator: Integrator,
     /// \[1\] Integration steps per bus cycle.
     pub substeps: u32,
+    /// Explicit steps that are longer than the stable ones are taken all the same.
+    pub force_step: bool,
     /// \[1\] Error of a step of the adaptive integrator, relative and absolute; the others have none.
     pub tolerance: Option<f64>,
     /// \[s\] Bus cycle.
@@ -124,6 +126,7 @@ impl Scene {
             depth,
             integrator,
             substeps,
+            force_step: top.has("force_step") && top.flag("force_step"),
             tolerance: adaptive.then(|| top.number("tolerance", "1", 1e-12..=1e-2)),
             cycle: top.number("cycle", "s", 1e-4..=0.02),
             start_pose: top.text("start_pose"),

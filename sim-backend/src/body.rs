@@ -5,6 +5,7 @@ use std::error::Error;
 use config::{Robot, Scene};
 use messages::{Detail, EventCode, EventQueue};
 
+use crate::chatter::ChatterWatch;
 use crate::drive::{Drive, Motion};
 use crate::integrate::Stepper;
 use crate::layout::orientation;
@@ -16,6 +17,9 @@ use crate::terrain;
 pub(crate) struct SimulatedBody {
     plant: Plant,
     stepper: Stepper,
+    chatter: ChatterWatch,
+    /// State that began to chatter in this cycle.
+    chatters: Option<usize>,
     state: Vec<f64>,
     /// State at the beginning of the cycle.
     last_good: Vec<f64>,
@@ -39,6 +43,8 @@ impl SimulatedBody {
         };
         Ok(Self {
             stepper: stepper(scene, state.len()),
+            chatter: ChatterWatch::new(&state[plant.layout().speed()]),
+            chatters: None,
             last_good: state.clone(),
             state,
             plant,
@@ -62,6 +68,11 @@ impl SimulatedBody {
         &mut self.state
     }
 
+    /// \[N\] Weight of the robot.
+    pub(crate) fn weight(&self) -> f64 {
+        self.plant.model().mass() * -multibody::GRAVITY.z
+    }
+
     /// \[m\] Height of the torso.
     pub(crate) fn height(&self) -> f64 {
         self.state[2]
@@ -70,12 +81,14 @@ impl SimulatedBody {
     /// One cycle of time passes. Returns the first state that is not finite, if there is one: then the state is that of
     /// the beginning of the cycle.
     pub(crate) fn advance(&mut self, references: &[Drive], inputs: &PlantInputs) -> Option<usize> {
-        let Self { plant, stepper, state, last_good, .. } = self;
+        let Self { plant, stepper, chatter, state, last_good, .. } = self;
+        let speed = plant.layout().speed();
         last_good.copy_from_slice(state);
         plant.sample(self.cycle, state, references, inputs);
         let h = self.cycle / f64::from(self.substeps);
         for i in 0..self.substeps {
             stepper.step(plant, f64::from(i) * h, h, state, references, inputs);
+            self.chatters = chatter.look(&state[speed.clone()]).map(|i| speed.start + i).or(self.chatters);
         }
         let lost = state.iter().position(|x| !x.is_finite());
         if lost.is_some() {
@@ -100,6 +113,9 @@ impl SimulatedBody {
 
     /// Moves the objects to `time` \[s\], and reports what went wrong or changed in this cycle, the gravest first.
     pub(crate) fn finish(&mut self, time: f64, events: &mut EventQueue) {
+        if let Some(state) = self.chatters.take() {
+            events.push(EventCode::StepTooLong, Detail::Number(state as u64));
+        }
         if let Some(gave_up) = self.stepper.take_gave_up() {
             events.push(EventCode::IntegratorGaveUp, Detail::Number(gave_up.state as u64));
         }

@@ -22,9 +22,13 @@ use crate::joints::SimulatedJoints;
 use crate::loads::Loads;
 use crate::plant::PlantInputs;
 use crate::power::PowerLine;
+use crate::step_limit;
 
 /// Cycles without their frames that are made good for at most: by then every drive has come to rest by itself.
 const MOST_OVERWRITTEN: u64 = 100;
+
+/// \[1\] Load on both feet in weights of the robot, from which on no robot's feet can be what carries it.
+const IMPLAUSIBLE: f64 = 100.0;
 
 /// A robot in simulation.
 #[derive(Clone)]
@@ -54,6 +58,7 @@ impl SimBackend {
                 format!("scene `{}`: no model has been chosen for depth = \"auto\" yet", scene.name).into()
             );
         }
+        step_limit::check(robot, scene)?;
         // The body first: the crane hooks in where its centre of gravity is, and the sensors know what hangs on them.
         let mut body = SimulatedBody::new(robot, scene)?;
         let joints = SimulatedJoints::new(robot, scene);
@@ -210,7 +215,9 @@ impl SimBackend {
         }
         if had_fallen {
             // Sensors out of range and contacts that are not found say nothing new of a robot on its way down.
-            self.events.retain_from(events_before, |code| code == EventCode::Diverged);
+            self.events.retain_from(events_before, |code| {
+                matches!(code, EventCode::Diverged | EventCode::ForceImplausible)
+            });
         }
     }
 
@@ -262,6 +269,11 @@ impl SimBackend {
             self.events.push(EventCode::Fallen, Detail::Nothing);
         }
         if self.fall.lands(self.body.state()) {
+            self.come_to_rest();
+        }
+        let load: f64 = snapshot.foot_wrench.iter().map(|w| w.force[2]).sum();
+        if load > IMPLAUSIBLE * self.body.weight() && !self.fall.lies() {
+            self.events.push(EventCode::ForceImplausible, Detail::Newtons(load as u64));
             self.come_to_rest();
         }
         let time = self.time();

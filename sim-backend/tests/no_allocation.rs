@@ -71,6 +71,7 @@ fn cycles_of_the_simulated_robot() {
         for integrator in [Integrator::Euler, Integrator::RungeKutta4, Integrator::SemiImplicit] {
             let mut setup = Setup::load(&root(None), "stand").unwrap();
             (setup.scene.depth, setup.scene.integrator, setup.scene.substeps) = (depth, integrator, 1);
+            setup.scene.force_step = true;
             let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
             let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
             for (j, q) in setup.robot.poses[&setup.scene.start_pose].iter().enumerate() {

@@ -77,6 +77,34 @@ pub(crate) fn middle<E: From<NoBorder>>(
     border(ends, width, holds).map(|[good, bad]| 0.5 * (good + bad))
 }
 
+/// Windows of a rising grid in which `holds`: lower and upper border of each, none where the grid begins or ends inside.
+///
+/// # Errors
+/// `holds` fails.
+pub(crate) fn windows<E: From<NoBorder>>(
+    grid: &[f64],
+    width: Width,
+    on_grid: &[bool],
+    mut holds: impl FnMut(f64) -> Result<bool, E>,
+) -> Result<Vec<[Option<f64>; 2]>, E> {
+    let mut found = Vec::new();
+    let mut low = None;
+    for (ends, holding) in grid.windows(2).zip(on_grid.windows(2)) {
+        match holding {
+            [false, true] => low = Some(middle([ends[1], ends[0]], width, &mut holds)?),
+            [true, false] => {
+                let high = middle([ends[0], ends[1]], width, &mut holds)?;
+                found.push([low.take(), Some(high)]);
+            }
+            _ => {}
+        }
+    }
+    if on_grid.last() == Some(&true) {
+        found.push([low, None]);
+    }
+    Ok(found)
+}
+
 /// Slope of log y over log x by least squares; NaN of fewer than two points.
 pub(crate) fn slope(points: &[[f64; 2]]) -> f64 {
     let logs: Vec<[f64; 2]> = points.iter().map(|p| p.map(f64::ln)).collect();
@@ -109,6 +137,22 @@ mod tests {
         let never = edge([1.0, 2.0], Width::Exact, 0.5).unwrap_err();
         assert_eq!(never, NoBorder { end: 1.0, holds: false });
         assert_eq!(edge([1.0, 2.0], Width::Exact, 9.0), Err(NoBorder { end: 2.0, holds: true }));
+    }
+
+    #[test]
+    fn windows_have_both_borders_but_where_the_grid_ends() {
+        let grid: Vec<f64> = (0..=20).map(|k| 0.5 * f64::from(k)).collect();
+        let search = |holds: &dyn Fn(f64) -> bool| {
+            let on_grid: Vec<bool> = grid.iter().map(|x| holds(*x)).collect();
+            let found = windows(&grid, Width::Absolute(1e-9), &on_grid, |x| Ok::<_, NoBorder>(holds(x)));
+            found.unwrap().iter().map(|w| w.map(|x| x.map(|x| (1e6 * x).round() / 1e6))).collect::<Vec<_>>()
+        };
+        assert_eq!(search(&|x| x < 3.3), [[None, Some(3.3)]]);
+        assert_eq!(search(&|x| (1.2..3.3).contains(&x)), [[Some(1.2), Some(3.3)]]);
+        assert_eq!(search(&|x| x < 1.1 || x > 7.7), [[None, Some(1.1)], [Some(7.7), None]]);
+        assert_eq!(search(&|_| false), Vec::<[Option<f64>; 2]>::new());
+        // What is narrower than the grid is not seen: the grid is part of the answer.
+        assert_eq!(search(&|x| (3.1..3.4).contains(&x)), Vec::<[Option<f64>; 2]>::new());
     }
 
     #[test]

@@ -4,11 +4,12 @@ use std::error::Error;
 
 use config::Setup;
 use config::tolerance::{Method, Output};
-use messages::{EventCode, SimState};
+use messages::SimState;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use realtime::clock::processor_time;
 
 use crate::Chain;
+use crate::ending::is_doubt;
 
 /// What a scene did with one method: the outputs of every cycle.
 pub struct Trial {
@@ -34,10 +35,6 @@ pub struct Trial {
     position: [f64; 3],
 }
 
-/// Events after which a simulation says nothing about the robot.
-const LOST: [EventCode; 4] =
-    [EventCode::Diverged, EventCode::DriveFault, EventCode::ContactNotConverged, EventCode::IntegratorGaveUp];
-
 impl Trial {
     /// Simulates the first `cycles` bus cycles of a scene, everything in the loop.
     ///
@@ -62,7 +59,7 @@ impl Trial {
         let begun = processor_time();
         for _ in 0..cycles {
             let cycle = chain.step();
-            trial.lost |= cycle.events.iter().any(|(_, code, _)| LOST.contains(code));
+            trial.lost |= cycle.events.iter().any(|(_, code, _)| is_doubt(*code));
             let sim = cycle.sim_state;
             trial.add(&setup, &sim);
             if method.depth > 1 {

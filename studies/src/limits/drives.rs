@@ -18,14 +18,20 @@ use super::{Bench, Findings, Result, largest_stable, row};
 
 /// A gear whose share of the load is the speed \[rad/s\] times 1e-3.
 const COUPLED: HarmonicFriction = HarmonicFriction { starting: 0.0, load: 0.0, viscous: 0.0, coupled: 1e-3 };
-/// HFUC-25-100 and HFUC-32-50 of table C.1.
-const GEARS: [(&str, HarmonicFriction); 2] = [
-    ("HFUC-25-100", HarmonicFriction { starting: 6.20e-2, load: 0.0, viscous: 5.33e-5, coupled: 6.58e-4 }),
-    ("HFUC-32-50", HarmonicFriction { starting: 2.46e-1, load: 5.49e-3, viscous: 1.52e-4, coupled: 6.21e-4 }),
-];
+/// Gears of table C.1 in the robot's file, and their names in the catalogue.
+const GEARS: [(&str, &str); 2] = [("hfuc_25_100", "HFUC-25-100"), ("hfuc_32_50", "HFUC-32-50")];
+
+/// Friction of a gear of the robot.
+pub(super) fn gear(bench: &Bench, name: &str) -> Result<HarmonicFriction> {
+    let drive = bench.setup.robot.drives.iter().find(|d| d.gear == name);
+    match drive.map(|d| d.friction) {
+        Some(Friction::Harmonic(friction)) => Ok(friction),
+        _ => Err(format!("no drive of the robot has the gear `{name}`").into()),
+    }
+}
 
 /// F12: a driven load is amplified by 1/(1 - c), and beyond c = 1 there is no answer.
-pub(super) fn load_torque(_: &Bench) -> Findings {
+pub(super) fn load_torque(bench: &Bench) -> Findings {
     let amplified = -COUPLED.load_torque(990.0, -1.0, 0.0)?;
     let beyond = COUPLED.load_torque(1001.0, -1.0, 0.0);
     let mut findings = vec![
@@ -33,7 +39,8 @@ pub(super) fn load_torque(_: &Bench) -> Findings {
             .of("load torque (2.64), c = 0.99: amplification 1/(1 - c)", [100.0, amplified])
             .says("beyond c = 1: NoLoadTorque", matches!(beyond, Err(NoLoadTorque { share }) if share > 1.0)),
     ];
-    for (name, gear) in GEARS {
+    for (key, name) in GEARS {
+        let gear = gear(bench, key)?;
         let found = largest_stable(0.0, 4000.0, |w| gear.load_torque(w, -1.0, 0.0).is_ok())?;
         let limit = Friction::Harmonic(gear).speed_limit();
         let predicted = (1.0 - gear.load) / gear.coupled;
@@ -64,9 +71,10 @@ pub(super) fn fixed_point(_: &Bench) -> Findings {
 }
 
 /// F14: no friction gives power, within the catalogue and beyond; the cubic model that came before does.
-pub(super) fn passivity(_: &Bench) -> Findings {
+pub(super) fn passivity(bench: &Bench) -> Findings {
     let screw = Friction::Screw(ScrewFriction { direct: 0.86, indirect: 0.858 });
-    let laws = GEARS.map(|(_, gear)| Friction::Harmonic(gear)).into_iter().chain([screw]);
+    let gears = GEARS.map(|(key, _)| gear(bench, key).map(Friction::Harmonic));
+    let laws = gears.into_iter().chain([Ok(screw)]).collect::<Result<Vec<_>>>()?;
     let mut most = f64::NEG_INFINITY;
     for law in laws {
         for w in (-120..=120).map(|k| 25.0 * f64::from(k)) {

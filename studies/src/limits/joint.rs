@@ -24,10 +24,11 @@ use sim_backend::drive::Drive;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs};
 
-use crate::search::{Width, middle};
+use crate::search::{Width, middle, windows};
 
 use super::Rule::{AtLeast, AtMost, Within};
-use super::{Bench, Findings, Result, row};
+use super::drives::gear;
+use super::{Bench, Findings, Result, Row, row};
 
 /// A leg joint standing, and the same in the air (errata 2.14): HFUC-25-100 with a large motor.
 pub(super) const STANCE: ElasticJoint =
@@ -46,6 +47,10 @@ const CONSTANT: f64 = 0.1;
 const STEPS: [f64; 2] = [1e-5, 5e-6];
 /// \[rad/s\] Speed with which the rotor begins where the loop is linear.
 const KICK: f64 = 1e-3;
+/// \[rad/s\] Least and largest speed with which it begins where friction is dry.
+const SWINGS: [f64; 2] = [1e-3, 20.0];
+const FRICTIONLESS: HarmonicFriction =
+    HarmonicFriction { starting: 0.0, load: 0.0, viscous: 0.0, coupled: 0.0 };
 
 /// One loop on the bench.
 #[derive(Clone, Copy)]
@@ -64,8 +69,7 @@ impl Loop {
     fn new(joint: ElasticJoint, feedback: Feedback, [kp, kd]: [f64; 2]) -> Self {
         let gains = Gains { position: kp * joint.stiffness, speed: kd };
         let n = RATIO * RATIO;
-        let viscous =
-            HarmonicFriction { starting: 0.0, load: 0.0, viscous: joint.friction / n, coupled: 0.0 };
+        let viscous = HarmonicFriction { viscous: joint.friction / n, ..FRICTIONLESS };
         let friction = if joint.friction > 0.0 { Friction::Harmonic(viscous) } else { Friction::Free };
         Self { joint, feedback, gains, sampled: None, friction, seconds: 1.0 }
     }
@@ -154,6 +158,7 @@ impl Loop {
         };
         Description {
             name: "bench".into(),
+            gear: String::new(),
             transmission: Transmission::Harmonic { ratio: RATIO },
             joints: vec![0],
             stator: "base".into(),
@@ -176,22 +181,73 @@ impl Loop {
     }
 }
 
-/// \[1\] From where to where a limit is looked for, over where it is about.
-const AROUND: [f64; 2] = [0.7, 1.4];
-/// The same of a loop that smaller gains do not keep stable either.
-const CLOSE: [f64; 2] = [0.97, 1.4];
-
-/// Predicted and measured limit of a family of loops, in units of `unit`; looked for `around` a number.
-fn limits(
-    bench: &Bench,
-    (about, around): (f64, [f64; 2]),
+/// Gains at which a loop is tried.
+#[derive(Clone, Copy)]
+struct Tried {
+    /// \[1\] Unit of the gain: the gear's stiffness for K_p, 1 N m s/rad for K_d.
     unit: f64,
-    family: impl Fn(f64) -> Loop,
-) -> Result<[f64; 2]> {
-    let ends = around.map(|share| share * about);
-    let predicted = middle(ends, Width::Share(1e-5), |x| Result::Ok(family(x).predicted()))?;
-    let measured = middle(ends, Width::Share(3e-3), |x| family(x).is_calm(bench))?;
-    Ok([predicted / unit, measured / unit])
+    /// Least and largest gain, in that unit.
+    range: [f64; 2],
+    /// Number of gains that are simulated; theory tries [`FINER`] times as many.
+    count: usize,
+}
+
+/// Gains that theory tries over those that are simulated.
+const FINER: usize = 100;
+/// K_p of a leg that stands, and of one in the air.
+const POSITION_GAINS: Tried = Tried { unit: STANCE.stiffness, range: [0.01, 2.5], count: 25 };
+const POSITION_GAINS_AIR: Tried = Tried { unit: AIR.stiffness, range: [0.01, 1.2], count: 60 };
+/// K_d.
+const SPEED_GAINS: Tried = Tried { unit: 1.0, range: [1.0, 4000.0], count: 25 };
+
+impl Tried {
+    fn grid(&self, count: usize) -> Vec<f64> {
+        let [low, high] = self.range;
+        let step = (high - low) / (count - 1) as f64;
+        (0..count).map(|k| self.unit * (low + step * k as f64)).collect()
+    }
+}
+
+/// Windows of stable gains of a family of loops, by theory and by simulation, each on a grid of its own: one finding for each
+/// border.
+fn stable_gains(
+    bench: &Bench,
+    (row, regime, gain): (Row, &str, &str),
+    tried: Tried,
+    family: impl Fn(f64) -> Loop + Sync,
+) -> Findings {
+    // By theory.
+    let fine = tried.grid(FINER * tried.count);
+    let predicts = |x: f64| family(x).predicted();
+    let on_grid: Vec<bool> = fine.iter().map(|x| predicts(*x)).collect();
+    let predicted = windows(&fine, Width::Share(1e-6), &on_grid, |x| Result::Ok(predicts(x)))?;
+    // By simulation, on all cores.
+    let coarse = tried.grid(tried.count);
+    let calm =
+        chain::parallel::map(coarse.len(), |k| family(coarse[k]).is_calm(bench).map_err(|e| e.to_string()));
+    let calm = calm.into_iter().collect::<std::result::Result<Vec<_>, _>>()?;
+    let measured = windows(&coarse, Width::Share(3e-3), &calm, |x| family(x).is_calm(bench))?;
+    if predicted.len() != measured.len() {
+        let text = format!("{regime}: windows of {gain} {predicted:?} by theory, {measured:?} by simulation");
+        return Err(text.into());
+    }
+    // The windows in the order of their gains, each with its borders.
+    let mut findings = Vec::new();
+    for (theory, simulation) in predicted.iter().zip(&measured) {
+        for (border, which) in ["smallest", "largest"].into_iter().enumerate() {
+            match [theory[border], simulation[border]] {
+                [None, None] => {}
+                [Some(a), Some(b)] => {
+                    let numbers = [a, b].map(|x| x / tried.unit);
+                    findings.push(row.of(format!("{regime}: {which} {gain}"), numbers));
+                }
+                ends => {
+                    return Err(format!("{regime}: {which} {gain} {ends:?}: only one of them ends").into());
+                }
+            }
+        }
+    }
+    Ok(findings)
 }
 
 /// J1: continuous loops. (5.44) grows with any gains, (5.46) with none, (5.50) from K_p = K on.
@@ -211,8 +267,13 @@ pub(super) fn continuous(bench: &Bench) -> Findings {
     for (name, joint, kd) in [("J_J = 10", STANCE, 500.0), ("J_J = 0.5", AIR, 100.0)] {
         let k = joint.stiffness;
         let mixed = |kp: f64| Loop::new(joint, Feedback::LinkMotor, [kp / k, kd]);
-        let regime = format!("link angle, motor speed (5.49), {name}: largest K_p/K");
-        findings.push(row("J1", "", Within(0.01)).of(regime, limits(bench, (k, AROUND), k, mixed)?));
+        let regime = format!("link angle, motor speed (5.49), {name}");
+        findings.extend(stable_gains(
+            bench,
+            (row("J1", "", Within(0.01)), &regime, "K_p/K"),
+            POSITION_GAINS,
+            mixed,
+        )?);
     }
     Ok(findings)
 }
@@ -220,32 +281,33 @@ pub(super) fn continuous(bench: &Bench) -> Findings {
 /// J2: sampled loops, against spectral radii.
 pub(super) fn sampled(bench: &Bench) -> Findings {
     let mut findings = Vec::new();
-    let largest_kd = [
-        ("motor-side, 1 ms", Feedback::Motor, 1e-3, EXACT, 2380.0),
-        ("motor-side, 1 ms, differences", Feedback::Motor, 1e-3, DIFFERENCE, 2343.0),
-        ("motor-side, 1 ms + 1 cycle", Feedback::Motor, 1e-3, DELAYED, 1172.0),
-        ("motor-side, 3.5 ms", Feedback::Motor, 3.5e-3, EXACT, 665.0),
-        ("link and motor, 3.5 ms + 1 cycle", Feedback::LinkMotor, 3.5e-3, DELAYED, 247.0),
+    let speed_gains = [
+        ("motor-side, 1 ms", Feedback::Motor, 1e-3, EXACT),
+        ("motor-side, 1 ms, differences", Feedback::Motor, 1e-3, DIFFERENCE),
+        ("motor-side, 1 ms + 1 cycle", Feedback::Motor, 1e-3, DELAYED),
+        ("motor-side, 3.5 ms", Feedback::Motor, 3.5e-3, EXACT),
+        ("link and motor, 3.5 ms + 1 cycle", Feedback::LinkMotor, 3.5e-3, DELAYED),
     ];
-    for (name, feedback, period, sampled, about) in largest_kd {
+    for (name, feedback, period, sampled) in speed_gains {
         let family = |kd| Loop::new(STANCE, feedback, [0.1, kd]).every(period, sampled);
-        let regime = format!("{name}, J_J = 10, K_p = 0.1 K: largest K_d");
-        let numbers = limits(bench, (about, AROUND), 1.0, family)?;
-        findings.push(row("J2", "N m s/rad", Within(0.02)).of(regime, numbers));
+        let regime = format!("{name}, J_J = 10, K_p = 0.1 K");
+        let row = row("J2", "N m s/rad", Within(0.02));
+        findings.extend(stable_gains(bench, (row, &regime, "K_d"), SPEED_GAINS, family)?);
     }
-    let largest_kp = [
-        ("motor-side, 3.5 ms + 1 cycle", STANCE, Feedback::Motor, DELAYED, 144.0, (0.370, AROUND)),
-        ("motor-side, 3.5 ms, differences", STANCE, Feedback::Motor, DIFFERENCE, 247.0, (1.656, AROUND)),
-        ("link and motor, 3.5 ms", STANCE, Feedback::LinkMotor, EXACT, 300.0, (0.9, AROUND)),
-        ("link and motor, 3.5 ms + 1 cycle", STANCE, Feedback::LinkMotor, DELAYED, 200.0, (0.6, AROUND)),
-        ("link and motor, 3.5 ms + 1 cycle", AIR, Feedback::LinkMotor, DELAYED, 221.0, (0.666, CLOSE)),
+    let position_gains = [
+        ("motor-side, 3.5 ms + 1 cycle", STANCE, Feedback::Motor, DELAYED, 144.0),
+        ("motor-side, 3.5 ms, differences", STANCE, Feedback::Motor, DIFFERENCE, 247.0),
+        ("link and motor, 3.5 ms", STANCE, Feedback::LinkMotor, EXACT, 300.0),
+        ("link and motor, 3.5 ms + 1 cycle", STANCE, Feedback::LinkMotor, DELAYED, 200.0),
+        ("link and motor, 3.5 ms + 1 cycle", AIR, Feedback::LinkMotor, DELAYED, 120.0),
+        ("link and motor, 3.5 ms + 1 cycle", AIR, Feedback::LinkMotor, DELAYED, 221.0),
     ];
-    for (name, joint, feedback, sampled, kd, (about, around)) in largest_kp {
-        let k = joint.stiffness;
-        let family = |kp: f64| Loop::new(joint, feedback, [kp / k, kd]).every(3.5e-3, sampled);
-        let regime = format!("{name}, J_J = {}, K_d = {kd}: largest K_p/K", joint.link);
-        let numbers = limits(bench, (about * k, around), k, family)?;
-        findings.push(row("J2", "", Within(0.02)).of(regime, numbers));
+    for (name, joint, feedback, sampled, kd) in position_gains {
+        let tried = if joint.link == AIR.link { POSITION_GAINS_AIR } else { POSITION_GAINS };
+        let family = |kp: f64| Loop::new(joint, feedback, [kp / joint.stiffness, kd]).every(3.5e-3, sampled);
+        let regime = format!("{name}, J_J = {}, K_d = {kd}", joint.link);
+        let row = row("J2", "", Within(0.02));
+        findings.extend(stable_gains(bench, (row, &regime, "K_p/K"), tried, family)?);
     }
     // Where the motor-side loop has no stable gains at all (errata 2.14), the mixed one has.
     let growth = |feedback: Feedback| {
@@ -278,14 +340,13 @@ pub(super) fn friction(bench: &Bench) -> Findings {
     for (joint, u) in [(STANCE, 2.0), (AIR, 0.2)] {
         let (k, d) = (joint.stiffness, 200.0);
         let joint = ElasticJoint { friction: d, ..joint };
-        let about = (1.0 + u) * (joint.link - joint.rotor * u) / joint.link * k;
         let family = |kp: f64| Loop::new(joint, Feedback::Link, [kp / k, u * d]);
-        let regime = format!("link-side, J_J = {}, d = 200, K_d = {}: largest K_p/K", joint.link, u * d);
-        let numbers = limits(bench, (about, AROUND), k, family)?;
-        findings.push(row("J3", "", Within(0.02)).of(regime, numbers));
+        let regime = format!("link-side, J_J = {}, d = 200, K_d = {}", joint.link, u * d);
+        let row = row("J3", "", Within(0.02));
+        findings.extend(stable_gains(bench, (row, &regime, "K_p/K"), POSITION_GAINS, family)?);
     }
     for joint in [STANCE, AIR] {
-        let dry = HarmonicFriction { starting: 6.20e-2, load: 0.0, viscous: 0.0, coupled: 0.0 };
+        let dry = HarmonicFriction { starting: gear(bench, "hfuc_25_100")?.starting, ..FRICTIONLESS };
         let held = Loop::new(joint, Feedback::Link, [0.1, 100.0]).with(Friction::Harmonic(dry));
         let enough = enough_friction(&held)?;
         let about = 4.0 * dry.starting * RATIO.abs() / (PI * enough);
@@ -296,7 +357,7 @@ pub(super) fn friction(bench: &Bench) -> Findings {
         };
         let regime =
             format!("link-side, dry friction of HFUC-25-100, J_J = {}: largest calm swing", joint.link);
-        let numbers = [about, middle([0.3 * about, 3.0 * about], Width::Share(5e-3), calm)?];
+        let numbers = [about, middle(SWINGS, Width::Share(5e-3), calm)?];
         findings.push(row("J3", "rad/s", Within(0.15)).of(regime, numbers));
     }
     let screw = Friction::Screw(ScrewFriction { direct: 0.860, indirect: 0.858 });

@@ -23,7 +23,6 @@ mod geometry;
 mod held;
 mod joint;
 mod joint_chart;
-mod linear;
 mod motion;
 mod planning;
 mod signals;
