@@ -128,8 +128,6 @@ const FIXED: &[Fixed] = &[
     fixed!("planner", "gaits", "limits.duration.least", "s", [0.2, 20.0], |s| Some(s.gait.limits.duration[0]), "least duration of a step that may be commanded"),
     fixed!("planner", "gaits", "limits.duration.most", "s", [0.2, 20.0], |s| Some(s.gait.limits.duration[1]), "greatest duration of a step that may be commanded"),
     fixed!("planner", "gaits", "obstacles.height", "m", [0.0, 0.5], |s| s.gait.obstacles.map(|o| o.height), "highest obstacle or platform"),
-    fixed!("controller", "gaits", "force_max", "", [1.0, 5.0], |s| Some(s.gait.control.force_max), "F_z,max over the robot's weight (5.12)"),
-    fixed!("controller", "gaits", "null_space_gain", "1/s", [0.0, 1e3], |s| Some(s.gait.control.null_space_gain), "alpha_N, weight of the null-space cost (5.38)"),
     fixed!("controller", "gaits", "feedback", "", [1.0, 2.0], |s| Some(s.gait.control.feedback as f64), "feedback path of figure 5.8"),
 ];
 

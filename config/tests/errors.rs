@@ -127,13 +127,13 @@ fn all_problems_at_once_in_the_order_of_lines() {
         .spoil("gaits/lola.toml", "width = 0.21", "width = 0.1")
         .spoil("gaits/lola.toml", "[0.12, 0.1, 0.1]", "[0.12, 0.1]")
         .spoil("gaits/lola.toml", "side = [-0.2, 0.2]", "side = [0.2, -0.2]")
-        .spoil("gaits/lola.toml", "stand_time = 2.0", "");
+        .spoil("gaits/lola.toml", "friction = 0.5", "");
     assert_eq!(
         text(&copy.gait()),
         "lola.toml: 5 problems\n  \
          line 4: step.width: 0.1 m must not be below width_min = 0.16 m\n  \
          line 12: step.change: has 2 entries; it takes 3 numbers, each a number above 0 m, m, rad\n  \
-         line 22: model.stand_time: missing; it takes a number from 0.1 to 20 s\n  \
+         line 22: model.friction: missing; it takes a number above 0\n  \
          line 34: limits.side: its lower end 0.2 must lie below its upper end -0.2 m\n  \
          line 57: control.force_filter: is of type boolean; it takes a number from 0 to 1 s"
     );
@@ -436,18 +436,6 @@ fn system_row_of_no_process() {
     let error = text(&error);
     assert!(error.contains("process.planner: missing; it takes a table"), "{error}");
     assert!(error.contains("process.planer: unknown key; the nearest known one is `planner`"), "{error}");
-}
-
-#[test]
-fn start_order_that_is_not_every_process_once() {
-    for wrong in ["\"planner\", \"planner\", ", "\"planer\", ", ""] {
-        let copy = Copy::new("order").spoil("system.toml", "\"planner\", ", wrong);
-        let error = text(&System::load(&copy.path("system.toml")).unwrap_err());
-        assert!(
-            error.contains("start_order: must name each process once: broker, logger, "),
-            "{wrong}: {error}"
-        );
-    }
 }
 
 #[test]

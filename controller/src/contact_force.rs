@@ -15,6 +15,9 @@
 use config::gait::Control;
 use nalgebra::{Vector2, Vector3};
 
+/// \[1\] F_z,max over the robot's weight (5.12): thesis 5.2.
+const FORCE_MAX: f64 = 2.0;
+
 /// Force and moment about a force sensor, axes of the planning frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FootWrench {
@@ -93,7 +96,7 @@ fn shift_normal_force(
     t: Vector3<f64>,
     feet: &[Support; 2],
 ) -> (f64, Vector3<f64>) {
-    let f_max = gains.force_max * weight;
+    let f_max = FORCE_MAX * weight;
     let r = feet[0].sensor - feet[1].sensor; // Delta r_ref,01
     let d = r.xy().norm();
     let [rho_0, rho_1] = [feet[0].load, feet[1].load];

@@ -39,6 +39,10 @@ pub fn contact_stiffness(
     k
 }
 
+/// \[m/s\] Speed at which a foot is lowered that finds no ground at its time ...
+const SEARCH_SPEED: f64 = 0.15;
+/// \[m\] ... and how far.
+const SEARCH_DEPTH: f64 = 0.04;
 /// \[s\] Ramp-up time of the ground-search speed: what a foot misses is mostly just below it.
 const HASTE: f64 = 0.05;
 
@@ -164,7 +168,7 @@ pub(crate) fn modify(
     next.limited = false;
     for (i, (compliance, reference)) in feet.iter().enumerate() {
         let value = last.value.fixed_rows::<3>(3 * i).into_owned();
-        let fall = search_speed(control, value[0], -last.rate[3 * i] - reference.rise, dt);
+        let fall = search_speed(value[0], -last.rate[3 * i] - reference.rise, dt);
         let rate =
             force_part.fixed_rows::<3>(3 * i) + free_part(control, compliance, reference, &value, fall);
         for c in 0..3 {
@@ -199,9 +203,9 @@ fn free_part(
 
 /// \[m/s\] Speed of a foot that goes down to search for the ground, whose modification is `height` \[m\] and that went down
 /// at `last` \[m/s\].
-fn search_speed(control: &Control, height: f64, last: f64, dt: f64) -> f64 {
-    let [most, depth] = control.search;
-    if height > -depth { most.min(last.max(0.0) + most * dt / HASTE) } else { 0.0 }
+fn search_speed(height: f64, last: f64, dt: f64) -> f64 {
+    let faster = last.max(0.0) + SEARCH_SPEED * dt / HASTE;
+    if height > -SEARCH_DEPTH { SEARCH_SPEED.min(faster) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -324,15 +328,15 @@ mod tests {
         let mut m = Modification::default();
         m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
         assert!((m.rate[0] + feet[0].1.rise).abs() < 1e-12, "does not go on down");
-        assert!((m.rate[3] + control.search[0] * 1e-3 / HASTE).abs() < 1e-12, "begins gently");
+        assert!((m.rate[3] + SEARCH_SPEED * 1e-3 / HASTE).abs() < 1e-12, "begins gently");
         for _ in 0..50 {
             m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
         }
-        assert!((m.rate[3] + control.search[0]).abs() < 1e-12);
+        assert!((m.rate[3] + SEARCH_SPEED).abs() < 1e-12);
         for _ in 0..1000 {
             m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
         }
-        let lowest = control.search[1].min(control.modification_limit[0]);
+        let lowest = SEARCH_DEPTH.min(control.modification_limit[0]);
         assert!((m.value[3] + lowest).abs() < 1e-3, "{}", m.value[3]);
     }
 

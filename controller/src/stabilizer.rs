@@ -72,7 +72,7 @@ impl Controller {
             clock: CycleClock::new(dt),
             plan: PlanFollower::new([0, 1].map(|i| [robot.feet[i].support[0], robot.feet[i].support[1]])),
             watch: SafetyWatch::default(),
-            speeds: JointSpeeds::new(robot, &desired, gait.control.null_space_gain, gait.arm_swing)?,
+            speeds: JointSpeeds::new(robot, &desired, gait.arm_swing)?,
             measured,
             desired,
             contacts: FootContacts::new(),

@@ -19,6 +19,9 @@ use curves::Sample;
 use messages::{GaitState, Plan, Step};
 use std::f64::consts::FRAC_PI_2;
 
+/// \[s\] Time for raising or lowering the body while standing.
+const STAND_TIME: f64 = 2.0;
+
 /// Builds plans. All scratch is made with it.
 #[derive(Clone)]
 pub struct Builder {
@@ -79,7 +82,7 @@ impl Builder {
     /// Raises or lowers the body and brings the centre of gravity between the feet, whose soles are at `heights` \[m\] now.
     pub fn stand(&mut self, from: &PlanOrigin, heights: [f64; 2], out: &mut PlannedWalk) {
         let model = &self.model;
-        let end_cycle = model.cycles(model.model.stand_time);
+        let end_cycle = model.cycles(STAND_TIME);
         let end = end_cycle as f64 * model.cycle_s;
         let plan = &mut *out.plan;
         begin(plan, from, GaitState::Standing);

@@ -46,7 +46,6 @@ pub fn gait() -> Gait {
             zmp_margin: 0.02,
             cog_method: CogMethod::Collocation,
             spacing: 0.08,
-            stand_time: 2.0,
             friction: 0.5,
         },
         limits: Limits {
@@ -68,7 +67,6 @@ pub fn gait() -> Gait {
             inclination_d: [0.0; 2],
             height_p: 0.0,
             height_d: 0.0,
-            force_max: 2.0,
             force_shift: 1.0,
             force_gain: [0.0; 3],
             force_feed_forward: 0.0,
@@ -77,15 +75,12 @@ pub fn gait() -> Gait {
             modification_limit: [0.0; 3],
             modification_rate: [0.0; 3],
             drift_gain: 0.0,
-            null_space_gain: 0.0,
-            search: [0.0; 2],
             inclination_compensation: 0.0,
             planned_deformation: 0.0,
             feedback: 1,
             force_filter: 0.0,
         },
         toes: None,
-        forefoot_roll: None,
         heel_strike: None,
     }
 }
