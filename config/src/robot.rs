@@ -75,7 +75,7 @@ pub struct Joint {
     pub acceleration: f64,
     /// \[rad\] Comfortable angle for redundancy resolution.
     pub comfort: f64,
-    /// \[1\] Weight W of the joint's speed in the inverse kinematics (5.36).
+    /// \[1\] Weight W of the joint's speed in the inverse kinematics (5.36); 1 where the file says none.
     pub weight: f64,
 }
 
@@ -227,7 +227,7 @@ impl Joint {
             braking: row.number("braking", "rad/s^2", POSITIVE),
             acceleration: f64::INFINITY,
             comfort: row.number("comfort_deg", "deg", -360.0..=360.0).to_radians(),
-            weight: row.number("weight", "", POSITIVE),
+            weight: if row.has("weight") { row.number("weight", "", POSITIVE) } else { 1.0 },
         }
         .checked(row)
     }

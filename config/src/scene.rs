@@ -12,11 +12,14 @@ use crate::crane::{Crane, DriveStart};
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
 use crate::joint_control;
+use crate::plant_mismatch::PlantMismatch;
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 use crate::sensors::Sensors;
 use crate::terrain::{self, TerrainObject};
 use crate::tolerance::{Method, Tolerance};
-use crate::unknown::Unknown;
+
+/// Seed of a scene that says none.
+pub const SEED: u64 = 1;
 
 /// `scenes/NAME.toml`.
 #[derive(Clone, Debug)]
@@ -46,7 +49,7 @@ pub struct Scene {
     pub start_pose: String,
     /// \[s\]
     pub duration: f64,
-    /// Seed of everything random.
+    /// Seed of everything random: noise of sensors, faults of the bus; [`SEED`] if the scene says none.
     pub seed: u64,
     /// Objects on the ground.
     pub objects: Vec<TerrainObject>,
@@ -55,7 +58,7 @@ pub struct Scene {
     /// Joint control of all drives, instead of the robot's.
     pub joint_control: Option<JointControl>,
     /// Plant mismatch: differences from the model of the robot's software.
-    pub unknown: Unknown,
+    pub plant_mismatch: PlantMismatch,
     /// Crane that holds the robot at the start; none: it stands.
     pub crane: Option<Crane>,
     /// Drives as they are at switch-on; none: they know their angles, and nothing protects them.
@@ -128,14 +131,14 @@ impl Scene {
             cycle: top.number("cycle", "s", 1e-4..=0.02),
             start_pose: top.text("start_pose"),
             duration: top.number("duration", "s", POSITIVE),
-            seed: top.integer("seed", 0..=u64::MAX),
+            seed: if top.has("seed") { top.integer("seed", 0..=u64::MAX) } else { SEED },
             objects: top.tables("object", terrain::object),
             sensors: sensors(top),
             joint_control: top
                 .has("joint_control")
                 .then(|| top.table("joint_control", joint_control::build))
                 .flatten(),
-            unknown: unknown(top),
+            plant_mismatch: plant_mismatch(top),
             crane: top.has("crane").then(|| top.table("crane", Crane::build)).flatten(),
             drives: top.has("drives").then(|| top.table("drives", DriveStart::build)).flatten(),
             commands: top.tables("command", command),
@@ -213,9 +216,9 @@ fn sensors(top: &Section<'_, '_>) -> Sensors {
     named.flatten().unwrap_or_default()
 }
 
-/// `[unknown]`, if it is there.
-fn unknown(top: &Section<'_, '_>) -> Unknown {
-    let named = top.has("unknown").then(|| top.table("unknown", Unknown::build));
+/// `[plant_mismatch]`, if it is there.
+fn plant_mismatch(top: &Section<'_, '_>) -> PlantMismatch {
+    let named = top.has("plant_mismatch").then(|| top.table("plant_mismatch", PlantMismatch::build));
     named.flatten().unwrap_or_default()
 }
 

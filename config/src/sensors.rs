@@ -159,9 +159,9 @@ impl Sensors {
 
     /// What the joints named here are wrong about: key, text.
     pub(crate) fn unknown_joints(&self, robot: &str, joints: &[&str]) -> Vec<(String, String)> {
-        let tables = [("encoder", &self.encoder), ("motor_encoder", &self.motor_encoder)];
-        let named = tables.iter().flat_map(|(table, e)| {
-            let keys = [("counts", &e.counts), ("bias_rad", &e.bias)];
+        let tables = [("encoder", "bits", &self.encoder), ("motor_encoder", "counts", &self.motor_encoder)];
+        let named = tables.iter().flat_map(|(table, of_counts, e)| {
+            let keys = [(*of_counts, &e.counts), ("bias_rad", &e.bias)];
             keys.into_iter()
                 .flat_map(move |(key, per)| per.own.iter().map(move |(name, _)| (table, key, name)))
         });
@@ -177,16 +177,13 @@ impl Sensors {
 
 impl Encoder {
     fn link(table: &Section<'_, '_>) -> Self {
-        let counts = PerJoint::build(table, "counts", "counts per turn", 2.0..=MOST_COUNTS);
-        let mut bits = PerJoint::build(table, "bits", "bit", 1.0..=32.0);
-        if table.has("bits") && table.has("counts") {
-            table.problem("bits", "counts is given, too; keep one of them");
+        let mut counts = PerJoint::build(table, "bits", "bit", 1.0..=32.0);
+        for bits in counts.values() {
+            if bits.fract() != 0.0 && !bits.is_nan() {
+                table.problem("bits", format!("{bits} is not a whole number"));
+            }
+            *bits = bits.exp2(); // 2^Q counts: errata 1, V15
         }
-        for bit in bits.values().filter(|bit| bit.fract() != 0.0 && !bit.is_nan()) {
-            table.problem("bits", format!("{bit} is not a whole number"));
-        }
-        bits.values().for_each(|bit| *bit = bit.exp2()); // 2^Q counts: errata 1, V15
-        let counts = if table.has("bits") { bits } else { counts };
         Self { counts, ..Self::any(table) }
     }
 

@@ -100,8 +100,7 @@ fn every_key() {
 /// A joint that is not named has what stands under `all`; without `all`, nothing.
 #[test]
 fn joints_have_their_own_or_that_of_all() {
-    let encoder =
-        scene("own", "[sensors.encoder]\ncounts = { head_pan = 90 }\nbias_rad = 0.01").sensors.encoder;
-    assert_eq!((encoder.counts.of("head_pan"), encoder.counts.of("head_tilt")), (Some(90.0), None));
+    let encoder = scene("own", "[sensors.encoder]\nbits = { head_pan = 9 }\nbias_rad = 0.01").sensors.encoder;
+    assert_eq!((encoder.counts.of("head_pan"), encoder.counts.of("head_tilt")), (Some(512.0), None));
     assert_eq!(encoder.bias.of("head_tilt"), Some(0.01));
 }

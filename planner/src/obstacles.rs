@@ -41,6 +41,13 @@ pub struct Upright {
 }
 
 impl KnownObstacles {
+    /// Obstacles of one list of triangles \[m\] @I_0 each.
+    pub fn new(obstacles: impl IntoIterator<Item = Vec<[Point; 3]>>) -> Self {
+        let mut known = Self::default();
+        obstacles.into_iter().for_each(|triangles| known.add(triangles));
+        known
+    }
+
     /// Adds one obstacle, triangles \[m\] @I_0. Those with a number that is not finite are left out.
     pub fn add(&mut self, triangles: impl IntoIterator<Item = [Point; 3]>) {
         let finite = |t: &[Point; 3]| t.iter().flatten().all(|x| x.is_finite());

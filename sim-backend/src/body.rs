@@ -137,7 +137,7 @@ impl SimulatedBody {
 
 /// The robot as it is, where that is not what its software believes.
 fn with_plant_mismatch(robot: &Robot, scene: &Scene) -> Robot {
-    let (mut robot, factor) = (robot.clone(), scene.unknown.contact_stiffness);
+    let (mut robot, factor) = (robot.clone(), scene.plant_mismatch.contact_stiffness);
     robot.contact.normal_stiffness *= factor;
     robot.contact.tangential_stiffness *= factor;
     if let Some(pads) = &mut robot.contact.pads {

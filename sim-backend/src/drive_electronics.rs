@@ -81,13 +81,10 @@ impl DriveElectronics {
             Some(Search { switch, homing: Homing::Search, began_closed, origin: *angle })
         };
         let protection = robot.protection.clone().filter(|_| start.is_some());
-        let warm = |(joint, winding): (&config::robot::Joint, &drives::thermal::Thermal)| {
-            start.and_then(|start| start.temperature.of(&joint.name)).unwrap_or(winding.surroundings)
-        };
         let windings = protection.iter().flat_map(|p| &p.windings);
         Self {
             searches: robot.homes.iter().zip(pose).map(search).collect(),
-            temperature: robot.joints.iter().zip(windings).map(warm).collect(),
+            temperature: windings.map(|winding| winding.surroundings).collect(),
             actions: vec![Action::Off; drives.len()],
             off_for: vec![f64::INFINITY; drives.len()],
             protection,

@@ -32,7 +32,8 @@ impl SimulatedJoints {
     pub(crate) fn new(robot: &Robot, scene: &Scene) -> Self {
         let pose = &robot.poses[&scene.start_pose];
         let resting = |&angle: &f64| Motion { angle, ..Motion::default() };
-        let offset = |joint: &config::robot::Joint| scene.unknown.joint_offset.of(&joint.name).unwrap_or(0.0);
+        let offset =
+            |joint: &config::robot::Joint| scene.plant_mismatch.joint_offset.of(&joint.name).unwrap_or(0.0);
         Self {
             electronics: DriveElectronics::new(robot, scene, pose),
             timeout: CommandTimeout::new(&robot.layout),

@@ -12,7 +12,7 @@ use environment::{Environment, Mesh, Object, Pose, Schedule};
 /// A mesh cannot be read.
 pub fn environment(scene: &Scene) -> Result<Environment, Box<dyn Error>> {
     let objects = scene.objects.iter().map(object).collect::<Result<Vec<_>, _>>()?;
-    Ok(Environment::new(objects).tilted(scene.unknown.ground_tilt))
+    Ok(Environment::new(objects).tilted(scene.plant_mismatch.ground_tilt))
 }
 
 fn object(o: &TerrainObject) -> Result<Object, Box<dyn Error>> {

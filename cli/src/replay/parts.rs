@@ -43,7 +43,7 @@ pub(super) fn of(process: Process, setup: &Setup, bus: &BusAddress) -> Result<Bo
     Ok(match process {
         Process::Planner => {
             let mut planner = Planner::of(gait, robot);
-            planner.see(planner::vision::known(setup)?);
+            planner.see(KnownObstacles::new(setup.known_obstacles()?));
             Box::new(Planning {
                 planner,
                 parameters: Parameters::default(),

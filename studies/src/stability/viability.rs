@@ -202,16 +202,16 @@ fn kinds(setup: &Setup, way: f64) -> Vec<Kind> {
         let name = format!("calibration of {}", joint.replace('_', " "));
         all.push(Kind::new(name, "deg", [-20.0, 20.0], 0.1, move |s, x| {
             let own = vec![(joint.to_string(), x.to_radians())];
-            s.scene.unknown.joint_offset = PerJoint { all: None, own };
+            s.scene.plant_mismatch.joint_offset = PerJoint { all: None, own };
         }));
     }
     for (axis, name) in ["roll", "pitch"].into_iter().enumerate() {
         all.push(Kind::new(format!("tilt of the ground, {name}"), "deg", [-15.0, 15.0], 0.1, move |s, x| {
-            s.scene.unknown.ground_tilt[axis] = x.to_radians();
+            s.scene.plant_mismatch.ground_tilt[axis] = x.to_radians();
         }));
     }
     let stiffness = Kind::new("stiffness of the soles, factor", "1", [-8.0, 6.0], 0.1, |s, x| {
-        s.scene.unknown.contact_stiffness = x.exp2();
+        s.scene.plant_mismatch.contact_stiffness = x.exp2();
     });
     all.push(Kind { factor: true, ..stiffness });
     all.push(Kind::new("delay of all sensors", "ms", [0.0, 100.0], 1.0, |s, x| {
@@ -330,7 +330,7 @@ mod tests {
     #[test]
     fn a_scene_that_is_not_survived_has_no_way() {
         let mut setup = walking();
-        setup.scene.unknown.ground_tilt = [0.0, 40f64.to_radians()];
+        setup.scene.plant_mismatch.ground_tilt = [0.0, 40f64.to_radians()];
         assert_eq!(walk(&setup), None);
     }
 }
