@@ -14,6 +14,7 @@ use messages::{
     SimState, WatchdogReset,
 };
 use planner::Planner;
+use planner::obstacles::KnownObstacles;
 use sim_backend::SimBackend;
 use watchdog::{Inputs, Watchdog};
 

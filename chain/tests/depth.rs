@@ -1,8 +1,9 @@
 //! `depth = "auto"`: what is chosen, what is said, and whether the estimate of the error holds.
 
 use chain::depth::{Choice, choose, judge, trial::Trial};
-use config::scene::Integrator::{Euler, SemiImplicit};
-use config::tolerance::{Method, Output, Tolerance};
+use config::method::Integrator::{Euler, SemiImplicit};
+use config::method::Method;
+use config::tolerance::{Output, Tolerance};
 use config::{Setup, root};
 use messages::command::PushCommand;
 

@@ -12,8 +12,8 @@ use drives::{
 use messages::nearest;
 
 use crate::brake::Brake;
+use crate::joint::{Joint, joint_index};
 use crate::joint_control;
-use crate::robot::{Joint, joint_index};
 use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 
 /// One motor with everything between its terminals and its joints.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use codec::layout::Layout;
 use drives::homing::HomeSwitch;
-use messages::{MAX_JOINTS, nearest};
+use messages::MAX_JOINTS;
 
 use crate::acceleration;
 use crate::dbc;
@@ -14,6 +14,8 @@ pub use crate::drive::Drive;
 use crate::drive::drives;
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
+pub use crate::joint::Joint;
+use crate::joint::joint_index;
 use crate::limbs::{Arms, Head};
 use crate::protection::{Protection, homes};
 use crate::section::{self, POSITIVE, Section};
@@ -57,26 +59,6 @@ pub struct Robot {
     pub protection: Option<Protection>,
     /// Home switches, by joint; none for a joint with an absolute encoder.
     pub homes: Vec<Option<HomeSwitch>>,
-}
-
-/// One driven joint.
-#[derive(Clone, Debug)]
-pub struct Joint {
-    /// Name in the URDF.
-    pub name: String,
-    /// \[rad\] Software range.
-    pub range: [f64; 2],
-    /// \[rad/s\]
-    pub speed_limit: f64,
-    /// \[rad/s^2\] Deceleration for bringing the joint to rest.
-    pub braking: f64,
-    /// \[rad/s^2\] Acceleration that its drives can give it at any angle of its range ([`Robot::acceleration`] is exact);
-    /// infinite for a robot of ideal drives.
-    pub acceleration: f64,
-    /// \[rad\] Comfortable angle for redundancy resolution.
-    pub comfort: f64,
-    /// \[1\] Weight W of the joint's speed in the inverse kinematics (5.36); 1 where the file says none.
-    pub weight: f64,
 }
 
 /// One foot.
@@ -175,6 +157,17 @@ impl Robot {
         self.joints.iter().position(|joint| joint.name == name)
     }
 
+    /// \[rad/s^2\] Most that the drives of joint `j` can accelerate it at these angles \[rad\] of all joints; infinite for a
+    /// joint without a drive.
+    pub fn acceleration(&self, j: usize, angles: &[f64]) -> f64 {
+        acceleration::at(&self.drives, j, angles)
+    }
+
+    /// \[N\] Weight.
+    pub fn weight(&self) -> f64 {
+        self.total_mass * multibody::GRAVITY_ACCELERATION
+    }
+
     /// Everything but the URDF's text: `urdf` is its file name here.
     fn build(top: &Section<'_, '_>, name: String) -> Self {
         let joints = top.tables("joint", Joint::build);
@@ -216,28 +209,6 @@ fn optional<T>(
     build: impl FnOnce(&Section<'_, '_>) -> Option<T>,
 ) -> Option<T> {
     if top.has(key) { top.table(key, build).flatten() } else { None }
-}
-
-impl Joint {
-    fn build(row: &Section<'_, '_>) -> Self {
-        Self {
-            name: row.text("name"),
-            range: row.interval("range_deg", "deg", -360.0..=360.0).map(f64::to_radians),
-            speed_limit: row.number("speed_limit", "rad/s", POSITIVE),
-            braking: row.number("braking", "rad/s^2", POSITIVE),
-            acceleration: f64::INFINITY,
-            comfort: row.number("comfort_deg", "deg", -360.0..=360.0).to_radians(),
-            weight: if row.has("weight") { row.number("weight", "", POSITIVE) } else { 1.0 },
-        }
-        .checked(row)
-    }
-
-    fn checked(self, row: &Section<'_, '_>) -> Self {
-        if self.comfort < self.range[0] || self.comfort > self.range[1] {
-            row.problem("comfort_deg", format!("lies outside of range_deg of joint `{}`", self.name));
-        }
-        self
-    }
 }
 
 impl Contact {
@@ -316,16 +287,6 @@ impl Foot {
             toe,
         }
     }
-}
-
-/// The position of a joint that a key names.
-pub(crate) fn joint_index(at: &Section<'_, '_>, key: &str, name: &str, joints: &[&str]) -> Option<usize> {
-    let found = joints.iter().position(|joint| *joint == name);
-    if found.is_none() && !name.is_empty() {
-        let hint = nearest(name, joints).map_or(String::new(), |n| format!("; the nearest is `{n}`"));
-        at.problem(key, format!("there is no joint `{name}`{hint}"));
-    }
-    found
 }
 
 fn feet(top: &Section<'_, '_>, joints: &[&str]) -> [Foot; 2] {

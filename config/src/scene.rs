@@ -12,11 +12,12 @@ use crate::crane::{Crane, DriveStart};
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
 use crate::joint_control;
+use crate::method::{Integrator, Method};
 use crate::plant_mismatch::PlantMismatch;
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 use crate::sensors::Sensors;
 use crate::terrain::{self, TerrainObject};
-use crate::tolerance::{Method, Tolerance};
+use crate::tolerance::Tolerance;
 
 /// Seed of a scene that says none.
 pub const SEED: u64 = 1;
@@ -69,26 +70,6 @@ pub struct Scene {
     pub pushes: Vec<(f64, PushCommand)>,
     /// Faults of the field bus by time, ascending.
     pub bus_faults: Vec<BusFault>,
-}
-
-/// Integrator of the equations of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Integrator {
-    /// Explicit Euler, first order.
-    Euler,
-    /// Classical Runge-Kutta, fourth order between contact changes.
-    RungeKutta4,
-    /// Drives implicit, contact and bodies explicit, first order: dry friction sticks, and motors do not limit the step.
-    SemiImplicit,
-    /// Backward differentiation with steps chosen for a tolerance; for comparison, not for real time.
-    Bdf,
-}
-
-impl Integrator {
-    /// All of them, in the order of [`Integrator::WORDS`].
-    pub const ALL: [Self; 4] = [Self::Euler, Self::RungeKutta4, Self::SemiImplicit, Self::Bdf];
-    /// Their names in scene files.
-    pub const WORDS: [&str; 4] = ["euler", "rk4", "semi_implicit", "bdf"];
 }
 
 impl Scene {

@@ -7,8 +7,8 @@ use messages::{Command, nearest};
 
 use crate::error::{ConfigError, Problem};
 use crate::file::Hash;
+use crate::method::Method;
 use crate::section::listed;
-use crate::tolerance::Method;
 use crate::{Gait, Robot, Scene, System, scenes};
 
 /// A scene, the robot and gait it names, and the run-time system; each fits the others.

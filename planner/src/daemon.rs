@@ -1,8 +1,9 @@
 //! The process around the planner: `gangwerk planner --run DIR`.
 
+use crate::Planner;
 use crate::gait::MAX_COMMANDS;
 use crate::lease::WalkLease;
-use crate::{Planner, vision};
+use crate::obstacles::KnownObstacles;
 use config::Timeline;
 use daemon::{Connect, Daemon};
 use ipc::Mode;

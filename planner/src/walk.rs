@@ -1,7 +1,7 @@
 //! Builds plans: footholds → feet → ZMP reference → centre of gravity → load, heading: the stages of figure 4.1.
 
 use crate::balance::Balance;
-use crate::com::{GRAVITY, GroundPath};
+use crate::com::GroundPath;
 use crate::feet::FootTrajectories;
 use crate::foot_rollover::FootRollover;
 use crate::footsteps::{Footsteps, StepDemand};
@@ -17,6 +17,7 @@ use crate::walking_model::WalkingModel;
 use config::Gait;
 use curves::Sample;
 use messages::{GaitState, Plan, Step};
+use multibody::GRAVITY_ACCELERATION as GRAVITY;
 use std::f64::consts::FRAC_PI_2;
 
 /// \[s\] Time for raising or lowering the body while standing.

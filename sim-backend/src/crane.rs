@@ -69,7 +69,7 @@ pub(crate) struct Crane {
 impl Crane {
     /// A crane that holds a robot of this mass \[kg\] with the hook at `at` @world: taut, and in balance.
     pub(crate) fn new(of: &Description, hook: Vector3<f64>, at: Vector3<f64>, mass: f64) -> Self {
-        let stretch = mass * -multibody::GRAVITY.z / of.stiffness;
+        let stretch = mass * multibody::GRAVITY_ACCELERATION / of.stiffness;
         let anchor = at + Vector3::z() * (of.rope + stretch);
         let rope = Rope { anchor, hook, length: of.rope, stiffness: of.stiffness, damping: of.damping };
         Self { rope, speed: of.speed, goal: anchor.z }

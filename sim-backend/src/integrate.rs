@@ -1,7 +1,7 @@
 //! Time steps: explicit Euler and classical Runge-Kutta on a flat state vector, semi-implicit Euler by the plant itself,
 //! and the adaptive method of [`crate::stiff`].
 
-use config::scene::Integrator;
+use config::method::Integrator;
 
 use crate::drive::Drive;
 use crate::inputs::PlantInputs;

@@ -155,7 +155,7 @@ impl Plant {
         self.ground.forget();
         let Self { ground: GroundContact { feet, .. }, .. } = self;
         let depth = match height {
-            None => feet.deflection(self.model.mass() * -multibody::GRAVITY.z),
+            None => feet.deflection(self.model.mass() * multibody::GRAVITY_ACCELERATION),
             Some(height) => -height,
         };
         x[2] = -feet.lowest(&self.model, &self.data) - depth;

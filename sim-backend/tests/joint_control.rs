@@ -3,7 +3,7 @@
 mod rig;
 
 use config::Robot;
-use config::scene::Integrator;
+use config::method::Integrator;
 use drives::{
     Cascade, Elasticity, Feedback, Friction, JointControl, Law, Resolution, Sampled, Sampling, VoltageLaw,
 };

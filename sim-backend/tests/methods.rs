@@ -4,7 +4,7 @@
 mod rig;
 
 use config::Robot;
-use config::scene::Integrator;
+use config::method::Integrator;
 use drives::{Elasticity, Friction};
 use environment::Environment;
 use rig::{Rig, lola};

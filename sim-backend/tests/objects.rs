@@ -2,7 +2,7 @@
 
 mod rig;
 
-use config::scene::Integrator;
+use config::method::Integrator;
 use environment::{Environment, Event, Mesh, Object, Pose, Schedule};
 use rig::{Rig, lola};
 

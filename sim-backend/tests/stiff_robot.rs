@@ -1,6 +1,6 @@
 //! The adaptive stiff method on a whole robot: Lola standing on type 3, one hip told to move.
 
-use config::scene::Integrator;
+use config::method::Integrator;
 use config::{Setup, root};
 use environment::Environment;
 use sim_backend::drive::Drive;

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use codec::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
 use codec::layout::{Carries, Layout};
-use config::scene::Integrator;
-use config::tolerance::Method;
+use config::method::Integrator;
+use config::method::Method;
 use config::{Robot, Setup};
 use fieldbus::load::{BIT_RATE, DATA_BIT_RATE, Rates, cycle_time};
 use messages::{BusFrames, Sensors};

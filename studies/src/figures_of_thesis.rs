@@ -12,7 +12,7 @@
 use std::path::{Path, PathBuf};
 
 use config::Setup;
-use config::scene::Integrator;
+use config::method::Integrator;
 use drawing::color::{BLACK, GREY, VERMILION};
 use drawing::{Chart, Figure};
 use messages::Command;

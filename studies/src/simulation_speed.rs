@@ -4,7 +4,7 @@
 use std::error::Error;
 
 use config::Setup;
-use config::scene::Integrator;
+use config::method::Integrator;
 use environment::Environment;
 use messages::RIGHT;
 use realtime::clock::processor_time;

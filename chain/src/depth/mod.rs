@@ -28,8 +28,9 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt::Write;
 
-use config::scene::Integrator::{self, Euler, SemiImplicit};
-use config::tolerance::{Method, Output};
+use config::method::Integrator::{self, Euler, SemiImplicit};
+use config::method::Method;
+use config::tolerance::Output;
 use config::{Robot, Scene, Setup};
 use messages::Command;
 use serde::Serialize;

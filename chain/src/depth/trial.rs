@@ -3,7 +3,8 @@
 use std::error::Error;
 
 use config::Setup;
-use config::tolerance::{Method, Output};
+use config::method::Method;
+use config::tolerance::Output;
 use messages::{EventCode, SimState};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use realtime::clock::processor_time;

@@ -13,7 +13,7 @@ use std::error::Error;
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 
-use config::tolerance::Method;
+use config::method::Method;
 use config::{BusAddress, Setup};
 
 use messages::Process;

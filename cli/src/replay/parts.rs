@@ -15,6 +15,7 @@ use messages::{
     Plan, Process, Sensors, WatchdogReset,
 };
 use planner::Planner;
+use planner::obstacles::KnownObstacles;
 use watchdog::Watchdog;
 
 use super::problem::Problem;

@@ -21,7 +21,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
 
-use config::tolerance::Method;
+use config::method::Method;
 use config::{BusAddress, Setup};
 
 use ipc::{Mode, Run, Space};

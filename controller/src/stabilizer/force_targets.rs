@@ -69,7 +69,7 @@ fn foot_forces(
     let supports: [Support; 2] = std::array::from_fn(|i| support(cycle, at, load[i], i));
     let wrenches = distribute(
         cycle.control,
-        mass * -multibody::GRAVITY.z,
+        mass * multibody::GRAVITY_ACCELERATION,
         (force, at.zmp.into(), com),
         stabilizing,
         &supports,

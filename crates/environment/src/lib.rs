@@ -17,6 +17,7 @@ mod point_triangle;
 mod pose;
 mod query;
 mod read;
+mod reference;
 mod schedule;
 mod shapes;
 mod topology;

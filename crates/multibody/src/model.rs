@@ -8,10 +8,12 @@ use crate::gyro::Gyro;
 use crate::space::{Mat3, V3};
 use crate::sparsity::{Paths, Subtrees};
 
-/// \[m/s^2\] Gravity in the world frame.
-pub const GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
+/// \[m/s^2\] Gravity of all models, downwards.
+pub const GRAVITY_ACCELERATION: f64 = 9.81;
+/// \[m/s^2\] The same in the world frame.
+pub const GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, -GRAVITY_ACCELERATION);
 
-pub(crate) const G: V3 = V3 { x: 0.0, y: 0.0, z: -9.81 };
+pub(crate) const G: V3 = V3 { x: 0.0, y: 0.0, z: -GRAVITY_ACCELERATION };
 
 /// A floating-base tree of rigid bodies.
 ///

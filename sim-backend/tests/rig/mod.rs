@@ -3,8 +3,8 @@
 #![allow(dead_code, reason = "each test uses its part")]
 
 use config::Robot;
+use config::method::Integrator;
 use config::robot::Drive as Motor;
-use config::scene::Integrator;
 use drives::Gear;
 use environment::Environment;
 use multibody::{Data, Frame, Momentum};

@@ -6,7 +6,7 @@ use planner::collocation::Collocation;
 
 use super::{Chart, Cost, Point, cost};
 
-const G: f64 = planner::com::GRAVITY;
+const G: f64 = multibody::GRAVITY_ACCELERATION;
 /// Phases of two steps \[s\].
 const MARKS: [f64; 7] = [0.0, 0.16, 0.64, 0.8, 0.96, 1.44, 1.6];
 /// Kinks of the zero-moment point: \[s\], \[m\].

@@ -3,7 +3,7 @@
 //! Explicit methods and the adaptive one see dry friction smoothed over a small speed, the semi-implicit one sees it as it
 //! is. These are two models; each family is held against a reference of its own.
 
-use config::scene::Integrator;
+use config::method::Integrator;
 use sim_backend::integrate::Stepper;
 
 use super::Point;

@@ -15,7 +15,7 @@
 use std::error::Error;
 
 use config::Setup;
-use config::scene::Integrator;
+use config::method::Integrator;
 use messages::{JointTargets, SimState};
 use multibody::{Data, Frame, Model};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};

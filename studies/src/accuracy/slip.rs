@@ -78,7 +78,7 @@ struct Block {
 
 impl Block {
     fn new(slope: f64, friction: f64, direction: f64) -> Self {
-        let (a, b, g) = (slope.to_radians(), direction.to_radians(), -multibody::GRAVITY.z);
+        let (a, b, g) = (slope.to_radians(), direction.to_radians(), multibody::GRAVITY_ACCELERATION);
         Self {
             law: Law { stiffness: [2e4; 3], damping: [1e3; 3], friction, recovery: 200.0 },
             gravity: [g * a.sin() * b.cos(), g * a.sin() * b.sin(), -g * a.cos()],

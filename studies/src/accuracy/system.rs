@@ -1,6 +1,6 @@
 //! A small system, moved by any method and seen at equally spaced times.
 
-use config::scene::Integrator;
+use config::method::Integrator;
 use sim_backend::integrate::Stepper;
 use sim_backend::stiff::{GaveUp, Limits, Stiff};
 

@@ -97,7 +97,7 @@ impl Mass {
 }
 
 fn exact() -> Motion {
-    let g = -multibody::GRAVITY.z;
+    let g = multibody::GRAVITY_ACCELERATION;
     let landed = (2.0 * FALL / g).sqrt();
     let (k, decay) = (LAW.stiffness[2] / MASS, 0.5 * LAW.damping[2] / MASS);
     let (rest, o) = (-g / k, (k - decay * decay).sqrt());

@@ -12,7 +12,7 @@
 use std::error::Error;
 
 use config::Setup;
-use config::scene::Integrator;
+use config::method::Integrator;
 use sim_backend::drive::Drive;
 use sim_backend::plant::{Plant, orientation};
 use sim_backend::terrain;

@@ -156,7 +156,7 @@ pub(super) fn creep(_: &Bench) -> Findings {
     let law =
         Law { stiffness: [4e4, 4e4, 6e4], damping: [300.0, 300.0, 500.0], friction: 0.8, recovery: 200.0 };
     let (mass, h, tilt) = (10.0, 1e-3, 20_f64.to_radians());
-    let pull = [-multibody::GRAVITY.z * tilt.sin(), 0.0, multibody::GRAVITY.z * tilt.cos()];
+    let pull = [multibody::GRAVITY_ACCELERATION * tilt.sin(), 0.0, multibody::GRAVITY.z * tilt.cos()];
     let (mut r, mut v, mut d, mut before) = ([0.0; 3], [0.0; 3], [0.0; 3], 0.0);
     for i in 0..10_000 {
         let a = point::solve(&law, d, v, r[2] + d[2]);

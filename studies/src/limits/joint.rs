@@ -17,8 +17,8 @@ use ::drives::{
     Sampling, ScrewFriction, Transmission,
 };
 use config::Robot;
+use config::method::Integrator;
 use config::robot::Drive as Description;
-use config::scene::Integrator;
 use environment::Environment;
 use sim_backend::drive::Drive;
 use sim_backend::integrate::Stepper;

@@ -34,7 +34,7 @@ mod touchdown;
 use std::path::{Path, PathBuf};
 
 use config::Setup;
-use config::scene::Integrator;
+use config::method::Integrator;
 use environment::Environment;
 use serde::Serialize;
 use serde_json::json;

@@ -1,6 +1,7 @@
 //! Speeds from counts (F26), and numbers that are none, from wherever they come.
 
-use config::scene::{Integrator, Scene};
+use config::method::Integrator;
+use config::scene::Scene;
 use config::sensors::PerJoint;
 use lowlevel::JointLoop;
 use messages::command::PushCommand;

@@ -3,7 +3,8 @@
 //! Predicted from eigenvalues of the linearised equations, measured by bisection: does a change of 1e-7 grow?
 
 use ::contact::point::{self, Law};
-use config::scene::{Integrator, Scene};
+use config::method::Integrator;
+use config::scene::Scene;
 use messages::EventCode;
 use nalgebra::Complex;
 use sim_backend::drive::Drive;
@@ -58,7 +59,7 @@ pub(super) fn mass_on_layer(_: &Bench) -> Findings {
         let (k, b) = (law.stiffness[2], law.damping[2]);
         let root = Complex::new(b * b - 4.0 * m * k, 0.0).sqrt();
         let values = [1.0, -1.0].map(|sign| (root * sign - b) / (2.0 * m));
-        let at_rest = [0.0, 0.0, multibody::GRAVITY.z.abs() * m / k];
+        let at_rest = [0.0, 0.0, multibody::GRAVITY_ACCELERATION * m / k];
         let stable = |h: f64| {
             let (mut method, mut x) = (stepper(3), at_rest);
             (x[0], x[1]) = (-at_rest[2], 1e-7);

@@ -1,7 +1,8 @@
 //! Dry friction as a sign chatters, as a ramp it creeps; as a set it rests (F5, F6).
 
 use ::drives::{Friction, HarmonicFriction};
-use config::scene::{Integrator, Scene};
+use config::method::Integrator;
+use config::scene::Scene;
 use sim_backend::SimBackend;
 use sim_backend::stiff::{Limits, Stiff, Why};
 

@@ -1,8 +1,8 @@
 //! One walk of the scorecard: set up, walked to its end or its fall, judged.
 
 use config::Setup;
-use config::scene::Integrator;
-use config::tolerance::Method;
+use config::method::Integrator;
+use config::method::Method;
 use messages::{Command, EventCode, Process};
 use realtime::clock::thread_time;
 
