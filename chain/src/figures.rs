@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::ending::Ending;
 use landing::Landing;
-use way::Way;
+use way::StepRecord;
 
 /// Parts of the names of the joints that carry most while walking (thesis 8.1.1).
 const LOADED: [&str; 2] = ["hip_flexion", "knee_flexion"];
@@ -114,7 +114,7 @@ pub struct Gatherer {
     force: f64,
     landing: [Landing; 2],
     margin: Option<f64>,
-    way: Way,
+    way: StepRecord,
     end_pose: [f64; 3],
 }
 

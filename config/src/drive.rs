@@ -70,7 +70,7 @@ struct GearType {
 }
 
 /// Transmission and friction of a row.
-struct Train {
+struct TransmissionRow {
     transmission: Transmission,
     joints: Vec<usize>,
     friction: Friction,
@@ -202,7 +202,7 @@ impl Drive {
         let own =
             if row.has("joint_control") { row.table("joint_control", joint_control::build) } else { None };
         let bought = named(row, "motor", motors).unwrap_or(MotorType::NONE);
-        let train = Train::build(row, joints, gears);
+        let train = TransmissionRow::build(row, joints, gears);
         let mut drive = Self {
             name: row.text("name"),
             transmission: train.transmission,
@@ -233,7 +233,7 @@ impl Drive {
     }
 }
 
-impl Train {
+impl TransmissionRow {
     /// Stand-in while a file is wrong.
     const NONE: Self = Self {
         transmission: Transmission::Harmonic { ratio: f64::NAN },

@@ -10,15 +10,15 @@ use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 #[derive(Clone, Debug)]
 pub struct Gait {
     /// Steps.
-    pub step: Step,
+    pub step: StepSettings,
     /// Model the centre-of-gravity trajectory is planned with.
-    pub model: Model,
+    pub model: GaitModel,
     /// What may be commanded.
-    pub limits: Limits,
+    pub limits: CommandLimits,
     /// Steps over obstacles and onto platforms; none: the robot stays on level ground.
     pub obstacles: Option<Obstacles>,
     /// Stabilizing control.
-    pub control: Control,
+    pub control: StabilizerGains,
     /// \[1\] How far an arm's centre of gravity moves with that of the opposite leg; none: arms hang still.
     pub arm_swing: Option<f64>,
     /// How far the toe joints bend when the heel leaves the ground; none: toes stay straight.
@@ -58,7 +58,7 @@ impl Bend {
 
 /// Steps and feet.
 #[derive(Clone, Debug, Default)]
-pub struct Step {
+pub struct StepSettings {
     /// \[m\] Lateral distance of the sole frames W_step.
     pub width: f64,
     /// \[m\] Least lateral distance of the sole frames W_step,min, feet parallel.
@@ -88,7 +88,7 @@ pub const KNOT_SPACING: f64 = 0.08;
 
 /// The three-mass model (4.38).
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Model {
+pub struct GaitModel {
     /// \[m\] Height of the centre of gravity while walking.
     pub com_height: f64,
     /// \[m\] Where the centre of gravity stands in x, in front of the middle of the sole frames.
@@ -126,7 +126,7 @@ impl CogMethod {
 
 /// Ranges of walking commands (thesis 4.6.1); outside of them a command is refused.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Limits {
+pub struct CommandLimits {
     /// \[m\] Step length.
     pub length: [f64; 2],
     /// \[m\] Step to the side.
@@ -156,7 +156,7 @@ pub struct Obstacles {
 
 /// Gains of the stabilizer (thesis chapter 5).
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Control {
+pub struct StabilizerGains {
     /// \[N m/rad\] K_P of the inclinations phi_x, phi_y (5.2), (5.3).
     pub inclination_p: [f64; 2],
     /// \[N m s/rad\] K_D of the same.
@@ -204,11 +204,11 @@ impl Gait {
         let text = file::text(path, hash)?;
         section::read(path, &text, |top| {
             let gait = Self {
-                step: top.table("step", Step::build).unwrap_or_default(),
-                model: top.table("model", Model::build).unwrap_or_default(),
-                limits: top.table("limits", Limits::build).unwrap_or_default(),
+                step: top.table("step", StepSettings::build).unwrap_or_default(),
+                model: top.table("model", GaitModel::build).unwrap_or_default(),
+                limits: top.table("limits", CommandLimits::build).unwrap_or_default(),
                 obstacles: top.has("obstacles").then(|| top.table("obstacles", Obstacles::build)).flatten(),
-                control: top.table("control", Control::build).unwrap_or_default(),
+                control: top.table("control", StabilizerGains::build).unwrap_or_default(),
                 arm_swing: top.has("arm_swing").then(|| top.number("arm_swing", "1", 0.0..=3.0)),
                 toes: bend(top, "toes"),
                 heel_strike: bend(top, "heel_strike"),
@@ -285,7 +285,7 @@ fn bend(top: &Section<'_, '_>, key: &str) -> Option<Bend> {
     top.has(key).then(|| top.table(key, Bend::build)).flatten()
 }
 
-impl Step {
+impl StepSettings {
     fn build(table: &Section<'_, '_>) -> Self {
         let by_speed: Vec<[f64; 3]> = table.rows("by_speed", "[speed in m/s, length in m, duration in s]");
         if by_speed.first().is_some_and(|row| row[0] > 0.0) {
@@ -315,7 +315,7 @@ impl Step {
     }
 }
 
-impl Model {
+impl GaitModel {
     fn build(table: &Section<'_, '_>) -> Self {
         Self {
             com_height: table.number("com_height", "m", 0.1..=3.0),
@@ -334,7 +334,7 @@ impl Model {
     }
 }
 
-impl Limits {
+impl CommandLimits {
     fn build(table: &Section<'_, '_>) -> Self {
         Self {
             length: table.interval("length", "m", -1.5..=1.5),
@@ -358,7 +358,7 @@ impl Obstacles {
     }
 }
 
-impl Control {
+impl StabilizerGains {
     fn build(table: &Section<'_, '_>) -> Self {
         Self {
             inclination_p: table.numbers("inclination_p", "N m/rad", NOT_NEGATIVE),

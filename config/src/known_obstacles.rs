@@ -6,7 +6,7 @@ use environment::{Mesh, Pose};
 use multibody::{Data, Model};
 use nalgebra::Vector3;
 
-use crate::terrain::Shape;
+use crate::terrain::ObjectShape;
 use crate::{Robot, Setup};
 
 /// Corners of a triangle \[m\] @I_0.
@@ -22,8 +22,8 @@ impl Setup {
         let mut obstacles = Vec::new();
         for object in self.scene.objects.iter().filter(|o| o.known) {
             let mesh = match &object.shape {
-                Shape::Box(size) => Mesh::cuboid(*size)?,
-                Shape::Mesh { file, bytes, scale } => Mesh::parse(file, bytes, *scale)?,
+                ObjectShape::Box(size) => Mesh::cuboid(*size)?,
+                ObjectShape::Mesh { file, bytes, scale } => Mesh::parse(file, bytes, *scale)?,
             };
             let pose = Pose::new(object.pose.position, object.pose.rotation);
             let place = |v: Vector3<f64>| <[f64; 3]>::from(pose.rotation * v + pose.position - begin);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use codec::layout::Layout;
+use codec::layout::FrameLayout;
 use drives::homing::HomeSwitch;
 use messages::MAX_JOINTS;
 
@@ -42,9 +42,9 @@ pub struct Robot {
     /// Named joint poses \[rad\], complete, in joint order.
     pub poses: BTreeMap<String, Vec<f64>>,
     /// Frames of the field bus; as read, those of CAN FD.
-    pub layout: Layout,
+    pub layout: FrameLayout,
     /// Frames of classic CAN, or why there are none.
-    pub classic: Result<Layout, String>,
+    pub classic: Result<FrameLayout, String>,
     /// Local controllers and DBC files that both come from.
     pub can: Can,
     /// Local controllers (indices) that the robot can walk without: nobody stops it if one of them falls silent.
@@ -188,8 +188,8 @@ impl Robot {
             contact: top.table("contact", Contact::build).unwrap_or(Contact::NONE),
             imu: top.numbers("imu", "m", -2.0..=2.0),
             poses: poses(top, &joints),
-            layout: Layout::default(),
-            classic: Ok(Layout::default()),
+            layout: FrameLayout::default(),
+            classic: Ok(FrameLayout::default()),
             can: Can::default(),
             spare: Vec::new(),
             head: optional(top, "head", |table| Head::build(table, &joints)),
@@ -350,7 +350,7 @@ impl Can {
 }
 
 /// Frames of a robot that has no file of them.
-fn written(robot: &str, can: &Can, form: FrameForm, joints: &[&str]) -> Result<Layout, String> {
+fn written(robot: &str, can: &Can, form: FrameForm, joints: &[&str]) -> Result<FrameLayout, String> {
     if can.nodes.is_empty() {
         let key = if form == FrameForm::Fd { "fd" } else { "classic" };
         return Err(format!("can: needs `{key}`, a DBC file, or its local controllers as [[can.node]]"));
@@ -363,7 +363,7 @@ fn written(robot: &str, can: &Can, form: FrameForm, joints: &[&str]) -> Result<L
 }
 
 /// Local controllers by name.
-fn spare(layout: &Layout, names: &[String]) -> Result<Vec<usize>, String> {
+fn spare(layout: &FrameLayout, names: &[String]) -> Result<Vec<usize>, String> {
     let node = |name: &String| {
         layout.nodes.iter().position(|node| node == name).ok_or_else(|| {
             let there = layout.nodes.join(", ");

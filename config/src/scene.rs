@@ -15,7 +15,7 @@ use crate::joint_control;
 use crate::method::{Integrator, Method};
 use crate::plant_mismatch::PlantMismatch;
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
-use crate::sensors::Sensors;
+use crate::sensors::SensorErrors;
 use crate::terrain::{self, TerrainObject};
 use crate::tolerance::Tolerance;
 
@@ -55,7 +55,7 @@ pub struct Scene {
     /// Objects on the ground.
     pub objects: Vec<TerrainObject>,
     /// Errors of the sensors.
-    pub sensors: Sensors,
+    pub sensors: SensorErrors,
     /// Joint control of all drives, instead of the robot's.
     pub joint_control: Option<JointControl>,
     /// Plant mismatch: differences from the model of the robot's software.
@@ -192,8 +192,8 @@ fn method(top: &Section<'_, '_>) -> (Method, Option<Tolerance>) {
 }
 
 /// `[sensors]`, if it is there.
-fn sensors(top: &Section<'_, '_>) -> Sensors {
-    let named = top.has("sensors").then(|| top.table("sensors", Sensors::build));
+fn sensors(top: &Section<'_, '_>) -> SensorErrors {
+    let named = top.has("sensors").then(|| top.table("sensors", SensorErrors::build));
     named.flatten().unwrap_or_default()
 }
 

@@ -16,7 +16,7 @@
 //! the return to zero uses x_d0 (5.32); compression is positive, so the stiffness enters with a minus sign (5.28);
 //! an edge has no vanishing row but rank 2: what it does not resist is position controlled.
 
-use config::gait::Control;
+use config::gait::StabilizerGains;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 use crate::contact::{ContactPhase, FootContact};
@@ -108,7 +108,7 @@ impl Modification {
     }
 
     /// Moves component `i`, which is coordinate `c` of its foot, within its limits (5.33).
-    fn step(&mut self, control: &Control, (i, c): (usize, usize), wanted: f64, dt: f64) {
+    fn step(&mut self, control: &StabilizerGains, (i, c): (usize, usize), wanted: f64, dt: f64) {
         let (limit, rate_limit) = (control.modification_limit[c], control.modification_rate[c]);
         let rate = wanted.clamp(-rate_limit, rate_limit);
         let value = (self.value[i] + rate * dt).clamp(-limit, limit);
@@ -144,7 +144,7 @@ pub(crate) struct FootReference {
 ///
 /// `motion` is N. A foot in the air is position controlled; its forces do not matter (errata 2 to (5.32)).
 pub(crate) fn modify(
-    control: &Control,
+    control: &StabilizerGains,
     motion: &Matrix6<f64>,
     feet: &[(Compliance, FootReference); 2],
     forces: &ForceTargets,
@@ -181,7 +181,7 @@ pub(crate) fn modify(
 /// Rate of what is not force controlled: (5.32), second line, and what early and late contact ask for; a foot
 /// that is late, or has bounced off, goes down at `fall` \[m/s\].
 fn free_part(
-    control: &Control,
+    control: &StabilizerGains,
     foot: &Compliance,
     reference: &FootReference,
     value: &Vector3<f64>,
@@ -278,7 +278,7 @@ mod tests {
     /// (5.26): on the contact it assumes, each force error decays as exp(-K t), by itself, feet coupled or not.
     #[test]
     fn force_errors_decay_independently() {
-        let control = Control { force_feed_forward: 0.0, ..crate::test_gains() };
+        let control = StabilizerGains { force_feed_forward: 0.0, ..crate::test_gains() };
         let mut motion = Matrix6::identity();
         (motion[(0, 3)], motion[(3, 0)], motion[(2, 5)]) = (-0.2, -0.3, 0.1);
         let mut k = Matrix6::zeros();

@@ -33,8 +33,8 @@ mod watch;
 pub use stabilizer::{Controller, verdict};
 
 #[cfg(test)]
-pub(crate) fn test_gains() -> config::gait::Control {
-    config::gait::Control {
+pub(crate) fn test_gains() -> config::gait::StabilizerGains {
+    config::gait::StabilizerGains {
         inclination_p: [1350.0; 2],
         inclination_d: [250.0; 2],
         height_p: 2000.0,

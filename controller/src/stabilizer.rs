@@ -8,7 +8,7 @@ mod speeds;
 mod task;
 mod telemetry;
 
-use config::gait::Control;
+use config::gait::StabilizerGains;
 use config::parameters::STABILIZER;
 use config::{Gait, Robot};
 use messages::{
@@ -46,7 +46,7 @@ struct Followed {
 #[derive(Clone)]
 pub struct Controller {
     robot: Robot,
-    control: Control,
+    control: StabilizerGains,
     clock: CycleClock,
     plan: PlanFollower,
     watch: SafetyWatch,

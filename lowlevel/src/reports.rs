@@ -71,6 +71,6 @@ impl Reports {
 /// Fault of the drive of joint `j`: joint and error code, as in [`EventCode::DriveTripped`].
 pub(crate) fn drive_fault(sensors: &Sensors, j: usize) -> Option<u64> {
     let state = cia402::state_of(sensors.drive_status[j] as u16);
-    let broken = matches!(state, Some(cia402::State::Fault | cia402::State::FaultReaction));
+    let broken = matches!(state, Some(cia402::DriveState::Fault | cia402::DriveState::FaultReaction));
     broken.then(|| j as u64 + (u64::from(sensors.drive_error[j]) << 16))
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use messages::{BusFrames, EventCode};
 use realtime::clock;
 use sercos::packing::{Interfaces, Packing, stations};
-use sercos::{Event, Near, Setup, Stage};
+use sercos::{MasterSetup, Near, RingEvent, Stage};
 
 use crate::fieldbus::{BusSettings, Fieldbus, RunControl};
 
@@ -36,7 +36,7 @@ impl SercosBus {
     /// Opens the interfaces. Nothing is sent.
     pub(crate) fn new(settings: BusSettings, place: &str) -> Result<Self, Box<dyn Error>> {
         let Interfaces { near: (first, second), .. } = place.parse()?;
-        let setup = Setup {
+        let setup = MasterSetup {
             cycle: u32::try_from(settings.period_ns)?,
             losses: settings.losses,
             beat_losses: settings.losses,
@@ -174,13 +174,13 @@ impl Fieldbus for SercosBus {
         let address = |address: Option<u16>| u64::from(address.unwrap_or(0));
         loop {
             match self.near.master_mut().take_event()? {
-                Event::RingBroken(left, right) => {
+                RingEvent::RingBroken(left, right) => {
                     return Some((EventCode::RingBroken, address(left) << 16 | address(right)));
                 }
-                Event::RingClosed => return Some((EventCode::RingClosed, 0)),
-                Event::Restart => return Some((EventCode::BusRestart, 0)),
+                RingEvent::RingClosed => return Some((EventCode::RingClosed, 0)),
+                RingEvent::Restart => return Some((EventCode::BusRestart, 0)),
                 // Silent nodes are reported by the joint loop, on every bus the same.
-                Event::Phase(_) | Event::Lost(_) | Event::Back(_) => {}
+                RingEvent::Phase(_) | RingEvent::Lost(_) | RingEvent::Back(_) => {}
             }
         }
     }

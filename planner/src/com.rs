@@ -125,7 +125,7 @@ fn level(ground: &GroundPath) -> Option<f64> {
 
 impl ThreeMassModel {
     /// For the masses of `model`.
-    pub(crate) fn new(model: &gait::Model) -> Self {
+    pub(crate) fn new(model: &gait::GaitModel) -> Self {
         Self {
             leg: model.leg_mass,
             body: 1.0 - 2.0 * model.leg_mass,

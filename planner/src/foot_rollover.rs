@@ -12,7 +12,7 @@
 //! Values and slopes in between are those of least acceleration (4.30).
 
 use crate::origin::PlanOrigin;
-use crate::pose::Pose;
+use crate::pose::PlanarPose;
 use crate::steps::Stride;
 use config::{Gait, gait, gait::Bend};
 use curves::{Path, Sample, least_acceleration};
@@ -86,7 +86,7 @@ impl FootRollover {
     /// Toes down while a foot that is lifted high is still behind.
     pub(crate) fn tilt<const N: usize>(
         &self,
-        step: &gait::Step,
+        step: &gait::StepSettings,
         strides: &[Stride],
         pitch: &mut [AnglePath<N>; 2],
     ) {
@@ -148,7 +148,7 @@ fn rests(s: &Sample<1>) -> bool {
 }
 
 /// \[m\] Way that `to` lies ahead of `from`.
-fn advance(from: &Pose, to: &Pose) -> f64 {
+fn advance(from: &PlanarPose, to: &PlanarPose) -> f64 {
     from.relative(to).x
 }
 

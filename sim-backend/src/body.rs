@@ -5,7 +5,7 @@ use std::error::Error;
 use config::{Robot, Scene};
 use messages::EventCode;
 
-use crate::drive::{Drive, Motion};
+use crate::drive::{JointCubic, JointMotion};
 use crate::integrate::Stepper;
 use crate::layout::orientation;
 use crate::plant::{Plant, PlantInputs, Snapshot};
@@ -69,7 +69,7 @@ impl SimulatedBody {
 
     /// One cycle of time passes. Returns the first state that is not finite, if there is one: then the state is that of
     /// the beginning of the cycle.
-    pub(crate) fn advance(&mut self, references: &[Drive], inputs: &PlantInputs) -> Option<usize> {
+    pub(crate) fn advance(&mut self, references: &[JointCubic], inputs: &PlantInputs) -> Option<usize> {
         let Self { plant, stepper, state, last_good, .. } = self;
         last_good.copy_from_slice(state);
         plant.sample(self.cycle, state, references, inputs);
@@ -112,20 +112,20 @@ impl SimulatedBody {
         }
         for event in self.plant.advance(time) {
             match *event {
-                environment::Event::Refused(i) => report(EventCode::ObjectHeld, i as u64),
-                environment::Event::Resumed(i) => report(EventCode::ObjectResumed, i as u64),
-                environment::Event::Appeared(_) | environment::Event::Vanished(_) => {}
+                environment::ObjectEvent::Refused(i) => report(EventCode::ObjectHeld, i as u64),
+                environment::ObjectEvent::Resumed(i) => report(EventCode::ObjectResumed, i as u64),
+                environment::ObjectEvent::Appeared(_) | environment::ObjectEvent::Vanished(_) => {}
             }
         }
     }
 
     /// Forces and accelerations at the end of a cycle of `dt` \[s\].
-    pub(crate) fn snapshot(&mut self, dt: f64, references: &[Drive], inputs: &PlantInputs) -> Snapshot {
+    pub(crate) fn snapshot(&mut self, dt: f64, references: &[JointCubic], inputs: &PlantInputs) -> Snapshot {
         self.plant.snapshot(dt, &self.state, references, inputs)
     }
 
     /// Motions of the joints; `goals`: of those that follow.
-    pub(crate) fn joints(&self, goals: &[Motion], motions: &mut [Motion]) {
+    pub(crate) fn joints(&self, goals: &[JointMotion], motions: &mut [JointMotion]) {
         self.plant.joints(&self.state, goals, motions);
     }
 

@@ -12,7 +12,7 @@ use realtime::clock::processor_time;
 use crate::Chain;
 
 /// What a scene did with one method: the outputs of every cycle.
-pub struct Trial {
+pub struct MethodTrial {
     /// The method.
     pub method: Method,
     /// \[s\] Processor time it took.
@@ -39,7 +39,7 @@ pub struct Trial {
 const LOST: [EventCode; 4] =
     [EventCode::Diverged, EventCode::DriveFault, EventCode::ContactNotConverged, EventCode::IntegratorGaveUp];
 
-impl Trial {
+impl MethodTrial {
     /// Simulates the first `cycles` bus cycles of a scene, everything in the loop.
     ///
     /// # Errors

@@ -35,7 +35,9 @@ mod transmission;
 mod turn;
 
 pub use ankle::{Ankle, AnkleGeometry};
-pub use control::{Cascade, Feedback, JointControl, Law, Resolution, Sampled, Sampling, Side, VoltageLaw};
+pub use control::{
+    Cascade, ControlLaw, Feedback, GearSide, JointControl, Resolution, Sampled, Sampling, VoltageLaw,
+};
 pub use elasticity::Elasticity;
 pub use fixed_table::FixedTable;
 pub use friction::{Friction, HarmonicFriction, NoLoadTorque, ScrewFriction, Sliding};

@@ -29,7 +29,7 @@ pub use mesh::Mesh;
 pub use object::Object;
 pub use point_triangle::{Feature, closest};
 pub use pose::Pose;
-pub use query::{Environment, Event, Hit, REACH, Surface};
+pub use query::{Environment, Hit, ObjectEvent, REACH, Surface};
 pub use read::ReadError;
 pub use schedule::Schedule;
 pub use topology::MeshRepairs;

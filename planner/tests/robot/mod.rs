@@ -4,7 +4,7 @@
 pub mod checks;
 pub mod feasible;
 
-use config::gait::{CogMethod, Control, Gait, Limits, Model, Obstacles, Step};
+use config::gait::{CogMethod, CommandLimits, Gait, GaitModel, Obstacles, StabilizerGains, StepSettings};
 use messages::{Command, ControllerState, EventCode, Plan, Record};
 use planner::Planner;
 use realtime::clock;
@@ -20,7 +20,7 @@ pub const TOES: [Option<[f64; 2]>; 2] = [Some([-0.7767, 0.1623]), Some([-0.1885,
 pub fn gait() -> Gait {
     Gait {
         arm_swing: None,
-        step: Step {
+        step: StepSettings {
             width: 0.21,
             width_min: 0.16,
             swing_height: 0.05,
@@ -38,7 +38,7 @@ pub fn gait() -> Gait {
                 [3.0 / 3.6, 0.58, 0.58 * 3.6 / 3.0],
             ],
         },
-        model: Model {
+        model: GaitModel {
             com_height: 0.80,
             com_forward: -0.10,
             leg_mass: 0.082,
@@ -48,7 +48,7 @@ pub fn gait() -> Gait {
             spacing: 0.08,
             friction: 0.5,
         },
-        limits: Limits {
+        limits: CommandLimits {
             length: [-0.2, 0.66],
             side: [-0.2, 0.2],
             turn: [-0.35, 0.35],
@@ -62,7 +62,7 @@ pub fn gait() -> Gait {
             tilt: 0.4,
             duration: 1.2,
         }),
-        control: Control {
+        control: StabilizerGains {
             inclination_p: [0.0; 2],
             inclination_d: [0.0; 2],
             height_p: 0.0,

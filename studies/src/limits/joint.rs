@@ -13,20 +13,20 @@ use std::f64::consts::PI;
 
 use ::drives::elastic_joint::{ElasticJoint, Gains};
 use ::drives::{
-    Cascade, Elasticity, Feedback, Friction, HarmonicFriction, JointControl, Law, Motor, Resolution, Sampled,
-    Sampling, ScrewFriction, Transmission,
+    Cascade, ControlLaw, Elasticity, Feedback, Friction, HarmonicFriction, JointControl, Motor, Resolution,
+    Sampled, Sampling, ScrewFriction, Transmission,
 };
 use config::Robot;
 use config::method::Integrator;
 use config::robot::Drive as Description;
 use environment::Environment;
-use sim_backend::drive::Drive;
+use sim_backend::drive::JointCubic;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs};
 
 use crate::search::{Width, middle};
 
-use super::Rule::{AtLeast, AtMost, Within};
+use super::LimitRule::{AtLeast, AtMost, Within};
 use super::{Bench, Findings, Result, row};
 
 /// A leg joint standing, and the same in the air (errata 2.14): HFUC-25-100 with a large motor.
@@ -98,7 +98,7 @@ impl Loop {
         x[2] += 1e3;
         x[l.layer()].fill(0.0);
         (x[l.speed()][6], x[l.rotor_speed()][0]) = (link, rotor);
-        let (drives, inputs) = ([Drive::resting(0.0)], PlantInputs::POWERED);
+        let (drives, inputs) = ([JointCubic::resting(0.0)], PlantInputs::POWERED);
         let cycle = self.sampled.map_or(1e-3, |(period, _)| period);
         let longest = STEPS[usize::from(self.sampled.is_none())];
         let (cycles, steps) = ((self.seconds / cycle) as usize, (cycle / longest).ceil() as usize);
@@ -168,7 +168,7 @@ impl Loop {
             winding: None,
             encoder_counts: None,
             control: JointControl {
-                law: Law::Cascade(cascade),
+                law: ControlLaw::Cascade(cascade),
                 sampling: self.sampled.map_or(Sampling::Continuous, |(_, sampled)| Sampling::Cycle(sampled)),
                 resolution: Resolution::default(),
             },

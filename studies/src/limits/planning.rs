@@ -7,7 +7,7 @@ use planner::collocation::Collocation;
 
 use crate::search::slope;
 
-use super::Rule::Within;
+use super::LimitRule::Within;
 use super::{Bench, Findings, row, stepper};
 
 const HEIGHT: f64 = 0.9;
