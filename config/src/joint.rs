@@ -15,7 +15,7 @@ pub struct Joint {
     pub speed_limit: f64,
     /// \[rad/s^2\] Deceleration for bringing the joint to rest.
     pub braking: f64,
-    /// \[rad/s^2\] Acceleration that its drives can give it at any angle of its range ([`Robot::acceleration`] is exact);
+    /// \[rad/s^2\] Acceleration that its drives can give it at any angle of its range ([`crate::Robot::acceleration`] is exact);
     /// infinite for a robot of ideal drives.
     pub acceleration: f64,
     /// \[rad\] Comfortable angle for redundancy resolution.

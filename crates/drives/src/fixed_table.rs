@@ -9,7 +9,7 @@
 //! | h | distance of the points, the same whole number everywhere | 2^-29 rad |
 //!
 //! a and r are as large as the largest number in its column allows, so that 31 bits and a sign are used. An angle between two
-//! points is met by linear interpolation, the weights in 30 bits. Its error is that of [`Table`](crate::lookup::Table),
+//! points is met by linear interpolation, the weights in 30 bits. Its error is that of [`LookupTable`](crate::lookup::LookupTable),
 //! at most h²/8 times the second derivative in each dimension, until the table is so fine that rounding is more:
 //! [`FixedTable::rounding`].
 

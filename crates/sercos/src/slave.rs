@@ -314,7 +314,7 @@ impl Slave {
             (CommunicationPhase::Cp0, TelegramKind::Mdt) => {}
             (CommunicationPhase::Cp0, TelegramKind::At) => self.write_address(header, data),
             (CommunicationPhase::Cp1 | CommunicationPhase::Cp2, kind) => {
-                self.process_early(kind, telegram, data)
+                self.process_early(kind, telegram, data);
             }
             // CP3 and CP4: each field may lie in another telegram.
             (_, TelegramKind::Mdt) => {
