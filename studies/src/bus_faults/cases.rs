@@ -89,7 +89,7 @@ impl InstantDemand {
         }
         match &self.reacts {
             None if self.may_fall => {
-                demand(row.end < TrialEnd::Fell, "joints at rest before it falls".into())
+                demand(row.end < TrialEnd::Fell, "joints at rest before it falls".into());
             }
             None => demand(row.end == TrialEnd::Walks, "walks on".into()),
             Some((code, cycles)) => {
