@@ -3,7 +3,7 @@
 use harness::{Running, Said, Signal, Site, doze, turn};
 use messages::topics::{CONTROLLER_STATE, INPUTS_CONTROLLER, INPUTS_PLANNER, JOINT_TARGETS, SIM_STATE};
 use messages::{ControllerState, CycleInputs, JointTargets, Process, Record, SimState, Topic};
-use recording::{End, Log};
+use recording::{Log, LogEnd};
 use std::path::PathBuf;
 
 const EXE: &str = harness::executable!();
@@ -101,6 +101,6 @@ fn the_log_of_a_killed_logger_is_repaired() {
     assert!(said.err.contains("it ended in the middle; repaired, with "), "{}", said.err);
     for part in ["wait.mcap", "wait.2.mcap"] {
         let log = Log::open(&site.path(part)).unwrap();
-        assert_eq!(log.each(|_| ()).unwrap(), End::Complete, "{part}");
+        assert_eq!(log.each(|_| ()).unwrap(), LogEnd::Complete, "{part}");
     }
 }

@@ -8,7 +8,7 @@ use harness::{Running, Site, doze, turn};
 use ipc::{Reader, Space, StopButton, StopName};
 use messages::topics::{EVENTS_WATCHDOG, POWER, SIM_STATE};
 use messages::{Event, EventCode, Power, Process, SimState};
-use realtime::{Schedule, clock, prepare_side_thread};
+use realtime::{ThreadSchedule, clock, prepare_side_thread};
 use rustix::process::Signal;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -321,7 +321,7 @@ fn every_request_is_answered_and_the_supply_is_off() {
     let spin = |_: &mut Rig| {
         let until = clock::now() + SECOND / 20;
         Some(Load::start(1, move || {
-            prepare_side_thread(&Schedule { priority: 55, core: Some(1) });
+            prepare_side_thread(&ThreadSchedule { priority: 55, core: Some(1) });
             while clock::now() < until {
                 std::hint::spin_loop();
             }

@@ -14,7 +14,7 @@ use messages::{
     Record, SimState, Topic,
 };
 use realtime::clock;
-use recording::{End, Log};
+use recording::{Log, LogEnd};
 use std::fmt::Write;
 
 const EXE: &str = harness::executable!();
@@ -313,7 +313,7 @@ fn check_log(e: &Evidence) {
     let mut last = 0;
     let end = log.each_record(&SIM_STATE, |s: &SimState| last = s.header.tick).unwrap();
     // Also the log of a logger that was killed: the supervisor has given it its index.
-    assert_eq!(end, End::Complete);
+    assert_eq!(end, LogEnd::Complete);
     if e.victim == Process::Logger {
         // Its last flush is half a second old, or a little more.
         assert!(last + 700 >= e.tick(), "the log of the killed logger ends at tick {last} of {}", e.tick());

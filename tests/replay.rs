@@ -92,7 +92,7 @@ fn after<T: Record>(
         found += 1;
         if let Some(change) = change {
             change(&mut record);
-            *payload = cdr::Encoder::new().encode(&record).to_vec();
+            *payload = cdr::CdrEncoder::new().encode(&record).to_vec();
         }
         change.is_some()
     })

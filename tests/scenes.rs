@@ -192,6 +192,23 @@ fn board_2cm() {
     assert!(f["end_pose"][0].as_f64().unwrap() > 3.4, "over the board and on: {f:#}");
 }
 
+/// The same board on heels: less sway about x than on flat feet.
+#[test]
+fn heel_strike() {
+    let sway = |f: &Value| f["inclination_error_max_rad"][1].as_f64().unwrap();
+    let heels = figures_within("heel_strike", 20.0, UNKNOWN_GROUND);
+    let flat = figures_within("board_2cm", 20.0, UNKNOWN_GROUND);
+    assert!(heels["end_pose"][0].as_f64().unwrap() > 3.4, "over the board and on: {heels:#}");
+    assert!(sway(&heels) < 0.7 * sway(&flat), "{} and {} rad", sway(&heels), sway(&flat));
+}
+
+/// Tilted ground, soft soles, a knee that reads wrong.
+#[test]
+fn plant_mismatch() {
+    let f = figures_within("plant_mismatch", 20.0, UNKNOWN_GROUND);
+    walks(&f, 2.0);
+}
+
 #[test]
 fn holes() {
     let f = figures_within("holes", 24.0, UNKNOWN_GROUND);
@@ -267,6 +284,11 @@ fn distance() {
 #[test]
 fn johnnie_2kmh() {
     walks(&figures("johnnie_2kmh", 21.0), 2.0);
+}
+
+#[test]
+fn johnnie_motor_encoders() {
+    walks(&figures("johnnie_motor_encoders", 21.0), 2.0);
 }
 
 #[test]

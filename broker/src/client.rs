@@ -51,7 +51,7 @@ pub struct Client {
     role: String,
     /// Commands that were too old or had lost their lease.
     left_out: VecDeque<(Live, Reason)>,
-    shared: Arc<Shared>,
+    shared: Arc<ConnectionState>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -78,7 +78,7 @@ pub struct Answered {
 }
 
 #[derive(Debug, Default)]
-struct Shared {
+struct ConnectionState {
     connected: AtomicBool,
     end: AtomicBool,
     lost_out: AtomicU64,
@@ -117,7 +117,7 @@ impl Client {
         let (other, far_other) = rings();
         let (verdicts, given) = RingBuffer::new(2 * RING);
         let (answered, answers) = RingBuffer::new(2 * RING);
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(ConnectionState::default());
         let name = unique(role);
         let inbox = client_queue(&name);
         let [high, normal, low] = PUBLISH.map(|queue| space.queue_sender(queue, BROKER_BELL));
@@ -134,7 +134,7 @@ impl Client {
             inbox: space.queue_receiver(&inbox)?,
             bell,
             no_room: 0,
-            link: Link::Unknown,
+            link: BrokerLink::Unknown,
             unanswered: 0,
             token: token(&name),
             name,
@@ -270,21 +270,21 @@ struct Courier {
     rings: [FarEnds; 2],
     verdicts: Consumer<(Live, Verdict)>,
     answers: Producer<Answered>,
-    shared: Arc<Shared>,
+    shared: Arc<ConnectionState>,
     publish: [QueueSender; 3],
     registration: QueueSender,
     inbox: QueueReceiver,
     bell: QueueWaiter,
     /// Messages for which the rings had no room.
     no_room: u64,
-    link: Link,
+    link: BrokerLink,
     /// Renewals since the broker's last answer.
     unanswered: u32,
 }
 
 /// Whether the broker answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Link {
+enum BrokerLink {
     /// It has not had the time.
     Unknown,
     Up,
@@ -304,7 +304,7 @@ impl Courier {
             self.bring_in();
             self.carry_out();
             self.carry_verdicts();
-            self.shared.connected.store(self.link == Link::Up, Relaxed);
+            self.shared.connected.store(self.link == BrokerLink::Up, Relaxed);
             self.bell.wait(POLL);
         }
         self.carry_out();
@@ -315,7 +315,7 @@ impl Courier {
     fn register(&mut self) {
         self.unanswered += 1;
         if self.unanswered > SILENT {
-            self.link = Link::Down;
+            self.link = BrokerLink::Down;
         }
         let lost = self.shared.lost_in.load(Relaxed) as u32;
         let numbers = [self.token, self.domains, lost];
@@ -328,14 +328,14 @@ impl Courier {
     /// robot. An emergency stop is sent in any case.
     fn carry_out(&mut self) {
         for (ring, urgent) in self.rings.iter_mut().zip([true, false]) {
-            if self.link == Link::Unknown && !urgent {
+            if self.link == BrokerLink::Unknown && !urgent {
                 continue;
             }
             for _ in 0..RING {
                 let Ok((live, priority)) = ring.out.pop() else { break };
                 let mut buffer = [0; MAX_BYTES];
                 let stamp = Stamp { origin: self.token, ..live.stamp };
-                let sent = (urgent || self.link == Link::Up)
+                let sent = (urgent || self.link == BrokerLink::Up)
                     && write_command(&live.command, priority, &stamp, &mut buffer)
                         .is_ok_and(|bytes| self.publish[priority as usize].send(bytes));
                 self.shared.lost_out.fetch_add(u64::from(!sent), Relaxed);
@@ -365,7 +365,7 @@ impl Courier {
             if let Ok(message) = &message
                 && message.domain == SERVICE
             {
-                (self.link, self.unanswered) = (Link::Up, 0);
+                (self.link, self.unanswered) = (BrokerLink::Up, 0);
                 hear(message, &self.shared, &mut self.answers);
                 continue;
             }
@@ -381,7 +381,7 @@ impl Courier {
 }
 
 /// Messages of the broker to this client itself.
-fn hear(message: &Message<'_>, shared: &Shared, answers: &mut Producer<Answered>) {
+fn hear(message: &Message<'_>, shared: &ConnectionState, answers: &mut Producer<Answered>) {
     let sequence = message.stamp.sequence;
     match message.id {
         service::LEASE => {

@@ -21,7 +21,7 @@ use tokio::sync::{Semaphore, mpsc, oneshot};
 use tokio::time::timeout;
 
 use crate::exchange::FIRST_STREAM;
-use crate::inlet::{Gate, Request, Table};
+use crate::inlet::{BrokerTable, Gate, Request};
 use crate::keys::{self, Half, Key, NONCE, TAG};
 use crate::log_gate::LogGate;
 use crate::members::Outgoing;
@@ -349,9 +349,9 @@ impl Session {
                 };
                 Request::Subscribe { token, sequence, domains }
             }
-            service::STATISTICS => Request::Lines { token, sequence, table: Table::Statistics },
-            service::DESCRIBE => Request::Lines { token, sequence, table: Table::Commands },
-            service::PARAMETERS => Request::Lines { token, sequence, table: Table::Parameters },
+            service::STATISTICS => Request::Lines { token, sequence, table: BrokerTable::Statistics },
+            service::DESCRIBE => Request::Lines { token, sequence, table: BrokerTable::Commands },
+            service::PARAMETERS => Request::Lines { token, sequence, table: BrokerTable::Parameters },
             service::WATCH => {
                 let &[low, high, events @ (0 | 1)] = message.payload else {
                     return Err(Refusal::Malformed("a WATCH without rate and events".into()));

@@ -10,9 +10,9 @@ use std::time::Duration;
 use config::{Setup, System};
 use ipc::{Reader, Run, Space, Writer};
 use messages::{CommandTaken, Detail, Event, EventCode, Header, Live, Process, Sensors, topics};
-use realtime::{Schedule, Stop, clock, prepare_thread};
+use realtime::{Stop, ThreadSchedule, clock, prepare_thread};
 
-use crate::exchange::{Exchange, Report};
+use crate::exchange::{BrokerEvent, Exchange};
 use crate::observation::Observation;
 use crate::{doors, inlet, keys};
 
@@ -45,7 +45,7 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
     let run = Run::load(dir)?;
     let system = System::load(&run.config.join("system.toml"))?;
     let row = system.process(Process::Broker);
-    let granted = prepare_thread(&Schedule { priority: 0, core: row.and_then(|row| row.core) });
+    let granted = prepare_thread(&ThreadSchedule { priority: 0, core: row.and_then(|row| row.core) });
     for missing in &granted.missing {
         tracing::warn!("broker degraded: {missing}");
     }
@@ -78,11 +78,11 @@ pub fn serve(run: &Run, tcp: &Tcp, stop: &Stop) -> Result<(), String> {
     events.write(EventCode::Started, Detail::Nothing);
     while !stop.asked() {
         let busy = exchange.turn(clock::now(), &mut |report| match report {
-            Report::Refused(address) => {
+            BrokerEvent::Refused(address) => {
                 events.write(EventCode::CommandRefused, Detail::Message(address.into()))
             }
-            Report::Denied(live, code) => events.denied(&live, code),
-            Report::Lost(messages) => events.write(EventCode::MessagesLost, Detail::Count(messages)),
+            BrokerEvent::Denied(live, code) => events.denied(&live, code),
+            BrokerEvent::Lost(messages) => events.write(EventCode::MessagesLost, Detail::Count(messages)),
         });
         if !busy {
             exchange.wait(LOOK);

@@ -41,7 +41,7 @@ pub const RESERVE: usize = 8;
 
 /// Places of one door.
 #[derive(Clone, Copy, Debug)]
-pub struct Places {
+pub struct DoorPlaces {
     /// Connections at once.
     pub total: usize,
     /// Of them, for one user or address.
@@ -51,11 +51,11 @@ pub struct Places {
 }
 
 /// Places at the socket; other users share a few of them.
-pub const SOCKET_PLACES: Places = Places { total: 72, each: 64, first: FIRST_STREAM };
+pub const SOCKET_PLACES: DoorPlaces = DoorPlaces { total: 72, each: 64, first: FIRST_STREAM };
 /// Of the places at the socket, those of each other user.
 const OTHER_USERS: usize = 4;
 /// Places at the TCP port.
-pub const TCP_PLACES: Places = Places { total: 32, each: 16, first: 0xc000_0000 };
+pub const TCP_PLACES: DoorPlaces = DoorPlaces { total: 32, each: 16, first: 0xc000_0000 };
 /// Messages per second, and at once, of a connection that may not command, or not yet.
 const STRANGER_RATE: f64 = 100.0;
 
@@ -186,7 +186,7 @@ struct Open {
 
 /// Connections of one door.
 struct Door {
-    places: Places,
+    places: DoorPlaces,
     gate: Gate,
     keys: Arc<Vec<Key>>,
     open: Vec<Open>,
@@ -199,7 +199,7 @@ struct Door {
 type End = (u32, String, Refusal);
 
 impl Door {
-    fn new(places: Places, gate: Gate, keys: Vec<Key>) -> Self {
+    fn new(places: DoorPlaces, gate: Gate, keys: Vec<Key>) -> Self {
         let (ends, mut ended) = mpsc::unbounded_channel::<End>();
         tokio::spawn(async move {
             let mut log = LogGate::default();

@@ -42,7 +42,7 @@ const LEASE_ROUND: u64 = SECOND / 20;
 
 /// The broker's events, for the log.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Report {
+pub enum BrokerEvent {
     /// A command was refused by the broker itself; number of the reason.
     Denied(Live, u8),
     /// A message was refused; its (domain, id) as one number, domain first.
@@ -116,7 +116,7 @@ impl<'a> Exchange<'a> {
 
     /// Forwards what waits, at most a bounded number of messages, then serves registrations and answers. Returns
     /// whether there was anything to do; never waits.
-    pub fn turn(&mut self, now_ns: u64, report: &mut dyn FnMut(Report)) -> bool {
+    pub fn turn(&mut self, now_ns: u64, report: &mut dyn FnMut(BrokerEvent)) -> bool {
         self.now = now_ns;
         let mut busy = false;
         for _ in 0..AT_ONCE {
@@ -143,11 +143,11 @@ impl<'a> Exchange<'a> {
     }
 
     /// Everything that is a matter of time.
-    fn look_around(&mut self, report: &mut dyn FnMut(Report)) {
+    fn look_around(&mut self, report: &mut dyn FnMut(BrokerEvent)) {
         while let Some(asked) = self.pending.overdue(self.now) {
             let refusal = Refusal::NoAnswer(asked.command.decided_by());
             let stamp = Stamp { origin: asked.origin, sequence: asked.sequence, ..Stamp::default() };
-            report(Report::Denied(Live { command: asked.command, stamp }, refusal.code()));
+            report(BrokerEvent::Denied(Live { command: asked.command, stamp }, refusal.code()));
             self.refuse(asked.origin, asked.sequence, address(&asked.command), &refusal, report);
         }
         if let Some(former) = self.lease.expire(self.now) {
@@ -165,7 +165,7 @@ impl<'a> Exchange<'a> {
     }
 
     /// Forwards the most urgent message; false if none waits.
-    fn forward_next(&mut self, report: &mut dyn FnMut(Report)) -> bool {
+    fn forward_next(&mut self, report: &mut dyn FnMut(BrokerEvent)) -> bool {
         for class in 0..Priority::ALL.len() {
             if let Some(bytes) = self.publish[class].receive() {
                 let mut bytes = bytes.to_vec();
@@ -183,7 +183,7 @@ impl<'a> Exchange<'a> {
     }
 
     /// Checks a message and gives it to every client but its sender that subscribed to its domain.
-    fn forward(&mut self, from: u32, class: usize, bytes: &mut [u8], report: &mut dyn FnMut(Report)) {
+    fn forward(&mut self, from: u32, class: usize, bytes: &mut [u8], report: &mut dyn FnMut(BrokerEvent)) {
         let checked =
             Message::parse(bytes).and_then(|m| m.command_of_class(class).map(|command| (command, m.stamp)));
         let sequence = Message::parse(bytes).map_or(0, |m| m.stamp.sequence);
@@ -191,7 +191,7 @@ impl<'a> Exchange<'a> {
             let stamp = Stamp { origin: from, ..stamp };
             let admitted = self.admit(from, &command, Priority::ALL[class], &stamp);
             let admitted = admitted
-                .inspect_err(|refusal| report(Report::Denied(Live { command, stamp }, refusal.code())));
+                .inspect_err(|refusal| report(BrokerEvent::Denied(Live { command, stamp }, refusal.code())));
             Ok((command, Stamp { grant: admitted?, ..stamp }))
         });
         let (command, stamp) = match admitted {
@@ -212,7 +212,7 @@ impl<'a> Exchange<'a> {
                 self.deliver(from, class, &command, bytes);
             }
             let refusal = Refusal::NobodyListens(name);
-            report(Report::Denied(Live { command, stamp }, refusal.code()));
+            report(BrokerEvent::Denied(Live { command, stamp }, refusal.code()));
             return self.refuse(from, stamp.sequence, address(&command), &refusal, report);
         };
         if command == Command::EmergencyStop || self.pending.has_room(decider, class) {
@@ -225,14 +225,14 @@ impl<'a> Exchange<'a> {
     }
 
     /// The turn of a command that waited for room: it may have become too old.
-    fn resume(&mut self, queued: Queued, report: &mut dyn FnMut(Report)) {
+    fn resume(&mut self, queued: Queued, report: &mut dyn FnMut(BrokerEvent)) {
         let Queued { origin, sequence, class, decider, command, bytes } = queued;
         let stamp = Message::parse(&bytes).map(|m| m.stamp).unwrap_or_default();
         if !command.always_passes()
             && let Err(reason) = stamp.check_age(self.now)
         {
             let refusal = Refusal::because(reason, &command);
-            report(Report::Denied(Live { command, stamp }, refusal.code()));
+            report(BrokerEvent::Denied(Live { command, stamp }, refusal.code()));
             return self.refuse(origin, sequence, address(&command), &refusal, report);
         }
         self.pending.ask(origin, sequence, command, decider, self.now);
@@ -291,14 +291,14 @@ impl<'a> Exchange<'a> {
         sequence: u64,
         address: u32,
         refusal: &Refusal,
-        report: &mut dyn FnMut(Report),
+        report: &mut dyn FnMut(BrokerEvent),
     ) {
         self.refused += 1;
         if let Some(folded) = self.log.admit(self.now) {
             let who = self.name(from);
             tracing::warn!(code = refusal.code(), folded, "message of {who} refused: {refusal}");
         }
-        report(Report::Refused(address));
+        report(BrokerEvent::Refused(address));
         let answer = refusal.to_message(sequence, self.now);
         self.answer(from, answer);
     }
@@ -314,7 +314,7 @@ impl<'a> Exchange<'a> {
     }
 
     /// Serves one registration or verdict; false if none waits.
-    fn serve_queue(&mut self, report: &mut dyn FnMut(Report)) -> bool {
+    fn serve_queue(&mut self, report: &mut dyn FnMut(BrokerEvent)) -> bool {
         let Some(bytes) = self.registration.receive() else { return false };
         let bytes = bytes.to_vec();
         let message = Message::parse(&bytes);
@@ -336,7 +336,7 @@ impl<'a> Exchange<'a> {
     }
 
     /// The process that decides has answered.
-    fn verdict(&mut self, message: &Message<'_>, report: &mut dyn FnMut(Report)) -> Option<()> {
+    fn verdict(&mut self, message: &Message<'_>, report: &mut dyn FnMut(BrokerEvent)) -> Option<()> {
         let (decider, rest) = split_u32(message.payload)?;
         let (origin, rest) = split_u32(rest)?;
         let (&code, text) = rest.split_first()?;
@@ -349,7 +349,7 @@ impl<'a> Exchange<'a> {
             self.accept(origin, asked.sequence, process);
         } else {
             self.refused += 1;
-            report(Report::Refused(address(&asked.command)));
+            report(BrokerEvent::Refused(address(&asked.command)));
             let text = String::from_utf8_lossy(text);
             let payload =
                 [&[code], format!("{} refused by {process}: {text}", asked.command.name()).as_bytes()]
@@ -368,14 +368,14 @@ impl<'a> Exchange<'a> {
         self.publish.iter().map(QueueReceiver::lost).sum()
     }
 
-    fn report_losses(&mut self, report: &mut dyn FnMut(Report)) {
+    fn report_losses(&mut self, report: &mut dyn FnMut(BrokerEvent)) {
         let lost = self.lost_before_forwarding() + self.members.iter().map(|m| m.lost).sum::<u64>();
         if lost > self.reported_lost {
             tracing::warn!(
                 "{} messages lost since the last report; statistics say by whom",
                 lost - self.reported_lost
             );
-            report(Report::Lost(lost - self.reported_lost));
+            report(BrokerEvent::Lost(lost - self.reported_lost));
         }
         self.reported_lost = lost;
     }

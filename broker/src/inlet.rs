@@ -19,7 +19,7 @@ pub enum Request {
     /// Sets the domains of a client.
     Subscribe { token: u32, sequence: u64, domains: u32 },
     /// Asks for a table.
-    Lines { token: u32, sequence: u64, table: Table },
+    Lines { token: u32, sequence: u64, table: BrokerTable },
     /// Wants to see the robot: times per second, and whether events.
     Watch { token: u32, sequence: u64, rate: u16, events: bool },
     /// Gives a parameter another value.
@@ -38,7 +38,7 @@ pub enum Request {
 
 /// Tables that a client can ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Table {
+pub enum BrokerTable {
     /// Commands.
     Commands,
     /// Parameters of all processes.

@@ -7,7 +7,7 @@ use tokio::sync::mpsc;
 use crate::admission::Sender;
 
 /// The way to a client.
-pub(crate) enum Exit {
+pub(crate) enum MemberExit {
     /// A process of the run: queue, and when it last renewed its registration \[ns\].
     Queue { sender: Box<QueueSender>, renewed: u64 },
     /// A stream.
@@ -29,7 +29,7 @@ pub(crate) struct Member {
     pub(crate) name: String,
     pub(crate) sender: Sender,
     pub(crate) domains: u32,
-    pub(crate) exit: Exit,
+    pub(crate) exit: MemberExit,
     pub(crate) sent: u64,
     pub(crate) lost: u64,
     pub(crate) watch: Watch,
@@ -54,16 +54,16 @@ impl Member {
         self.sent += 1;
         match &mut self.exit {
             // The receiving end counts what is lost and tells it with its registration.
-            Exit::Queue { sender, .. } => _ = sender.send(bytes),
-            Exit::Stream(out) => self.lost += u64::from(out.frames.try_send(bytes.to_vec()).is_err()),
+            MemberExit::Queue { sender, .. } => _ = sender.send(bytes),
+            MemberExit::Stream(out) => self.lost += u64::from(out.frames.try_send(bytes.to_vec()).is_err()),
         }
     }
 
     /// Answers a frame of this client.
     pub(crate) fn answer(&mut self, bytes: Vec<u8>) {
         match &mut self.exit {
-            Exit::Queue { sender, .. } => _ = sender.send(&bytes),
-            Exit::Stream(out) => _ = out.answers.send(bytes),
+            MemberExit::Queue { sender, .. } => _ = sender.send(&bytes),
+            MemberExit::Stream(out) => _ = out.answers.send(bytes),
         }
     }
 
@@ -72,7 +72,7 @@ impl Member {
     }
 
     pub(crate) fn is_process(&self) -> bool {
-        matches!(self.exit, Exit::Queue { .. })
+        matches!(self.exit, MemberExit::Queue { .. })
     }
 
     /// Whether it is the process of that name: its own name is `NAME-PID-COUNT`.

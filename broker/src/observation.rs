@@ -3,7 +3,7 @@
 //! The broker reads topics as any observer does: no process knows of it or waits for it.
 
 use config::Setup;
-use config::registry::{self, Change, Entry};
+use config::registry::{self, Change, ParameterEntry};
 use ipc::{IpcError, Reader, Space};
 use messages::command_stamp::{LEASE, MAX_AGE};
 use messages::topics::{
@@ -28,14 +28,14 @@ const EVENTS: [&Topic; 7] = [
 ];
 
 /// The newest records; none before the first.
-struct Seen<'a> {
+struct NewestRecords<'a> {
     sensors: Option<&'a Sensors>,
     controller: Option<&'a ControllerState>,
     power: Option<&'a Power>,
 }
 
 /// Numbers of a STATE: name, unit, how many, meaning, and where the i-th comes from.
-type Field = (&'static str, &'static str, usize, &'static str, fn(&Seen<'_>, usize) -> Option<f64>);
+type Field = (&'static str, &'static str, usize, &'static str, fn(&NewestRecords<'_>, usize) -> Option<f64>);
 
 #[rustfmt::skip]
 const STATE: &[Field] = &[
@@ -77,7 +77,7 @@ struct Set {
 
 /// Readers of a running robot, and the table of its parameters.
 pub struct Observation {
-    entries: Vec<Entry>,
+    entries: Vec<ParameterEntry>,
     sensors: Reader<Sensors>,
     controller: Reader<ControllerState>,
     power: Reader<Power>,
@@ -117,12 +117,12 @@ impl Observation {
     ///
     /// # Errors
     /// There is none.
-    pub fn find(&self, name: &str) -> Result<&Entry, String> {
+    pub fn find(&self, name: &str) -> Result<&ParameterEntry, String> {
         registry::find(&self.entries, name)
     }
 
     /// Present value of a parameter: what its process says, or the default.
-    pub fn value(&mut self, entry: &Entry) -> f64 {
+    pub fn value(&mut self, entry: &ParameterEntry) -> f64 {
         let said = self.set.iter_mut().find(|set| set.process == entry.process);
         match (entry.change, said.and_then(|set| set.reader.latest())) {
             (Change::Live(number), Some(record)) => record.values[number as usize],
@@ -131,7 +131,7 @@ impl Observation {
     }
 
     /// All parameters with their values.
-    pub fn all(&mut self) -> Vec<(Entry, f64)> {
+    pub fn all(&mut self) -> Vec<(ParameterEntry, f64)> {
         let entries = self.entries.clone();
         entries.into_iter().map(|entry| (entry.clone(), self.value(&entry))).collect()
     }
@@ -139,7 +139,7 @@ impl Observation {
     /// The same as lines: `process.name unit low high default value change meaning`, the unit `-` if there is none, `change`
     /// one of `live`, `fixed` (in the configuration) and `constant` (of the program).
     pub fn parameters(&mut self) -> Vec<String> {
-        let line = |(e, value): (Entry, f64)| {
+        let line = |(e, value): (ParameterEntry, f64)| {
             let [low, high] = e.range;
             let unit = if e.unit.is_empty() { "-" } else { e.unit }.replace(' ', "*");
             let change = match e.change {
@@ -155,8 +155,9 @@ impl Observation {
 
     /// Those that can be changed, by full name.
     pub(crate) fn values(&mut self) -> Vec<(String, f64)> {
-        let live =
-            |(e, value): (Entry, f64)| matches!(e.change, Change::Live(_)).then(|| (e.full_name(), value));
+        let live = |(e, value): (ParameterEntry, f64)| {
+            matches!(e.change, Change::Live(_)).then(|| (e.full_name(), value))
+        };
         self.all().into_iter().filter_map(live).collect()
     }
 
@@ -207,7 +208,7 @@ impl Observation {
 
     /// The payload of a STATE; what nobody has written yet is NaN.
     pub(crate) fn state(&mut self, lost: u64) -> Vec<u8> {
-        let seen = Seen {
+        let seen = NewestRecords {
             sensors: self.sensors.latest(),
             controller: self.controller.latest(),
             power: self.power.latest(),
@@ -224,7 +225,7 @@ impl Observation {
 }
 
 /// Limits of the broker itself.
-fn own() -> [Entry; 5] {
+fn own() -> [ParameterEntry; 5] {
     let seconds = |ns: u64| ns as f64 / 1e9;
     [
         ("lease", "s", seconds(LEASE), "command lease after the last sign of life of its holder"),
@@ -233,7 +234,7 @@ fn own() -> [Entry; 5] {
         ("rate", "1/s", RATE, "frames of one connection that may command"),
         ("unanswered", "", UNANSWERED as f64, "frames of one connection that are not answered yet"),
     ]
-    .map(|(name, unit, value, about)| Entry {
+    .map(|(name, unit, value, about)| ParameterEntry {
         process: "broker",
         name: name.into(),
         unit,

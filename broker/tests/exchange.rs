@@ -5,7 +5,7 @@ mod harness;
 use std::cell::RefCell;
 
 use broker::Client;
-use broker::exchange::{Exchange, Report};
+use broker::exchange::{BrokerEvent, Exchange};
 use broker::message::{HEAD, MAX_BYTES, Message, domain_mask, service, service_message, write_command};
 use harness::{System, pause, play_role};
 use ipc::{QueueReceiver, QueueSender, Space};
@@ -158,12 +158,12 @@ fn a_class_is_not_a_matter_of_taste() {
     assert!(hand.publish[1].send(&[1, 2]), "less than a head");
     exchange.turn(now(), &mut |report| reports.push(report));
     assert_eq!(hand.heard(), []);
-    let denied = reports.iter().filter(|r| matches!(r, Report::Denied(..)));
+    let denied = reports.iter().filter(|r| matches!(r, BrokerEvent::Denied(..)));
     assert_eq!(denied.count(), 0, "none of them is a command that could stand in the log");
     let address = |(d, i): (Domain, u16)| (d as u32) << 16 | u32::from(i);
     let velocity = address(velocity(1).address());
     for expected in [address(Command::Stop.address()), 0, velocity, u32::MAX] {
-        assert!(reports.contains(&Report::Refused(expected)), "{expected:#x} is not in {reports:x?}");
+        assert!(reports.contains(&BrokerEvent::Refused(expected)), "{expected:#x} is not in {reports:x?}");
     }
     assert!(exchange.statistics()[0].contains("refused 4;"));
 }
@@ -180,7 +180,7 @@ fn a_command_that_the_broker_itself_refuses_is_reported_with_its_reason() {
     hand.publish(2, &Command::Reset, Priority::Normal);
     let mut denied = Vec::new();
     exchange.turn(now(), &mut |report| {
-        if let Report::Denied(live, code) = report {
+        if let BrokerEvent::Denied(live, code) = report {
             denied.push((live.stamp.origin, live.stamp.sequence, live.command, code));
         }
     });

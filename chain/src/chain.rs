@@ -14,6 +14,7 @@ use messages::{
     Sensors, SimState, WatchdogReset,
 };
 use planner::Planner;
+use planner::obstacles::KnownObstacles;
 use sim_backend::SimBackend;
 use watchdog::{Inputs, Watchdog};
 
@@ -80,7 +81,7 @@ impl Chain {
         let Setup { scene, robot, gait, system, .. } = &setup.clone().with_method(None)?;
         let mut sim = SimBackend::new(robot, scene)?.with_relay(system.toggle_missed);
         let mut planner = Planner::of(gait, robot);
-        planner.see(planner::vision::known(setup)?);
+        planner.see(KnownObstacles::new(setup.known_obstacles()?));
         let answer = *sim.step(None, None).0;
         Ok(Self {
             dt: scene.cycle,

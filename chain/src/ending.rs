@@ -6,7 +6,7 @@ use messages::{Detail, EventCode, GaitState, Words};
 
 /// What ended the walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum WalkEnd {
     /// The scene was done.
     Done,
     /// Somebody asked for the end, and the robot came to a stand.
@@ -21,7 +21,7 @@ pub enum End {
     Stopped(EventCode),
 }
 
-impl fmt::Display for End {
+impl fmt::Display for WalkEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Done => write!(f, "done"),
@@ -107,14 +107,14 @@ impl Ending {
     }
 
     /// What ended the walk, and when \[s\]: of several causes the first.
-    pub fn end(&self) -> (End, f64) {
+    pub fn end(&self) -> (WalkEnd, f64) {
         if let Some(time) = self.diverged {
-            return (End::Diverged, time); // nothing before it can be trusted either
+            return (WalkEnd::Diverged, time); // nothing before it can be trusted either
         }
-        let fell = self.fell.map(|time| (End::Fell, time));
-        let off = self.off.filter(|_| !self.powered).map(|(time, why)| (End::PowerOff(why), time));
-        let stopped = self.stopped.map(|(time, why)| (End::Stopped(why), time));
-        let orderly = (if self.asked { End::Asked } else { End::Done }, self.time);
+        let fell = self.fell.map(|time| (WalkEnd::Fell, time));
+        let off = self.off.filter(|_| !self.powered).map(|(time, why)| (WalkEnd::PowerOff(why), time));
+        let stopped = self.stopped.map(|(time, why)| (WalkEnd::Stopped(why), time));
+        let orderly = (if self.asked { WalkEnd::Asked } else { WalkEnd::Done }, self.time);
         let causes = [fell, off, stopped].into_iter().flatten();
         causes.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(orderly)
     }

@@ -11,10 +11,8 @@ use serde::Serialize;
 
 use crate::ending::Ending;
 use landing::Landing;
-use way::Way;
+use way::StepRecord;
 
-/// \[m/s^2\]
-const GRAVITY: f64 = 9.81;
 /// Parts of the names of the joints that carry most while walking (thesis 8.1.1).
 const LOADED: [&str; 2] = ["hip_flexion", "knee_flexion"];
 
@@ -119,7 +117,7 @@ pub struct Gatherer {
     force: f64,
     landing: [Landing; 2],
     margin: Option<f64>,
-    way: Way,
+    way: StepRecord,
     end_pose: [f64; 3],
 }
 
@@ -209,7 +207,7 @@ impl Gatherer {
             motor_side_error_by_joint_rad: motor,
             peak_normal_force_n: self.force,
             landing_peak_ratio: worst(Landing::ratio),
-            landing_excess_weights: worst(Landing::excess) / (robot.total_mass * GRAVITY),
+            landing_excess_weights: worst(Landing::excess) / robot.weight(),
             zmp_margin_min_m: self.margin.unwrap_or(f64::NAN),
             end_pose: self.end_pose,
             cpu_s,

@@ -1,8 +1,9 @@
 //! `depth = "auto"`: what is chosen, what is said, and whether the estimate of the error holds.
 
-use chain::depth::{Choice, choose, judge, trial::Trial};
-use config::scene::Integrator::{Euler, SemiImplicit};
-use config::tolerance::{Method, Output, Tolerance};
+use chain::depth::{Choice, choose, judge, trial::MethodTrial};
+use config::method::Integrator::{Euler, SemiImplicit};
+use config::method::Method;
+use config::tolerance::{Output, Tolerance};
 use config::{Setup, root};
 use messages::command::PushCommand;
 
@@ -73,7 +74,8 @@ fn a_robot_without_drives_has_no_torques() {
 fn estimates_hold_against_the_deepest_model() {
     let mut setup = standing(0.4, &[]);
     setup.scene.pushes = vec![(0.1, PushCommand { force: [60.0, 40.0, 0.0], duration: 0.1 })];
-    let truth = Trial::run(&setup, Method { depth: 5, integrator: SemiImplicit, substeps: 20 }, 400).unwrap();
+    let truth =
+        MethodTrial::run(&setup, Method { depth: 5, integrator: SemiImplicit, substeps: 20 }, 400).unwrap();
     for (depth, integrator, substeps) in
         [(1, Euler, 1), (1, Euler, 4), (2, SemiImplicit, 2), (3, SemiImplicit, 4), (4, SemiImplicit, 4)]
     {
@@ -81,7 +83,7 @@ fn estimates_hold_against_the_deepest_model() {
         let outputs = Output::ALL.into_iter().filter(|output| depth > 1 || !output.needs_motors());
         let outputs: Vec<_> = outputs.map(|output| (output, f64::MAX)).collect();
         setup.scene.auto = Some(Tolerance { outputs: outputs.clone(), trial: Some(0.4) });
-        let own = Trial::run(&setup, method, 400).unwrap();
+        let own = MethodTrial::run(&setup, method, 400).unwrap();
         for (estimate, (output, _)) in judge(&setup, method).unwrap().estimates.iter().zip(outputs) {
             let error = own.distance(&truth, output);
             println!("{method:32} {output:?}: off by {error:.2e}, estimated {:.2e}", estimate.error());

@@ -2,10 +2,10 @@
 
 use chain::Chain;
 use config::Setup;
-use config::gait::Control;
+use config::gait::StabilizerGains;
 
 /// Root mean square of the inclination errors \[rad\] over a walk of some steps, `None` if the robot falls.
-fn walk(scene: &str, set: impl Fn(&mut Control)) -> Option<f64> {
+fn walk(scene: &str, set: impl Fn(&mut StabilizerGains)) -> Option<f64> {
     let mut setup = Setup::load(&config::root(None), scene).unwrap();
     set(&mut setup.gait.control);
     let mut chain = Chain::new(&setup).unwrap();
@@ -39,7 +39,7 @@ fn both_feedback_paths_walk_alike_and_the_first_takes_the_higher_gain() {
 #[test]
 fn both_compensations_of_the_soles_deformation_walk_alike() {
     let force = walk("walk_type3", |_| {}).expect("compensation by force control walks");
-    let set = |c: &mut Control| (c.force_feed_forward, c.planned_deformation) = (0.0, 1.0);
+    let set = |c: &mut StabilizerGains| (c.force_feed_forward, c.planned_deformation) = (0.0, 1.0);
     let trajectory = walk("walk_type3", set).expect("compensation in the trajectories walks");
     println!(
         "rms of the inclination errors: by force control {force:.5} rad, in the trajectories {trajectory:.5} rad"

@@ -3,7 +3,7 @@
 //! Regression: the plan went on while the power was off, and the joints chased it with 11.5 rad/s when it came back.
 
 use chain::Chain;
-use config::scene::Integrator;
+use config::method::Integrator;
 use config::{Setup, root};
 use messages::Command;
 

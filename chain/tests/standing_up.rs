@@ -6,7 +6,7 @@
 
 use chain::Chain;
 use chain::figures::Gatherer;
-use config::scene::Integrator;
+use config::method::Integrator;
 use config::{Setup, root};
 use messages::{Command, Detail, EventCode, GaitState, MAX_JOINTS, Process};
 
@@ -69,7 +69,7 @@ fn is_trouble(code: EventCode) -> bool {
 fn stand_up(setup: &Setup) -> Seen {
     let mut chain = Chain::new(setup).unwrap();
     let dt = chain.cycle();
-    let weight = setup.robot.total_mass * multibody::GRAVITY.z.abs();
+    let weight = setup.robot.total_mass * multibody::GRAVITY_ACCELERATION;
     let mut seen = Seen {
         load: [f64::INFINITY, 0.0],
         acceleration: (0.0, String::new()),

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use config::{BUILT_IN, Found};
+use config::{BUILT_IN, ConfigDirectory};
 
 #[derive(Subcommand)]
 pub(crate) enum ConfigTask {
@@ -30,7 +30,7 @@ pub(crate) enum SceneTask {
 pub(crate) fn run(asked: Option<&Path>, what: ConfigTask) -> Result<(), Box<dyn Error>> {
     match what {
         ConfigTask::Where => {
-            let Found { dir, why } = config::find(asked)?;
+            let ConfigDirectory { dir, why } = config::find(asked)?;
             println!(
                 "{}: {why}",
                 std::path::absolute(&dir).ok().filter(|_| !is_built_in(&dir)).unwrap_or(dir).display()

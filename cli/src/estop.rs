@@ -31,12 +31,12 @@ pub struct Stopped {
     /// Which.
     pub name: StopName,
     /// Its result.
-    pub outcome: Outcome,
+    pub outcome: StopOutcome,
 }
 
 /// Answer of a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum StopOutcome {
     /// Its supply is off since this tick.
     Off {
         /// Tick of the first power record that said so.
@@ -74,7 +74,7 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Option<ExitCode> {
             "error: no robot runs on this machine; one in a container or on another machine is stopped there"
         );
     }
-    let off = |s: &Stopped| matches!(s.outcome, Outcome::Off { .. });
+    let off = |s: &Stopped| matches!(s.outcome, StopOutcome::Off { .. });
     Some(if !stopped.is_empty() && stopped.iter().all(off) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
@@ -100,8 +100,8 @@ pub(crate) fn stop_own(dir: &Path) -> Vec<Stopped> {
 /// Asks all of them first, then waits for the answers.
 pub fn stop(names: &[StopName]) -> Vec<Stopped> {
     let begun = clock::now();
-    let failed = |text: String| Some(Outcome::Failed(text));
-    let mut asked: Vec<(StopName, Result<StopButton, _>, Option<Outcome>)> =
+    let failed = |text: String| Some(StopOutcome::Failed(text));
+    let mut asked: Vec<(StopName, Result<StopButton, _>, Option<StopOutcome>)> =
         names.iter().map(|name| (name.clone(), StopButton::new(name), None)).collect();
     let (mut next, mut pending) = (begun, false);
     while asked.iter().any(|(.., outcome)| outcome.is_none()) && clock::now() < begun + PATIENCE {
@@ -120,7 +120,7 @@ pub fn stop(names: &[StopName]) -> Vec<Stopped> {
             }
             match button.as_ref().ok().and_then(|button| button.answer(LOOK)) {
                 Some(StopAnswer::Off { tick, stamp_ns }) => {
-                    *outcome = Some(Outcome::Off { tick, after_ns: stamp_ns.checked_sub(begun) });
+                    *outcome = Some(StopOutcome::Off { tick, after_ns: stamp_ns.checked_sub(begun) });
                 }
                 Some(StopAnswer::Pending) => pending = true,
                 None => {}
@@ -132,7 +132,7 @@ pub fn stop(names: &[StopName]) -> Vec<Stopped> {
     } else {
         "no answer: its watchdog hangs; without it the relay falls by itself"
     };
-    let outcome = |o: Option<Outcome>| o.unwrap_or_else(|| Outcome::Failed(silent.into()));
+    let outcome = |o: Option<StopOutcome>| o.unwrap_or_else(|| StopOutcome::Failed(silent.into()));
     asked.into_iter().map(|(name, _, o)| Stopped { name, outcome: outcome(o) }).collect()
 }
 
@@ -141,13 +141,13 @@ pub fn report(stopped: &[Stopped]) -> Vec<String> {
     let line = |s: &Stopped| {
         let robot = format!("{} (user {})", s.name.dir(), s.name.uid);
         match &s.outcome {
-            Outcome::Off { tick, after_ns: Some(ns) } => {
+            StopOutcome::Off { tick, after_ns: Some(ns) } => {
                 format!("{robot}: power off at tick {tick}, {} us after the request", ns / 1000)
             }
-            Outcome::Off { tick, after_ns: None } => {
+            StopOutcome::Off { tick, after_ns: None } => {
                 format!("{robot}: power was off already, since tick {tick}")
             }
-            Outcome::Failed(why) => format!("{robot}: NOT KNOWN TO BE OFF: {why}"),
+            StopOutcome::Failed(why) => format!("{robot}: NOT KNOWN TO BE OFF: {why}"),
         }
     };
     stopped.iter().map(line).collect()

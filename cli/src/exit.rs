@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use chain::ending::{End, Ending};
+use chain::ending::{Ending, WalkEnd};
 
 /// Command-line options of the faults.
 pub const HELP: &str = "\
@@ -42,9 +42,9 @@ impl Exit {
             End::Diverged => Self::Error,
             _ if ending.fell().is_some() => Self::Fell,
             _ if signal => Self::Interrupted,
-            End::PowerOff(_) | End::Stopped(_) => Self::NotDone,
+            WalkEnd::PowerOff(_) | WalkEnd::Stopped(_) => Self::NotDone,
             _ if ending.unfinished || ending.refused > 0 => Self::NotDone,
-            End::Done | End::Asked | End::Fell => Self::Done,
+            WalkEnd::Done | WalkEnd::Asked | WalkEnd::Fell => Self::Done,
         }
     }
 }

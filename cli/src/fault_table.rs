@@ -4,13 +4,13 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use cli::faults::{self, Order, Verdict};
+use cli::faults::{self, FaultVerdict, FaultsOptions};
 
 /// Random kills and stops of `--long`.
 const LONG: &str = "1000";
 
 #[derive(clap::Args)]
-pub(crate) struct Arguments {
+pub(crate) struct FaultTableArguments {
     /// Seed of all instants.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
 /// Marks between which the table stands in a document.
 const MARKS: [&str; 2] = ["<!-- faults -->\n", "<!-- /faults -->"];
 
-pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
+pub(crate) fn run(arguments: &FaultTableArguments) -> Result<ExitCode, Box<dyn Error>> {
     let exe = std::env::current_exe()?.display().to_string();
     println!("seed {}", arguments.seed);
     let red = match arguments.long {
@@ -41,12 +41,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
     Ok(if red == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-fn table(arguments: &Arguments, exe: String) -> Result<usize, Box<dyn Error>> {
-    let order = Order { exe, seed: arguments.seed, only: arguments.only.clone() };
+fn table(arguments: &FaultTableArguments, exe: String) -> Result<usize, Box<dyn Error>> {
+    let order = FaultsOptions { exe, seed: arguments.seed, only: arguments.only.clone() };
     let rows = faults::run(&order, |row| println!("{}", faults::line(row)))?;
     let of = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
-    let red = of(Verdict::NotMet);
-    println!("{} met, {red} not met, {} not tried at a robot", of(Verdict::Met), of(Verdict::NotApplicable));
+    let red = of(FaultVerdict::NotMet);
+    println!(
+        "{} met, {red} not met, {} not tried at a robot",
+        of(FaultVerdict::Met),
+        of(FaultVerdict::NotApplicable)
+    );
     if let Some(file) = &arguments.json {
         std::fs::write(file, serde_json::to_string_pretty(&rows)?)?;
     }

@@ -10,19 +10,19 @@ pub struct Number {
     /// Unit; empty: none.
     pub unit: &'static str,
     /// The number.
-    pub value: Value,
+    pub value: FieldValue,
 }
 
 /// Name and unit of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
+pub enum FieldValue {
     /// Measured or computed.
     Real(f64),
     /// Counted, or a code.
     Whole(u64),
 }
 
-impl Value {
+impl FieldValue {
     /// Bits of the number: NaN is equal to itself, and 0 is not -0.
     fn bits(self) -> u64 {
         match self {
@@ -57,7 +57,7 @@ impl Value {
 /// Every number of a record, in the order of declaration. Arrays of joints hold the robot's, by their names; without names all
 /// places of the array, by their numbers.
 pub fn numbers<T: Field>(record: &T, joints: &[String]) -> Vec<Number> {
-    let mut walk = Walk { joints, open: Vec::new(), about: "", found: Vec::new() };
+    let mut walk = FieldVisitor { joints, open: Vec::new(), about: "", found: Vec::new() };
     record.visit(&mut walk);
     walk.found
 }
@@ -70,22 +70,22 @@ pub(crate) fn first_difference<T: Field>(a: &T, b: &T) -> Option<(String, String
 }
 
 /// A part that has begun.
-enum Part {
+enum OpenPart {
     /// A field: its name, and the units and the text of its documentation.
     Field(&'static str, &'static str),
     /// An array: how many elements it has, how many came, and the name with which each of them begins.
     Array { length: usize, count: usize, first: Option<&'static str> },
 }
 
-struct Walk<'a> {
+struct FieldVisitor<'a> {
     joints: &'a [String],
-    open: Vec<Part>,
+    open: Vec<OpenPart>,
     about: &'static str,
     found: Vec<Number>,
 }
 
-impl Walk<'_> {
-    fn number(&mut self, value: Value) {
+impl FieldVisitor<'_> {
+    fn number(&mut self, value: FieldValue) {
         self.element(None);
         if let Some(name) = self.name() {
             self.found.push(Number { name, unit: self.unit(), value });
@@ -98,19 +98,19 @@ impl Walk<'_> {
         let mut feet = false;
         for part in &self.open {
             match *part {
-                Part::Field(part, about) => {
+                OpenPart::Field(part, about) => {
                     name += if name.is_empty() { "" } else { "." };
                     name += part;
                     feet = about.contains("right, left");
                 }
-                Part::Array { length: MAX_JOINTS, count, .. } if !self.joints.is_empty() => {
+                OpenPart::Array { length: MAX_JOINTS, count, .. } if !self.joints.is_empty() => {
                     name += &format!(".{}", self.joints.get(count - 1)?);
                 }
-                Part::Array { length: 2, count, .. } if feet => {
+                OpenPart::Array { length: 2, count, .. } if feet => {
                     name += [".right", ".left"].get(count - 1).unwrap_or(&"");
                     feet = false;
                 }
-                Part::Array { count, .. } => name += &format!("[{}]", count - 1),
+                OpenPart::Array { count, .. } => name += &format!("[{}]", count - 1),
             }
         }
         Some(name)
@@ -118,15 +118,15 @@ impl Walk<'_> {
 
     /// Unit of the innermost field that has one. Of "m, rad" the last element of an array takes the last.
     fn unit(&self) -> &'static str {
-        let field = |part: &Part| match part {
-            Part::Field(_, about) => {
+        let field = |part: &OpenPart| match part {
+            OpenPart::Field(_, about) => {
                 about.trim_start().strip_prefix("\\[")?.split_once("\\]").map(|(unit, _)| unit)
             }
-            Part::Array { .. } => None,
+            OpenPart::Array { .. } => None,
         };
         let units = self.open.iter().rev().find_map(field).unwrap_or("");
         let place = match self.open.last() {
-            Some(Part::Array { length, count, .. }) => length - count.min(length),
+            Some(OpenPart::Array { length, count, .. }) => length - count.min(length),
             _ => 0,
         };
         let all: Vec<&'static str> = units.split(',').map(str::trim).collect();
@@ -136,7 +136,7 @@ impl Walk<'_> {
 
     /// In an array, a number or an array is an element of its own; a struct begins with the same field every time.
     fn element(&mut self, name: Option<&'static str>) {
-        if let Some(Part::Array { count, first, .. }) = self.open.last_mut() {
+        if let Some(OpenPart::Array { count, first, .. }) = self.open.last_mut() {
             let begins =
                 name.is_none() || *first.get_or_insert(name.unwrap_or_default()) == name.unwrap_or_default();
             *count += usize::from(begins);
@@ -144,29 +144,29 @@ impl Walk<'_> {
     }
 }
 
-impl Visit for Walk<'_> {
+impl Visit for FieldVisitor<'_> {
     fn f64(&mut self, value: f64) {
-        self.number(Value::Real(value));
+        self.number(FieldValue::Real(value));
     }
     fn u64(&mut self, value: u64) {
-        self.number(Value::Whole(value));
+        self.number(FieldValue::Whole(value));
     }
     fn u32(&mut self, value: u32) {
-        self.number(Value::Whole(value.into()));
+        self.number(FieldValue::Whole(value.into()));
     }
     fn u8(&mut self, value: u8) {
-        self.number(Value::Whole(value.into()));
+        self.number(FieldValue::Whole(value.into()));
     }
     fn about(&mut self, text: &'static str) {
         self.about = text;
     }
     fn field(&mut self, name: &'static str) {
         self.element(Some(name));
-        self.open.push(Part::Field(name, std::mem::take(&mut self.about)));
+        self.open.push(OpenPart::Field(name, std::mem::take(&mut self.about)));
     }
     fn array(&mut self, length: usize) {
         self.element(None);
-        self.open.push(Part::Array { length, count: 0, first: None });
+        self.open.push(OpenPart::Array { length, count: 0, first: None });
     }
     fn end(&mut self) {
         self.open.pop();
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn six_digits_are_shown() {
-        let short = |x: f64| Value::Real(x).short();
+        let short = |x: f64| FieldValue::Real(x).short();
         assert_eq!(short(0.930_000_1), "0.93");
         assert_eq!(short(-9.812_345_678), "-9.81235");
         assert_eq!(short(1_234.567_89), "1234.57");

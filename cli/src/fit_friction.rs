@@ -15,7 +15,7 @@ use serde::Serialize;
 
 /// Both models fitted to one table.
 #[derive(Clone, Debug)]
-pub struct Report {
+pub struct FrictionReport {
     data: Efficiencies,
     cubic: Fit<CubicFriction>,
     coupled: Fit<HarmonicFriction>,
@@ -23,7 +23,7 @@ pub struct Report {
 
 /// One model as `--json` prints it; parameters in SI units on the motor's side.
 #[derive(Serialize)]
-struct Row {
+struct FittedModel {
     parameters: BTreeMap<&'static str, f64>,
     largest_error: f64,
     rms_error: f64,
@@ -32,19 +32,19 @@ struct Row {
 const COLORS: [Color; 6] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY];
 
 /// Reads a table and fits both models to it.
-pub fn run(file: &Path) -> Result<Report, String> {
+pub fn run(file: &Path) -> Result<FrictionReport, String> {
     let data = Efficiencies::load(file).map_err(|e| e.to_string())?;
     let place = |e: FitError| format!("{}: points: {e}", file.display());
     let cubic = fit::cubic(&data.points).map_err(place)?;
     let coupled = fit::coupled(&data.points).map_err(place)?;
-    Ok(Report { data, cubic, coupled })
+    Ok(FrictionReport { data, cubic, coupled })
 }
 
-impl Report {
-    fn rows(&self) -> [(&'static str, Row); 2] {
+impl FrictionReport {
+    fn rows(&self) -> [(&'static str, FittedModel); 2] {
         let (old, new) = (&self.cubic, &self.coupled);
         let (a, b) = (&old.friction, &new.friction);
-        let row = |parameters: [(&'static str, f64); 4], largest_error, rms_error| Row {
+        let row = |parameters: [(&'static str, f64); 4], largest_error, rms_error| FittedModel {
             parameters: parameters.into(),
             largest_error,
             rms_error,

@@ -9,7 +9,7 @@ use messages::{CommandTaken, Event, EventCode, Record, Words};
 use recording::{Log, Repaired, repair};
 
 use crate::fields::{first_difference, numbers};
-use crate::topic::{Echo, Table};
+use crate::topic::{Echo, EchoTable};
 
 /// Gives a log its end and index, if it lacks them.
 ///
@@ -43,7 +43,7 @@ pub fn info(path: &Path) -> Result<(), Box<dyn Error>> {
     let size = std::fs::metadata(path)?.len() as f64 * 1e-6;
     let messages: u64 = channels.values().sum();
     println!("{seconds:.3} s, {messages} messages, {size:.1} MB, {} joints", log.robot().joints.len());
-    if end != recording::End::Complete {
+    if end != recording::LogEnd::Complete {
         println!("it has no end: `gangwerk log repair {}` makes it whole", path.display());
     }
     for (channel, count) in channels {
@@ -87,7 +87,7 @@ struct Export<'a> {
 impl ForType<Result<(), Box<dyn Error>>> for Export<'_> {
     fn call<T: Record>(self, topic: &'static Topic) -> Result<(), Box<dyn Error>> {
         let joints = &self.log.robot().joints;
-        let mut table = Table::new(self.how, &numbers(&T::empty(), joints))?;
+        let mut table = EchoTable::new(self.how, &numbers(&T::empty(), joints))?;
         let (mut failed, mut count) = (Ok(()), 0u64);
         self.log.each_record(topic, |record: &T| {
             count += 1;

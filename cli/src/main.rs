@@ -21,7 +21,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use cli::run::Order;
+use cli::run::RunOptions;
 use config::BusAddress;
 use daemon::Connect;
 use ipc::Mode;
@@ -38,14 +38,14 @@ static ALLOCATOR: CountingAllocator = CountingAllocator;
 #[command(name = "gangwerk", version = env!("GANGWERK_VERSION"), about)]
 struct Arguments {
     #[command(subcommand)]
-    task: Option<Task>,
+    task: Option<GangwerkTask>,
     /// Configuration directory; default: see `gangwerk config where`.
     #[arg(long, global = true, value_name = "DIR")]
     config: Option<PathBuf>,
 }
 
 #[derive(Subcommand)]
-enum Task {
+enum GangwerkTask {
     /// Run a scene with all processes: broker, watchdog, simulated robot, logger, planner, stabilizer, joint loop.
     #[command(after_help = cli::exit::HELP)]
     Run {
@@ -136,7 +136,7 @@ enum Task {
     /// Traffic of the joint loop's bus: record, replay, look at it, hold it against a log.
     Can {
         #[command(subcommand)]
-        what: cli::can::Task,
+        what: cli::can::CanTask,
     },
     /// Draw the pictures of a log.
     Plot {
@@ -171,14 +171,14 @@ enum Task {
         #[arg(long, value_name = "MU")]
         friction: Option<f64>,
         #[command(flatten)]
-        form: study::Form,
+        form: study::SheetForm,
     },
     /// Speed against accuracy, and where methods fail.
     Study {
         #[command(subcommand)]
-        what: study::Task,
+        what: study::StudyTask,
         #[command(flatten)]
-        form: study::Form,
+        form: study::SheetForm,
     },
     /// Walk everything the robots are to be able to do, and hold it against what is demanded and what others reached.
     Scorecard {
@@ -199,7 +199,7 @@ enum Task {
         out: Option<PathBuf>,
     },
     /// Faults F1 to F40 against a walking robot: expected, observed, time. Exit code 1 if one is not as expected.
-    Faults(fault_table::Arguments),
+    Faults(fault_table::FaultTableArguments),
     /// Fit friction parameters of a gear to a table of efficiencies, with the older model beside the newer one.
     FitFriction {
         /// A table, for example config/gears/hfuc_25_100.toml.
@@ -240,25 +240,25 @@ enum Task {
     },
     /// One process of a run; `gangwerk run` starts them.
     #[command(hide = true)]
-    Broker(Place),
+    Broker(RunArgument),
     #[command(hide = true)]
-    Watchdog(Place),
+    Watchdog(RunArgument),
     #[command(hide = true)]
-    SimBackend(Place),
+    SimBackend(RunArgument),
     #[command(hide = true)]
-    Logger(Place),
+    Logger(RunArgument),
     #[command(hide = true)]
-    Planner(Place),
+    Planner(RunArgument),
     #[command(hide = true)]
-    Controller(Place),
+    Controller(RunArgument),
     #[command(hide = true)]
-    Lowlevel(Place),
+    Lowlevel(RunArgument),
 }
 
-impl Task {
+impl GangwerkTask {
     /// Whether it only tells something. What moves a robot or guards it does not end because nobody reads any more.
     fn only_tells(&self) -> bool {
-        use Task::{
+        use GangwerkTask::{
             Broker, Controller, Faults, Latency, Logger, Lowlevel, Planner, Run, SimBackend, Watchdog,
         };
         let moves = matches!(self, Run { .. } | Faults(_) | Latency { .. } | Self::LatencyEnd { .. });
@@ -268,7 +268,7 @@ impl Task {
 }
 
 #[derive(clap::Args)]
-struct Place {
+struct RunArgument {
     /// The run directory.
     #[arg(long)]
     run: PathBuf,
@@ -283,7 +283,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     config::embed(shipped::files());
     // A result that nobody reads any more (`| head`) ends a command quietly; a robot goes on.
-    if arguments.task.as_ref().is_some_and(Task::only_tells) {
+    if arguments.task.as_ref().is_some_and(GangwerkTask::only_tells) {
         realtime::end_with_reader();
     }
     match perform(arguments) {
@@ -299,7 +299,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
     let asked = arguments.config.as_deref();
     let config = || config::find(asked).map(|found| found.dir);
     let done = |result: Result<(), Box<dyn Error>>| result.map(|()| ExitCode::SUCCESS);
-    let task = arguments.task.unwrap_or(Task::Run {
+    let task = arguments.task.unwrap_or(GangwerkTask::Run {
         scene: "demo".into(),
         lockstep: true,
         paced: true,
@@ -313,7 +313,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         dir: ipc::default_dir(),
     });
     match task {
-        Task::Run { scene, lockstep, paced, bus, no_robot, out, no_log, no_plots, json, rt, dir } => {
+        GangwerkTask::Run { scene, lockstep, paced, bus, no_robot, out, no_log, no_plots, json, rt, dir } => {
             let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
             let config = config()?;
             let log = match no_log {
@@ -323,74 +323,78 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
                 }
             };
             let (robot, rt_required) = (!no_robot, rt.is_some());
-            let order = Order { mode, paced, scene, method: None, config, bus, robot, dir, log, rt_required };
+            let order =
+                RunOptions { mode, paced, scene, method: None, config, bus, robot, dir, log, rt_required };
             run_command::run(order, Results::of(json, no_plots))
         }
-        Task::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
-        Task::Sim { scene, json, log, can, classic } => {
+        GangwerkTask::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
+        GangwerkTask::Sim { scene, json, log, can, classic } => {
             sim_command::run(&config()?, &scene, json, log.as_deref(), can.as_deref(), classic)
         }
-        Task::Topic { what, dir } => done(topic_command::run(&dir, what)),
-        Task::Param { what, dir } => done(param_command::run(&dir, what)),
-        Task::Config { what } => done(config_command::run(asked, what)),
-        Task::Scene { what: config_command::SceneTask::List } => done(config_command::scenes(&config()?)),
-        Task::Robot { what } => done(robot_command::run(&config()?, what)),
-        Task::Can { what } => {
+        GangwerkTask::Topic { what, dir } => done(topic_command::run(&dir, what)),
+        GangwerkTask::Param { what, dir } => done(param_command::run(&dir, what)),
+        GangwerkTask::Config { what } => done(config_command::run(asked, what)),
+        GangwerkTask::Scene { what: config_command::SceneTask::List } => {
+            done(config_command::scenes(&config()?))
+        }
+        GangwerkTask::Robot { what } => done(robot_command::run(&config()?, what)),
+        GangwerkTask::Can { what } => {
             cli::can::run(&config()?, what)?;
             Ok(ExitCode::SUCCESS)
         }
-        Task::Plot { log, out } => {
+        GangwerkTask::Plot { log, out } => {
             let out = out.unwrap_or_else(|| log.with_extension(""));
             draw(&log, &out)?;
             Ok(ExitCode::SUCCESS)
         }
-        Task::Log { what } => log_command::run(what),
-        Task::Replay { log, process } => cli::replay::main(&log, process.as_deref()),
-        Task::Stability { log, out, friction, form } => {
+        GangwerkTask::Log { what } => log_command::run(what),
+        GangwerkTask::Replay { log, process } => cli::replay::main(&log, process.as_deref()),
+        GangwerkTask::Stability { log, out, friction, form } => {
             let out = out.unwrap_or_else(|| log.with_extension(""));
             study::stability(&config()?, &log, &out, friction, &form)
         }
-        Task::Study { what, form } => study::run(&config()?, &what, &form),
-        Task::Scorecard { only, quick, seed, json, out } => {
+        GangwerkTask::Study { what, form } => study::run(&config()?, &what, &form),
+        GangwerkTask::Scorecard { only, quick, seed, json, out } => {
             let config = config()?;
-            let order = cli::scorecard::Order { config: &config, only: only.as_deref(), quick, seed };
+            let order =
+                cli::scorecard::ScorecardOptions { config: &config, only: only.as_deref(), quick, seed };
             cli::scorecard::main(&order, json, out.as_deref())?;
             Ok(ExitCode::SUCCESS)
         }
-        Task::Faults(arguments) => fault_table::run(&arguments),
-        Task::FitFriction { file, out, json } => {
+        GangwerkTask::Faults(arguments) => fault_table::run(&arguments),
+        GangwerkTask::FitFriction { file, out, json } => {
             cli::fit_friction::main(&file, out, json)?;
             Ok(ExitCode::SUCCESS)
         }
-        Task::Latency { rounds, png, json } => cli::latency::main(rounds, png.as_deref(), json),
-        Task::LatencyEnd { way, dir, core } => {
+        GangwerkTask::Latency { rounds, png, json } => cli::latency::main(rounds, png.as_deref(), json),
+        GangwerkTask::LatencyEnd { way, dir, core } => {
             cli::latency::answer(&way, &dir, &core)?;
             Ok(ExitCode::SUCCESS)
         }
-        Task::Doctor => Ok(doctor()),
-        Task::Completions { shell } => done(words::completions(shell, Arguments::command())),
-        Task::Man { dir } => done(words::man_pages(&dir, Arguments::command())),
+        GangwerkTask::Doctor => Ok(doctor()),
+        GangwerkTask::Completions { shell } => done(words::completions(shell, Arguments::command())),
+        GangwerkTask::Man { dir } => done(words::man_pages(&dir, Arguments::command())),
         process => daemon(process),
     }
 }
 
 /// The processes of a run. Each ends when the supervisor does.
-fn daemon(task: Task) -> Result<ExitCode, Box<dyn Error>> {
+fn daemon(task: GangwerkTask) -> Result<ExitCode, Box<dyn Error>> {
     Stop::with_parent()?;
     match task {
-        Task::Broker(p) => {
+        GangwerkTask::Broker(p) => {
             last_words(&p.run, Process::Broker)?;
             broker::daemon::main(&p.run)?;
         }
-        Task::Watchdog(p) => watchdog::daemon::main(&p.run, commands(Process::Watchdog))?,
-        Task::SimBackend(p) => sim_backend::daemon::main(&p.run, commands(Process::SimBackend))?,
-        Task::Logger(p) => {
+        GangwerkTask::Watchdog(p) => watchdog::daemon::main(&p.run, commands(Process::Watchdog))?,
+        GangwerkTask::SimBackend(p) => sim_backend::daemon::main(&p.run, commands(Process::SimBackend))?,
+        GangwerkTask::Logger(p) => {
             last_words(&p.run, Process::Logger)?;
             logger::daemon::run(&ipc::Run::load(&p.run)?, &Stop::on_signals()?)?;
         }
-        Task::Planner(p) => planner::daemon::main(&p.run, commands(Process::Planner))?,
-        Task::Controller(p) => controller::daemon::main(&p.run, commands(Process::Controller))?,
-        Task::Lowlevel(p) => lowlevel::daemon::main(&p.run, commands(Process::Lowlevel))?,
+        GangwerkTask::Planner(p) => planner::daemon::main(&p.run, commands(Process::Planner))?,
+        GangwerkTask::Controller(p) => controller::daemon::main(&p.run, commands(Process::Controller))?,
+        GangwerkTask::Lowlevel(p) => lowlevel::daemon::main(&p.run, commands(Process::Lowlevel))?,
         _ => {}
     }
     Ok(ExitCode::SUCCESS)

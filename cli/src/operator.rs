@@ -18,7 +18,7 @@ use realtime::{Stop, clock};
 
 /// Command to send, and options.
 #[derive(Clone, Debug)]
-pub struct Order {
+pub struct OperatorRequest {
     /// Name of the command.
     pub command: String,
     /// `field=number`.
@@ -76,7 +76,7 @@ pub fn give(client: &mut StreamClient, command: &Command, take_over: bool) -> Re
 ///
 /// # Errors
 /// The command is refused, there is no broker, or the link or the lease is lost while the robot walks.
-pub fn publish(dir: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
+pub fn publish(dir: &Path, order: &OperatorRequest) -> Result<(), Box<dyn Error>> {
     let command = Command::parse(&order.command, &order.fields.join(" "))?;
     if order.seconds.is_some_and(|s| !(s.is_finite() && s > 0.0)) {
         return Err("--for: a number of seconds above 0 is needed".into());
@@ -108,7 +108,7 @@ pub fn publish(dir: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
         accompany(&mut client, &stop, order.seconds, || false)?;
     } else if matches!(command, Command::Distance(_) | Command::Platform(_)) {
         println!("the robot is on its way: this program stays until it stands; Ctrl-C stops it");
-        let mut skill = Skill::watch(dir)?;
+        let mut skill = SkillProgress::watch(dir)?;
         accompany(&mut client, &stop, order.seconds, || skill.is_done())?;
     }
     Ok(())
@@ -119,7 +119,7 @@ pub fn publish(dir: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
 fn repeat(
     client: &mut StreamClient,
     stop: &Stop,
-    order: &Order,
+    order: &OperatorRequest,
     command: &Command,
 ) -> Result<(), Box<dyn Error>> {
     let period = (1e9 / order.rate.unwrap_or(1.0)) as u64;
@@ -179,14 +179,14 @@ fn accompany(
 }
 
 /// Whether a skill that was accepted has been done: the robot moves, and then stands.
-struct Skill {
+struct SkillProgress {
     state: Reader<ControllerState>,
     _space: Space,
     begun: bool,
     since: u64,
 }
 
-impl Skill {
+impl SkillProgress {
     fn watch(dir: &Path) -> Result<Self, Box<dyn Error>> {
         let space = Space::open(dir, Process::Observer)?;
         Ok(Self { state: space.reader(&CONTROLLER_STATE)?, _space: space, begun: false, since: clock::now() })

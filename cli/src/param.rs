@@ -7,29 +7,29 @@ use std::path::Path;
 use std::time::Duration;
 
 use broker::observation::Observation;
-use config::registry::{Change, Entry};
+use config::registry::{Change, ParameterEntry};
 use ipc::Space;
 use messages::Command;
 use realtime::clock;
 
-use crate::topic::Robot;
+use crate::topic::ObservedRobot;
 
 /// Timeout until a new value shows \[ns\].
 const PATIENCE: u64 = clock::SECOND;
 
 /// The parameters of a running robot; it needs no broker to be looked at.
-struct Parameters {
+struct ParameterObservation {
     observation: Observation,
     _space: Space,
 }
 
-impl Parameters {
+impl ParameterObservation {
     fn open(dir: &Path) -> Result<Self, Box<dyn Error>> {
-        let robot = Robot::open(dir)?;
+        let robot = ObservedRobot::open(dir)?;
         Ok(Self { observation: Observation::open(&robot.space, Some(&robot.setup))?, _space: robot.space })
     }
 
-    fn find(&self, name: &str) -> Result<Entry, String> {
+    fn find(&self, name: &str) -> Result<ParameterEntry, String> {
         self.observation.find(name).cloned()
     }
 }
@@ -40,7 +40,7 @@ impl Parameters {
 /// None runs there.
 pub fn list(dir: &Path) -> Result<(), Box<dyn Error>> {
     let mut process = "";
-    for (e, value) in Parameters::open(dir)?.observation.all() {
+    for (e, value) in ParameterObservation::open(dir)?.observation.all() {
         if e.process != process {
             process = e.process;
             println!("{process}");
@@ -71,7 +71,7 @@ fn text(x: f64) -> String {
 /// # Errors
 /// No such parameter, or no robot runs in `dir`.
 pub fn get(dir: &Path, name: &str) -> Result<(), Box<dyn Error>> {
-    let mut robot = Parameters::open(dir)?;
+    let mut robot = ParameterObservation::open(dir)?;
     let entry = robot.find(name)?;
     println!("{} {}", robot.observation.value(&entry), entry.unit);
     Ok(())
@@ -82,7 +82,7 @@ pub fn get(dir: &Path, name: &str) -> Result<(), Box<dyn Error>> {
 /// # Errors
 /// No such parameter, or no robot runs in `dir`.
 pub fn describe(dir: &Path, name: &str) -> Result<(), Box<dyn Error>> {
-    let mut robot = Parameters::open(dir)?;
+    let mut robot = ParameterObservation::open(dir)?;
     let entry = robot.find(name)?;
     let [low, high] = entry.range;
     println!("parameter  {}", entry.full_name());
@@ -95,7 +95,7 @@ pub fn describe(dir: &Path, name: &str) -> Result<(), Box<dyn Error>> {
 }
 
 /// Whether and where a parameter can be set.
-fn remark(entry: &Entry) -> String {
+fn remark(entry: &ParameterEntry) -> String {
     match entry.change {
         Change::Live(_) => "while the robot runs".into(),
         Change::File(file) => format!("before the start, in {file} of the configuration"),
@@ -109,8 +109,8 @@ fn remark(entry: &Entry) -> String {
 /// No such parameter, one that is fixed, a value out of its range (all of these at once), no robot, no broker, a refusal, or
 /// no answer.
 pub fn set(dir: &Path, wanted: &[(String, f64)], take_over: bool) -> Result<(), Box<dyn Error>> {
-    let mut robot = Parameters::open(dir)?;
-    let (mut commands, mut wrong): (Vec<(Entry, f64, Command)>, Vec<String>) = Default::default();
+    let mut robot = ParameterObservation::open(dir)?;
+    let (mut commands, mut wrong): (Vec<(ParameterEntry, f64, Command)>, Vec<String>) = Default::default();
     for (name, value) in wanted {
         match robot.find(name).and_then(|entry| Ok((entry.command(*value)?, entry))) {
             Ok((command, entry)) => commands.push((entry, *value, command)),
@@ -143,7 +143,7 @@ pub fn set(dir: &Path, wanted: &[(String, f64)], take_over: bool) -> Result<(), 
 pub fn dump(dir: &Path, file: &Path) -> Result<(), Box<dyn Error>> {
     let mut lines =
         String::from("# Parameters of a running robot; `gangwerk param load FILE` sets them again.\n");
-    for (entry, value) in Parameters::open(dir)?.observation.all() {
+    for (entry, value) in ParameterObservation::open(dir)?.observation.all() {
         let mark = if matches!(entry.change, Change::Live(_)) { "" } else { "# " };
         let (name, unit, about) = (entry.full_name(), entry.unit, entry.about);
         lines +=
@@ -161,7 +161,7 @@ pub fn dump(dir: &Path, file: &Path) -> Result<(), Box<dyn Error>> {
 pub fn load(dir: &Path, file: &Path, take_over: bool) -> Result<(), Box<dyn Error>> {
     let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
     let wanted = lines(&text).map_err(|e| format!("{}: {e}", file.display()))?;
-    let mut robot = Parameters::open(dir)?;
+    let mut robot = ParameterObservation::open(dir)?;
     // A name that there is not is told with all others that are wrong.
     let differs = |(name, value): &(String, f64)| {
         robot.find(name).map_or(true, |entry| robot.observation.value(&entry) != *value)

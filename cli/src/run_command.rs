@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use cli::exit::Exit;
-use cli::run::{Order, Outcome};
+use cli::run::{RunOptions, RunOutcome};
 use config::Setup;
 use realtime::{Stop, clock};
 use terminal::Console;
@@ -63,7 +63,7 @@ impl Results {
 }
 
 /// A run, with nothing printed but through the console: a paused terminal holds up neither robot nor end.
-pub(crate) fn run(mut order: Order, wanted: Results) -> Result<ExitCode, Box<dyn Error>> {
+pub(crate) fn run(mut order: RunOptions, wanted: Results) -> Result<ExitCode, Box<dyn Error>> {
     let (setup, choice) = cli::choose::load(&order.config, &order.scene, true)?;
     order.method = choice.map(|choice| choice.method);
     // First of all that starts a thread: one with signals of its own would be where Ctrl-C ends everything.
@@ -79,7 +79,7 @@ pub(crate) fn run(mut order: Order, wanted: Results) -> Result<ExitCode, Box<dyn
 }
 
 fn run_on(
-    order: &Order,
+    order: &RunOptions,
     setup: &Setup,
     wanted: Results,
     stop: Stop,
@@ -125,7 +125,7 @@ fn run_on(
 fn results(
     log: &Path,
     setup: &Setup,
-    outcome: &Outcome,
+    outcome: &RunOutcome,
     wanted: Results,
     console: &Console,
 ) -> Result<String, Box<dyn Error>> {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use studies::Sheet;
-pub use studies::scorecard::Order;
+pub use studies::scorecard::ScorecardOptions;
 use studies::scorecard::{pictured, run};
 
 /// Walks what is ordered and prints the table, or one JSON object; with `out` both go there as files as well, and logs and
@@ -13,7 +13,7 @@ use studies::scorecard::{pictured, run};
 ///
 /// # Errors
 /// A configuration is wrong, no entry has the name asked for, or a file cannot be written.
-pub fn main(order: &Order<'_>, json: bool, out: Option<&Path>) -> Result<(), Box<dyn Error>> {
+pub fn main(order: &ScorecardOptions<'_>, json: bool, out: Option<&Path>) -> Result<(), Box<dyn Error>> {
     let bar = ProgressBar::new(0).with_style(ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}")?);
     let found = run(order, &|done, of, name| {
         bar.set_length(of as u64);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Subcommand;
-use cli::run::Order;
+use cli::run::RunOptions;
 use config::BusAddress;
 use indicatif::{ProgressBar, ProgressStyle};
 use ipc::Mode;
@@ -14,16 +14,16 @@ use terminal::Console;
 
 /// Which study.
 #[derive(Subcommand)]
-pub(super) enum Task {
+pub(super) enum StudyTask {
     #[command(flatten)]
-    Simulated(studies::Task),
+    Simulated(studies::SimulatedStudy),
     /// How well the processes keep real time, beside cyclictest before and after.
     Realtime(Realtime),
 }
 
 /// In which form a sheet is printed.
 #[derive(clap::Args)]
-pub(super) struct Form {
+pub(super) struct SheetForm {
     /// One JSON object instead of a table.
     #[arg(long, global = true)]
     json: bool,
@@ -47,7 +47,7 @@ pub(super) struct Realtime {
 }
 
 /// Carries out a study, with progress on standard error, and prints what it found.
-pub(super) fn run(config: &Path, what: &Task, form: &Form) -> Result<ExitCode, Box<dyn Error>> {
+pub(super) fn run(config: &Path, what: &StudyTask, form: &SheetForm) -> Result<ExitCode, Box<dyn Error>> {
     let bar = ProgressBar::new(0).with_style(ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}")?);
     let progress = |done: usize, of: usize, next: &str| {
         if of == 0 {
@@ -59,19 +59,19 @@ pub(super) fn run(config: &Path, what: &Task, form: &Form) -> Result<ExitCode, B
     };
     let given = Given { config, progress: &progress };
     let sheet = match what {
-        Task::Simulated(study) => study.run(&given),
-        Task::Realtime(study) => study.run(&given),
+        StudyTask::Simulated(study) => study.run(&given),
+        StudyTask::Realtime(study) => study.run(&given),
     };
     bar.finish_and_clear();
     print(&sheet?, form);
     Ok(ExitCode::SUCCESS)
 }
 
-fn print(sheet: &Sheet, form: &Form) {
+fn print(sheet: &Sheet, form: &SheetForm) {
     let text = match form {
-        Form { json: true, .. } => sheet.json().to_string(),
-        Form { markdown: true, .. } => sheet.markdown(),
-        Form { .. } => sheet.text(),
+        SheetForm { json: true, .. } => sheet.json().to_string(),
+        SheetForm { markdown: true, .. } => sheet.markdown(),
+        SheetForm { .. } => sheet.text(),
     };
     println!("{text}");
 }
@@ -82,7 +82,7 @@ pub(super) fn stability(
     log: &Path,
     out: &Path,
     friction: Option<f64>,
-    form: &Form,
+    form: &SheetForm,
 ) -> Result<ExitCode, Box<dyn Error>> {
     use studies::stability::log::{robot_of, run};
     let friction = match friction {
@@ -108,7 +108,7 @@ impl Study for Realtime {
         studies::sheet::make(&self.out)?;
         let log = self.out.join(format!("{}.mcap", self.scene));
         let before = cyclictest();
-        let order = Order {
+        let order = RunOptions {
             bus: BusAddress::Shared,
             robot: true,
             mode: Mode::RealTime,

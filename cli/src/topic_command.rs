@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::Path;
 
 use clap::Subcommand;
-use cli::operator::{self, Order};
+use cli::operator::{self, OperatorRequest};
 use cli::topic::{self, Echo, Measure};
 
 #[derive(Subcommand)]
@@ -93,7 +93,7 @@ pub(crate) fn run(dir: &Path, what: TopicTask) -> Result<(), Box<dyn Error>> {
         TopicTask::Delay(listen) => measure(Measure::Delay, listen)?,
         TopicTask::Pub { command, fields, seconds, rate, times, once, take_over } => {
             let times = if once { Some(1) } else { times };
-            operator::publish(dir, &Order { command, fields, seconds, rate, times, take_over })?;
+            operator::publish(dir, &OperatorRequest { command, fields, seconds, rate, times, take_over })?;
         }
     }
     Ok(())

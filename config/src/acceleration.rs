@@ -5,7 +5,7 @@
 //! A linkage's ratio changes with its angles. A joint that two motors share has the limit of the slower one.
 
 use crate::drive::Drive;
-use crate::robot::{Joint, Robot};
+use crate::joint::Joint;
 use drives::{Gear, Transmission};
 
 /// \[1\] Times what its drives can accelerate it alone, a joint may be asked for: when a foot lands, the ground pushes it where
@@ -14,20 +14,18 @@ pub const WITH_LOAD: f64 = 2.0;
 /// Angles per joint at which a linkage is looked at, over the joint's range.
 const ANGLES: usize = 17;
 
-impl Robot {
-    /// \[rad/s^2\] Most that the drives of joint `j` can accelerate it at these angles \[rad\] of all joints; infinite for a
-    /// joint without a drive.
-    pub fn acceleration(&self, j: usize, angles: &[f64]) -> f64 {
-        let of_drive = |drive: &Drive| {
-            let mut q = [0.0; 3];
-            for (q, &joint) in q.iter_mut().zip(&drive.joints) {
-                *q = angles[joint];
-            }
-            let gear = drive.transmission.at(q, [0.0; 3]).ok()?;
-            most(drive, &gear, j)
-        };
-        self.drives.iter().filter_map(of_drive).fold(f64::INFINITY, f64::min)
-    }
+/// \[rad/s^2\] Most that these drives can accelerate joint `j` at these angles \[rad\] of all joints; infinite for a joint
+/// without a drive.
+pub(crate) fn at(drives: &[Drive], j: usize, angles: &[f64]) -> f64 {
+    let of_drive = |drive: &Drive| {
+        let mut q = [0.0; 3];
+        for (q, &joint) in q.iter_mut().zip(&drive.joints) {
+            *q = angles[joint];
+        }
+        let gear = drive.transmission.at(q, [0.0; 3]).ok()?;
+        most(drive, &gear, j)
+    };
+    drives.iter().filter_map(of_drive).fold(f64::INFINITY, f64::min)
 }
 
 /// \[rad/s^2\] Least of these limits over the range of each joint.

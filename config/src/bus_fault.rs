@@ -61,7 +61,7 @@ impl FaultKind {
 
 /// Frames of which way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum FrameDirection {
     /// From lowlevel to the drives.
     ToDrives,
     /// From the drives to lowlevel.
@@ -80,7 +80,7 @@ pub struct BusFault {
     /// Name of the local controller whose line it happens to; none: all lines.
     pub node: Option<String>,
     /// Which way; none: both.
-    pub way: Option<Way>,
+    pub way: Option<FrameDirection>,
     /// \[1\] Probability: per frame, for [`FaultKind::Reordered`] and bursts of [`FaultKind::Lost`] per cycle.
     pub share: f64,
     /// \[1\] Cycles, see [`FaultKind`].
@@ -112,7 +112,7 @@ impl BusFault {
             return fault;
         }
         if row.has("direction") {
-            let ways = [Some(Way::ToDrives), Some(Way::FromDrives), None];
+            let ways = [Some(FrameDirection::ToDrives), Some(FrameDirection::FromDrives), None];
             fault.way = ways[row.word("direction", &["to_drives", "from_drives", "both"])];
         }
         if row.has("share") {

@@ -11,11 +11,9 @@
 //!
 //! [drives] # as they are at switch-on, protected; without it they know their angles, and nothing protects them
 //! homing = true # joints with a home switch do not know their angles; without it they do
-//! temperature = { all = 25.0 } # [deg C] of the windings; without it the surroundings'
 //! ```
 
 use crate::section::Section;
-use crate::sensors::PerJoint;
 
 /// Crane with a rope that holds the robot at the start of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,19 +46,14 @@ impl Crane {
 }
 
 /// The drives of a scene as they are at switch-on.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DriveStart {
     /// Joints with a home switch do not know their angles.
     pub homing: bool,
-    /// \[°C\] Windings; those that are not named have the temperature of the surroundings.
-    pub temperature: PerJoint,
 }
 
 impl DriveStart {
     pub(crate) fn build(table: &Section<'_, '_>) -> Self {
-        Self {
-            homing: table.flag("homing"),
-            temperature: PerJoint::build(table, "temperature", "deg C", -40.0..=300.0),
-        }
+        Self { homing: table.flag("homing") }
     }
 }

@@ -55,7 +55,7 @@ struct Field {
     unit: String,
     /// Places of its bits, the most significant first: 8 x byte + bit.
     bits: Vec<usize>,
-    number: Number,
+    number: SignalFormat,
     factor: f64,
     offset: f64,
     words: Vec<(i64, String)>,
@@ -65,7 +65,7 @@ struct Field {
 
 /// Number format of a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Number {
+enum SignalFormat {
     Unsigned,
     Signed,
     Single,
@@ -149,13 +149,13 @@ impl Field {
         let raw = self.raw(data)?;
         let unused = 64 - self.bits.len() as u32;
         let whole = match self.number {
-            Number::Signed => i128::from((raw << unused) as i64 >> unused),
+            SignalFormat::Signed => i128::from((raw << unused) as i64 >> unused),
             _ => i128::from(raw),
         };
         let (number, is_whole) = match self.number {
-            Number::Single => (f64::from(f32::from_bits(raw as u32)), false),
-            Number::Double => (f64::from_bits(raw), false),
-            Number::Unsigned | Number::Signed => (whole as f64, true),
+            SignalFormat::Single => (f64::from(f32::from_bits(raw as u32)), false),
+            SignalFormat::Double => (f64::from_bits(raw), false),
+            SignalFormat::Unsigned | SignalFormat::Signed => (whole as f64, true),
         };
         let plain = is_whole && self.factor == 1.0 && self.offset == 0.0;
         let word = self.words.iter().find(|(value, _)| is_whole && i128::from(*value) == whole);
@@ -201,10 +201,10 @@ impl<'a> Details<'a> {
     fn field(&self, m: &can_dbc::Message, s: &'a can_dbc::Signal) -> Option<Field> {
         let key = (m.id, s.name.as_str());
         let number = match (self.floats.get(&key), s.size, s.value_type) {
-            (Some(SignalExtendedValueType::IEEEfloat32Bit), 32, _) => Number::Single,
-            (Some(SignalExtendedValueType::IEEEdouble64bit), 64, _) => Number::Double,
-            (_, 1..=64, ValueType::Signed) => Number::Signed,
-            (_, 1..=64, ValueType::Unsigned) => Number::Unsigned,
+            (Some(SignalExtendedValueType::IEEEfloat32Bit), 32, _) => SignalFormat::Single,
+            (Some(SignalExtendedValueType::IEEEdouble64bit), 64, _) => SignalFormat::Double,
+            (_, 1..=64, ValueType::Signed) => SignalFormat::Signed,
+            (_, 1..=64, ValueType::Unsigned) => SignalFormat::Unsigned,
             _ => return None,
         };
         let index = |name: &str| m.signals.iter().position(|other| other.name == name);

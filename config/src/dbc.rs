@@ -20,7 +20,7 @@
 use std::path::Path;
 
 use can_dbc::{ByteOrder, Dbc, MessageId, MultiplexIndicator, ValueType};
-use codec::layout::{Carries, Layout, MAX_NODES, Message, Signal};
+use codec::layout::{BusMessage, BusSignal, Carries, FrameLayout, MAX_NODES};
 use messages::{MAX_FRAMES, nearest};
 
 use crate::error::{ConfigError, Problem};
@@ -34,29 +34,29 @@ const AXES: [&str; 4] = ["x", "y", "z", "w"];
 const SIDES: [&str; 2] = ["right", "left"];
 
 /// Reads a layout for a robot with these joints.
-pub(crate) fn load(path: &Path, joints: &[&str], hash: &mut Hash) -> Result<Layout, ConfigError> {
+pub(crate) fn load(path: &Path, joints: &[&str], hash: &mut Hash) -> Result<FrameLayout, ConfigError> {
     let text = file::text(path, hash)?;
     read(&text, joints).map_err(|problems| ConfigError { file: path.to_owned(), problems })
 }
 
 /// A layout from the text of a DBC file, or all that is wrong with it.
-pub fn read(text: &str, joints: &[&str]) -> Result<Layout, Vec<Problem>> {
+pub fn read(text: &str, joints: &[&str]) -> Result<FrameLayout, Vec<Problem>> {
     let dbc = Dbc::try_from(text).map_err(|e| {
         vec![Problem { line: 0, key: String::new(), text: format!("this is not a DBC file: {e}") }]
     })?;
-    let mut reader = Reader { text, joints, problems: Vec::new() };
+    let mut reader = DbcReader { text, joints, problems: Vec::new() };
     let layout = reader.layout(&dbc);
     if reader.problems.is_empty() { Ok(layout) } else { Err(reader.problems) }
 }
 
-struct Reader<'a> {
+struct DbcReader<'a> {
     text: &'a str,
     joints: &'a [&'a str],
     problems: Vec<Problem>,
 }
 
-impl Reader<'_> {
-    fn layout(&mut self, dbc: &Dbc) -> Layout {
+impl DbcReader<'_> {
+    fn layout(&mut self, dbc: &Dbc) -> FrameLayout {
         let nodes: Vec<String> = dbc.nodes.iter().map(|n| n.0.clone()).filter(|n| n != PC).collect();
         if nodes.is_empty() || nodes.len() > MAX_NODES || nodes.len() == dbc.nodes.len() {
             let text = format!("BU_: there must be `{PC}` and 1 to {MAX_NODES} local controllers");
@@ -76,11 +76,11 @@ impl Reader<'_> {
                 self.problem(0, "", format!("{count} messages {from} the drives; at most {MAX_FRAMES}"));
             }
         }
-        Layout::new(nodes, messages)
+        FrameLayout::new(nodes, messages)
     }
 
     /// A message, once for each node that sends or receives it.
-    fn message(&mut self, dbc: &Dbc, m: &can_dbc::Message, nodes: &[String], into: &mut Vec<Message>) {
+    fn message(&mut self, dbc: &Dbc, m: &can_dbc::Message, nodes: &[String], into: &mut Vec<BusMessage>) {
         let line = self.line(&format!("BO_ {} ", m.id.raw()), 0);
         let to_drives = m.transmitter.as_deref() == Some(PC);
         // The other end is the sender, or of a message of the PC whoever receives its first signal.
@@ -112,7 +112,7 @@ impl Reader<'_> {
             if into.iter().any(|other| other.node == node && other.id == u32::from(id)) {
                 self.problem(line, &m.name, format!("identifier {id} is taken on this line"));
             }
-            into.push(Message {
+            into.push(BusMessage {
                 name: m.name.clone(),
                 id: id.into(),
                 len: m.size as u32,
@@ -130,7 +130,7 @@ impl Reader<'_> {
         s: &can_dbc::Signal,
         to_drives: bool,
         used: &mut [u64; 8],
-    ) -> Option<Signal> {
+    ) -> Option<BusSignal> {
         let line = self.line(&format!("SG_ {} ", s.name), self.line(&format!("BO_ {} ", m.id.raw()), 0));
         let key = format!("{}.{}", m.name, s.name);
         let mut wrong = |text: String| self.problems.push(Problem { line, key: key.clone(), text });
@@ -169,7 +169,15 @@ impl Reader<'_> {
             self.problem(line, &key, "a counter is unsigned, with factor 1 and offset 0".into());
         }
         let (start, bits) = (s.start_bit as u32, s.size as u32);
-        Some(Signal { name: s.name.clone(), start, bits, signed, scale: s.factor, offset: s.offset, carries })
+        Some(BusSignal {
+            name: s.name.clone(),
+            start,
+            bits,
+            signed,
+            scale: s.factor,
+            offset: s.offset,
+            carries,
+        })
     }
 
     /// Meaning of a signal, by its name.
@@ -229,8 +237,8 @@ impl Reader<'_> {
         })
     }
 
-    fn one_sync_at_the_end<'m>(&mut self, node: &str, messages: impl Iterator<Item = &'m Message>) {
-        let to: Vec<&Message> = messages.filter(|m| m.to_drives).collect();
+    fn one_sync_at_the_end<'m>(&mut self, node: &str, messages: impl Iterator<Item = &'m BusMessage>) {
+        let to: Vec<&BusMessage> = messages.filter(|m| m.to_drives).collect();
         let syncs = to.iter().filter(|m| m.is_sync()).count();
         if syncs != 1 || !to.last().is_some_and(|m| m.is_sync()) {
             let text =
@@ -240,7 +248,7 @@ impl Reader<'_> {
     }
 
     /// Completeness: every robot's signals come once, and nothing twice.
-    fn everything_once(&mut self, messages: &[Message]) {
+    fn everything_once(&mut self, messages: &[BusMessage]) {
         let mut all: Vec<(Carries, &str)> = Vec::new();
         for signal in messages.iter().flat_map(|m| &m.signals) {
             let many = matches!(signal.carries, Carries::Counter | Carries::Mode | Carries::Supply);

@@ -93,7 +93,7 @@ pub fn dbc_text(
         return Err(format!("can.node: {} on classic CAN; at most {CLASSIC_NODES}", nodes.len()));
     }
     // In the order in which they are sent: commands to every controller, then the answers of each.
-    let mut file = File { frames: Vec::new() };
+    let mut file = DbcFile { frames: Vec::new() };
     for (n, node) in nodes.iter().enumerate() {
         match form {
             FrameForm::Classic => file.command_classic(n as u32, node),
@@ -110,27 +110,27 @@ pub fn dbc_text(
 }
 
 /// Kind of a number: bits (negative: signed), value of the lowest bit, value of raw 0, unit.
-struct Number(i32, f64, f64, &'static str);
+struct NumberKind(i32, f64, f64, &'static str);
 
 /// A signed number over ±2^`power`.
-fn signed(bits: i32, power: i32, unit: &'static str) -> Number {
-    Number(-bits, f64::powi(2.0, power - bits + 1), 0.0, unit)
+fn signed(bits: i32, power: i32, unit: &'static str) -> NumberKind {
+    NumberKind(-bits, f64::powi(2.0, power - bits + 1), 0.0, unit)
 }
 
-fn unsigned(bits: i32) -> Number {
-    Number(bits, 1.0, 0.0, "")
+fn unsigned(bits: i32) -> NumberKind {
+    NumberKind(bits, 1.0, 0.0, "")
 }
 
 /// Temperatures from -40 degrees on.
-const TEMPERATURE: Number = Number(8, 1.0, -40.0, "degC");
+const TEMPERATURE: NumberKind = NumberKind(8, 1.0, -40.0, "degC");
 
-struct Signal {
+struct DbcSignal {
     name: String,
     start: u32,
-    number: Number,
+    number: NumberKind,
 }
 
-struct Frame {
+struct DbcFrame {
     id: u32,
     name: String,
     /// \[byte\]
@@ -138,46 +138,46 @@ struct Frame {
     /// Sender and receiver.
     ends: [String; 2],
     comment: &'static str,
-    signals: Vec<Signal>,
+    signals: Vec<DbcSignal>,
 }
 
 /// A frame being filled, from its first bit on.
-struct Filling {
-    frame: Frame,
+struct FrameFilling {
+    frame: DbcFrame,
     /// \[bit\] Behind the last signal.
     end: u32,
 }
 
-impl Filling {
-    fn put(&mut self, name: impl Into<String>, number: Number) {
+impl FrameFilling {
+    fn put(&mut self, name: impl Into<String>, number: NumberKind) {
         let start = self.end;
         self.end += number.0.unsigned_abs();
-        self.frame.signals.push(Signal { name: name.into(), start, number });
+        self.frame.signals.push(DbcSignal { name: name.into(), start, number });
     }
 
     /// For each joint what `of` names.
-    fn each(&mut self, node: &LocalController, of: &str, number: impl Fn() -> Number) {
+    fn each(&mut self, node: &LocalController, of: &str, number: impl Fn() -> NumberKind) {
         for joint in &node.joints {
             self.put(format!("{joint}_{of}"), number());
         }
     }
 
-    fn axes(&mut self, what: &str, number: impl Fn() -> Number) {
+    fn axes(&mut self, what: &str, number: impl Fn() -> NumberKind) {
         for axis in AXES {
             self.put(format!("{what}_{axis}"), number());
         }
     }
 }
 
-struct File {
-    frames: Vec<Frame>,
+struct DbcFile {
+    frames: Vec<DbcFrame>,
 }
 
 const SYNC: &str =
     "Ends the cycle: what was sent before takes effect, sensors are read, and the answer is sent.";
 const WRENCH: &str = "Ground on the foot, sensor frame.";
 
-impl File {
+impl DbcFile {
     /// A frame with its counter; `form` decides how long that is, and the length of the frame.
     fn frame(
         &mut self,
@@ -185,14 +185,14 @@ impl File {
         (id, name): (u32, String),
         (node, to_drives): (&LocalController, bool),
         comment: &'static str,
-        fill: impl FnOnce(&mut Filling),
+        fill: impl FnOnce(&mut FrameFilling),
     ) {
         let mut ends = ["PC".to_owned(), node.name.clone()];
         if !to_drives {
             ends.reverse();
         }
-        let frame = Frame { id, name, len: 0, ends, comment, signals: Vec::new() };
-        let mut filling = Filling { frame, end: 0 };
+        let frame = DbcFrame { id, name, len: 0, ends, comment, signals: Vec::new() };
+        let mut filling = FrameFilling { frame, end: 0 };
         filling.put("counter", unsigned(if form == FrameForm::Fd { 16 } else { 8 }));
         fill(&mut filling);
         let bytes = filling.end.div_ceil(8);
@@ -242,7 +242,7 @@ impl File {
             }
         }
         // Slower quantities of all drives share a frame each.
-        let mut of_drives = |base: u32, name: &str, comment, fill: &dyn Fn(&mut Filling)| {
+        let mut of_drives = |base: u32, name: &str, comment, fill: &dyn Fn(&mut FrameFilling)| {
             self.frame(form, (base + 4 * n, format!("node{n}_{name}")), (node, false), comment, fill);
         };
         of_drives(0x200, "current", "Motor currents.", &|frame| {
@@ -262,7 +262,7 @@ impl File {
     }
 
     fn sensor_classic(&mut self, n: u32, node: &LocalController, sensor: &str) {
-        let mut send = |id, name: String, comment, fill: &dyn Fn(&mut Filling)| {
+        let mut send = |id, name: String, comment, fill: &dyn Fn(&mut FrameFilling)| {
             self.frame(FrameForm::Classic, (id, name), (node, false), comment, fill);
         };
         if let Some(side) = sensor.strip_suffix("_foot") {
@@ -328,7 +328,7 @@ impl File {
             frame.each(node, "status", || unsigned(16));
         });
         // The motor side, 8 bytes a joint, beside temperature and error code, 3; with the currents it has a frame of its own.
-        let motors = |frame: &mut Filling| {
+        let motors = |frame: &mut FrameFilling| {
             frame.end = 32;
             for joint in &node.joints {
                 frame.put(format!("{joint}_motor"), signed(32, 2, "rad"));
@@ -451,9 +451,9 @@ impl File {
     }
 }
 
-impl Signal {
+impl DbcSignal {
     fn write(&self, receiver: &str, out: &mut String) {
-        let Number(bits, scale, offset, unit) = self.number;
+        let NumberKind(bits, scale, offset, unit) = self.number;
         let (size, sign) = (bits.unsigned_abs(), if bits < 0 { '-' } else { '+' });
         let (low, high) = if bits < 0 {
             (-f64::powi(2.0, -bits - 1), f64::powi(2.0, -bits - 1) - 1.0)

@@ -12,8 +12,8 @@ use drives::{
 use messages::nearest;
 
 use crate::brake::Brake;
+use crate::joint::{Joint, joint_index};
 use crate::joint_control;
-use crate::robot::{Joint, joint_index};
 use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 
 /// One motor with everything between its terminals and its joints.
@@ -72,7 +72,7 @@ struct GearType {
 }
 
 /// Transmission and friction of a row.
-struct Train {
+struct TransmissionRow {
     transmission: Transmission,
     joints: Vec<usize>,
     friction: Friction,
@@ -204,7 +204,7 @@ impl Drive {
         let own =
             if row.has("joint_control") { row.table("joint_control", joint_control::build) } else { None };
         let bought = named(row, "motor", motors).unwrap_or(MotorType::NONE);
-        let train = Train::build(row, joints, gears);
+        let train = TransmissionRow::build(row, joints, gears);
         let mut drive = Self {
             name: row.text("name"),
             gear: if row.has("gear") { row.text("gear") } else { String::new() },
@@ -236,7 +236,7 @@ impl Drive {
     }
 }
 
-impl Train {
+impl TransmissionRow {
     /// Stand-in while a file is wrong.
     const NONE: Self = Self {
         transmission: Transmission::Harmonic { ratio: f64::NAN },

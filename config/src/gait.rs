@@ -10,21 +10,19 @@ use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 #[derive(Clone, Debug)]
 pub struct Gait {
     /// Steps.
-    pub step: Step,
+    pub step: StepSettings,
     /// Model the centre-of-gravity trajectory is planned with.
-    pub model: Model,
+    pub model: GaitModel,
     /// What may be commanded.
-    pub limits: Limits,
+    pub limits: CommandLimits,
     /// Steps over obstacles and onto platforms; none: the robot stays on level ground.
     pub obstacles: Option<Obstacles>,
     /// Stabilizing control.
-    pub control: Control,
+    pub control: StabilizerGains,
     /// \[1\] How far an arm's centre of gravity moves with that of the opposite leg; none: arms hang still.
     pub arm_swing: Option<f64>,
     /// How far the toe joints bend when the heel leaves the ground; none: toes stay straight.
     pub toes: Option<Bend>,
-    /// How far a foot rolls over its front edge before it leaves the ground; none: it leaves it flat.
-    pub forefoot_roll: Option<Bend>,
     /// How far the toes point up when the heel touches the ground; none: it lands flat.
     pub heel_strike: Option<Bend>,
 }
@@ -60,7 +58,7 @@ impl Bend {
 
 /// Steps and feet.
 #[derive(Clone, Debug, Default)]
-pub struct Step {
+pub struct StepSettings {
     /// \[m\] Lateral distance of the sole frames W_step.
     pub width: f64,
     /// \[m\] Least lateral distance of the sole frames W_step,min, feet parallel.
@@ -85,9 +83,12 @@ pub struct Step {
     pub by_speed: Vec<[f64; 3]>,
 }
 
+/// \[s\] Spacing of the knots of the centre-of-gravity trajectory: with half of it plans differ by less than a millimetre.
+pub const KNOT_SPACING: f64 = 0.08;
+
 /// The three-mass model (4.38).
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Model {
+pub struct GaitModel {
     /// \[m\] Height of the centre of gravity while walking.
     pub com_height: f64,
     /// \[m\] Where the centre of gravity stands in x, in front of the middle of the sole frames.
@@ -100,10 +101,8 @@ pub struct Model {
     pub zmp_margin: f64,
     /// Method for the trajectory of the centre of gravity.
     pub cog_method: CogMethod,
-    /// \[s\] Largest spacing of its knots.
+    /// \[s\] Largest spacing of its knots: [`KNOT_SPACING`], but in studies of accuracy.
     pub spacing: f64,
-    /// \[s\] Time for raising or lowering the body while standing.
-    pub stand_time: f64,
     /// \[1\] Most friction a plan may ask of the ground.
     pub friction: f64,
 }
@@ -127,7 +126,7 @@ impl CogMethod {
 
 /// Ranges of walking commands (thesis 4.6.1); outside of them a command is refused.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Limits {
+pub struct CommandLimits {
     /// \[m\] Step length.
     pub length: [f64; 2],
     /// \[m\] Step to the side.
@@ -157,7 +156,7 @@ pub struct Obstacles {
 
 /// Gains of the stabilizer (thesis chapter 5).
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Control {
+pub struct StabilizerGains {
     /// \[N m/rad\] K_P of the inclinations phi_x, phi_y (5.2), (5.3).
     pub inclination_p: [f64; 2],
     /// \[N m s/rad\] K_D of the same.
@@ -166,8 +165,6 @@ pub struct Control {
     pub height_p: f64,
     /// \[N s/m\] K_D of the same.
     pub height_d: f64,
-    /// \[1\] F_z,max over the robot's weight (5.12).
-    pub force_max: f64,
     /// \[1\] How much of the shift of normal force between the feet (5.14) is used; 0: moments of the feet alone.
     pub force_shift: f64,
     /// \[1/s\] K_lambda of normal force, moment about x, moment about y (5.26).
@@ -182,8 +179,6 @@ pub struct Control {
     pub modification_limit: [f64; 3],
     /// \[m/s, rad/s, rad/s\] Limits of its rate.
     pub modification_rate: [f64; 3],
-    /// \[m/s, m\] How fast and how far a foot is lowered that finds no ground at its time.
-    pub search: [f64; 2],
     /// \[1\] How much of the error of the upper body's inclination the swing foot makes good for (4.9).
     pub inclination_compensation: f64,
     /// \[1\] Share of the soles' deformation under the planned forces that is part of the foot trajectories (4.9).
@@ -192,8 +187,6 @@ pub struct Control {
     pub feedback: u64,
     /// \[1/s\] K_x: drift compensation (feedback path 1) or position control (path 2) of the inverse kinematics.
     pub drift_gain: f64,
-    /// \[1/s\] alpha_N: weight of the null-space cost H (5.38).
-    pub null_space_gain: f64,
     /// \[s\] Time constant of the force sensor filter.
     pub force_filter: f64,
 }
@@ -211,14 +204,13 @@ impl Gait {
         let text = file::text(path, hash)?;
         section::read(path, &text, |top| {
             let gait = Self {
-                step: top.table("step", Step::build).unwrap_or_default(),
-                model: top.table("model", Model::build).unwrap_or_default(),
-                limits: top.table("limits", Limits::build).unwrap_or_default(),
+                step: top.table("step", StepSettings::build).unwrap_or_default(),
+                model: top.table("model", GaitModel::build).unwrap_or_default(),
+                limits: top.table("limits", CommandLimits::build).unwrap_or_default(),
                 obstacles: top.has("obstacles").then(|| top.table("obstacles", Obstacles::build)).flatten(),
-                control: top.table("control", Control::build).unwrap_or_default(),
+                control: top.table("control", StabilizerGains::build).unwrap_or_default(),
                 arm_swing: top.has("arm_swing").then(|| top.number("arm_swing", "1", 0.0..=3.0)),
                 toes: bend(top, "toes"),
-                forefoot_roll: bend(top, "forefoot_roll"),
                 heel_strike: bend(top, "heel_strike"),
             };
             gait.check(top);
@@ -293,7 +285,7 @@ fn bend(top: &Section<'_, '_>, key: &str) -> Option<Bend> {
     top.has(key).then(|| top.table(key, Bend::build)).flatten()
 }
 
-impl Step {
+impl StepSettings {
     fn build(table: &Section<'_, '_>) -> Self {
         let by_speed: Vec<[f64; 3]> = table.rows("by_speed", "[speed in m/s, length in m, duration in s]");
         if by_speed.first().is_some_and(|row| row[0] > 0.0) {
@@ -323,7 +315,7 @@ impl Step {
     }
 }
 
-impl Model {
+impl GaitModel {
     fn build(table: &Section<'_, '_>) -> Self {
         Self {
             com_height: table.number("com_height", "m", 0.1..=3.0),
@@ -336,14 +328,13 @@ impl Model {
             } else {
                 CogMethod::default()
             },
-            spacing: table.number("spacing", "s", 0.005..=0.5),
-            stand_time: table.number("stand_time", "s", 0.1..=20.0),
+            spacing: KNOT_SPACING,
             friction: table.number("friction", "", POSITIVE),
         }
     }
 }
 
-impl Limits {
+impl CommandLimits {
     fn build(table: &Section<'_, '_>) -> Self {
         Self {
             length: table.interval("length", "m", -1.5..=1.5),
@@ -367,14 +358,13 @@ impl Obstacles {
     }
 }
 
-impl Control {
+impl StabilizerGains {
     fn build(table: &Section<'_, '_>) -> Self {
         Self {
             inclination_p: table.numbers("inclination_p", "N m/rad", NOT_NEGATIVE),
             inclination_d: table.numbers("inclination_d", "N m s/rad", NOT_NEGATIVE),
             height_p: table.number("height_p", "N/m", NOT_NEGATIVE),
             height_d: table.number("height_d", "N s/m", NOT_NEGATIVE),
-            force_max: table.number("force_max", "times the weight", 1.0..=5.0),
             force_shift: table.number("force_shift", "", 0.0..=1.0),
             force_gain: table.numbers("force_gain", "1/s", 0.0..=500.0),
             force_feed_forward: table.number("force_feed_forward", "", 0.0..=1.0),
@@ -382,12 +372,10 @@ impl Control {
             position_gain: table.number("position_gain", "1/s", 0.0..=500.0),
             modification_limit: table.numbers("modification_limit", "m, rad, rad", 0.0..=1.0),
             modification_rate: table.numbers("modification_rate", "m/s, rad/s, rad/s", 0.0..=20.0),
-            search: table.numbers("search", "m/s, m", 0.0..=1.0),
             inclination_compensation: table.number("inclination_compensation", "", 0.0..=1.0),
             planned_deformation: table.number("planned_deformation", "", 0.0..=1.0),
             feedback: table.integer("feedback", 1..=2),
             drift_gain: table.number("drift_gain", "1/s", 0.0..=500.0),
-            null_space_gain: table.number("null_space_gain", "", 0.0..=1e3),
             force_filter: table.number("force_filter", "s", 0.0..=1.0),
         }
     }

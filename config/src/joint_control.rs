@@ -2,13 +2,13 @@
 
 use std::ops::RangeInclusive;
 
-use drives::{Cascade, Feedback, JointControl, Law, Resolution, Sampled, Sampling, VoltageLaw};
+use drives::{Cascade, ControlLaw, Feedback, JointControl, Resolution, Sampled, Sampling, VoltageLaw};
 
 use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 
 /// Stand-in while a file is wrong, and of robots without drives.
 pub(crate) const NONE: JointControl = JointControl {
-    law: Law::Voltage(VoltageLaw { position: f64::NAN, speed: f64::NAN }),
+    law: ControlLaw::Voltage(VoltageLaw { position: f64::NAN, speed: f64::NAN }),
     sampling: Sampling::Cycle(Sampled { delay: false, difference: false }),
     resolution: Resolution { table_points: None, encoder_counts: None },
 };
@@ -20,8 +20,8 @@ const ENCODER_COUNTS: RangeInclusive<u64> = 2..=1 << 24;
 
 pub(crate) fn build(table: &Section<'_, '_>) -> JointControl {
     let law = match table.word("law", &["cascade", "voltage"]) {
-        0 => Law::Cascade(cascade(table)),
-        _ => Law::Voltage(VoltageLaw {
+        0 => ControlLaw::Cascade(cascade(table)),
+        _ => ControlLaw::Voltage(VoltageLaw {
             position: table.number("position", "V/rad", POSITIVE),
             speed: table.number("speed", "V s/rad", NOT_NEGATIVE),
         }),
@@ -33,7 +33,7 @@ pub(crate) fn build(table: &Section<'_, '_>) -> JointControl {
             difference: table.word("speed_from", &["state", "difference"]) == 1,
         }),
     };
-    if matches!(law, Law::Voltage(_)) && sampling == Sampling::Continuous {
+    if matches!(law, ControlLaw::Voltage(_)) && sampling == Sampling::Continuous {
         table.problem("sampling", "the law \"voltage\" is computed once per cycle; it takes \"cycle\"");
     }
     let points = table.has("table_points").then(|| table.integer("table_points", TABLE_POINTS) as u32);

@@ -1,6 +1,6 @@
 //! Limbs that no foot needs: the camera head and the arms. A robot may have neither.
 
-use crate::robot::{Joint, joint_index};
+use crate::joint::{Joint, joint_index};
 use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 
 /// A camera head: pan about a vertical axis, tilt about a lateral one that meets it, cameras on what tilts.

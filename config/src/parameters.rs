@@ -3,7 +3,7 @@
 //!
 //! The default of each is what the gait file says.
 
-use crate::gait::{Control, Step};
+use crate::gait::{StabilizerGains, StepSettings};
 
 /// One parameter of `T`.
 pub struct Parameter<T: 'static> {
@@ -35,7 +35,7 @@ macro_rules! parameter {
 
 /// Those of the stabilizer; the place in this table is the number in `stabilize/parameter`: append only.
 #[rustfmt::skip]
-pub const STABILIZER: &[Parameter<Control>] = &[
+pub const STABILIZER: &[Parameter<StabilizerGains>] = &[
     parameter!("inclination_p.x", "N m/rad", [0.0, 1e4], "K_P of phi_x (5.3)", inclination_p[0]),
     parameter!("inclination_p.y", "N m/rad", [0.0, 1e4], "K_P of phi_y (5.2)", inclination_p[1]),
     parameter!("inclination_d.x", "N m s/rad", [0.0, 2e3], "K_D of phi_x (5.3)", inclination_d[0]),
@@ -57,7 +57,7 @@ pub const STABILIZER: &[Parameter<Control>] = &[
 /// Those of the planner; the place in this table is the number in `walk/parameter`: append only. A new value holds from
 /// the next step that is planned.
 #[rustfmt::skip]
-pub const PLANNER: &[Parameter<Step>] = &[
+pub const PLANNER: &[Parameter<StepSettings>] = &[
     parameter!("swing_height", "m", [0.0, 0.15], "height of the swing foot z_swing, from the next step on", swing_height),
 ];
 

@@ -5,7 +5,7 @@ use drives::homing::HomeSwitch;
 use drives::thermal::Thermal;
 
 use crate::drive::Drive;
-use crate::robot::{Joint, joint_index};
+use crate::joint::{Joint, joint_index};
 use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 
 /// `[protection]`: limits of every drive.

@@ -11,7 +11,7 @@ use crate::parameters::{PLANNER, Parameter, STABILIZER};
 
 /// One parameter of one process.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct ParameterEntry {
     /// Process that has it.
     pub process: &'static str,
     /// Its name there.
@@ -39,7 +39,7 @@ pub enum Change {
     Constant,
 }
 
-impl Entry {
+impl ParameterEntry {
     /// `process.name`.
     pub fn full_name(&self) -> String {
         format!("{}.{}", self.process, self.name)
@@ -128,24 +128,22 @@ const FIXED: &[Fixed] = &[
     fixed!("planner", "gaits", "limits.duration.least", "s", [0.2, 20.0], |s| Some(s.gait.limits.duration[0]), "least duration of a step that may be commanded"),
     fixed!("planner", "gaits", "limits.duration.most", "s", [0.2, 20.0], |s| Some(s.gait.limits.duration[1]), "greatest duration of a step that may be commanded"),
     fixed!("planner", "gaits", "obstacles.height", "m", [0.0, 0.5], |s| s.gait.obstacles.map(|o| o.height), "highest obstacle or platform"),
-    fixed!("controller", "gaits", "force_max", "", [1.0, 5.0], |s| Some(s.gait.control.force_max), "F_z,max over the robot's weight (5.12)"),
-    fixed!("controller", "gaits", "null_space_gain", "1/s", [0.0, 1e3], |s| Some(s.gait.control.null_space_gain), "alpha_N, weight of the null-space cost (5.38)"),
     fixed!("controller", "gaits", "feedback", "", [1.0, 2.0], |s| Some(s.gait.control.feedback as f64), "feedback path of figure 5.8"),
 ];
 
 /// All parameters of this configuration, by process.
-pub fn entries(setup: &Setup) -> Vec<Entry> {
+pub fn entries(setup: &Setup) -> Vec<ParameterEntry> {
     let mut all = live("planner", PLANNER, &setup.gait.step);
     all.extend(live("controller", STABILIZER, &setup.gait.control));
     all.extend(FIXED.iter().filter_map(|row| {
         let &Fixed { process, name, unit, range, file, about, get } = row;
         let change = Change::File(file);
-        Some(Entry { process, name: name.into(), unit, range, default: get(setup)?, about, change })
+        Some(ParameterEntry { process, name: name.into(), unit, range, default: get(setup)?, about, change })
     }));
     for row in &setup.system.processes {
         let mut fixed = |name: &str, unit, range, default, about| {
             let (process, change) = (row.process.name(), Change::File("system.toml"));
-            all.push(Entry { process, name: name.into(), unit, range, default, about, change });
+            all.push(ParameterEntry { process, name: name.into(), unit, range, default, about, change });
         };
         fixed(
             "priority",
@@ -176,8 +174,8 @@ pub fn entries(setup: &Setup) -> Vec<Entry> {
     all
 }
 
-fn live<T>(process: &'static str, table: &[Parameter<T>], of: &T) -> Vec<Entry> {
-    let entry = |(number, p): (usize, &Parameter<T>)| Entry {
+fn live<T>(process: &'static str, table: &[Parameter<T>], of: &T) -> Vec<ParameterEntry> {
+    let entry = |(number, p): (usize, &Parameter<T>)| ParameterEntry {
         process,
         name: p.name.into(),
         unit: p.unit,
@@ -193,11 +191,11 @@ fn live<T>(process: &'static str, table: &[Parameter<T>], of: &T) -> Vec<Entry> 
 ///
 /// # Errors
 /// There is none; the text names those that are near.
-pub fn find<'a>(entries: &'a [Entry], name: &str) -> Result<&'a Entry, String> {
+pub fn find<'a>(entries: &'a [ParameterEntry], name: &str) -> Result<&'a ParameterEntry, String> {
     let full = entries.iter().find(|e| e.full_name() == name);
     let short = || entries.iter().find(|e| e.process == "controller" && e.name == name);
     full.or_else(short).ok_or_else(|| {
-        let names: Vec<String> = entries.iter().map(Entry::full_name).collect();
+        let names: Vec<String> = entries.iter().map(ParameterEntry::full_name).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         messages::unknown("parameter", name, &names, "`gangwerk param list` shows them all")
     })
@@ -213,7 +211,7 @@ mod tests {
         for file in std::fs::read_dir(root.join("scenes")).unwrap() {
             let name = file.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned();
             let entries = entries(&Setup::load(&root, &name).unwrap());
-            let mut names: Vec<_> = entries.iter().map(Entry::full_name).collect();
+            let mut names: Vec<_> = entries.iter().map(ParameterEntry::full_name).collect();
             for process in messages::Process::ALL.map(messages::Process::name) {
                 assert!(entries.iter().any(|e| e.process == process), "{process} has none");
             }

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use codec::layout::Layout;
+use codec::layout::FrameLayout;
 use drives::homing::HomeSwitch;
-use messages::{MAX_JOINTS, nearest};
+use messages::MAX_JOINTS;
 
 use crate::acceleration;
 use crate::dbc;
@@ -14,6 +14,8 @@ pub use crate::drive::Drive;
 use crate::drive::drives;
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
+pub use crate::joint::Joint;
+use crate::joint::joint_index;
 use crate::limbs::{Arms, Head};
 use crate::protection::{Protection, homes};
 use crate::section::{self, POSITIVE, Section};
@@ -40,9 +42,9 @@ pub struct Robot {
     /// Named joint poses \[rad\], complete, in joint order.
     pub poses: BTreeMap<String, Vec<f64>>,
     /// Frames of the field bus; as read, those of CAN FD.
-    pub layout: Layout,
+    pub layout: FrameLayout,
     /// Frames of classic CAN, or why there are none.
-    pub classic: Result<Layout, String>,
+    pub classic: Result<FrameLayout, String>,
     /// Local controllers and DBC files that both come from.
     pub can: Can,
     /// Local controllers (indices) that the robot can walk without: nobody stops it if one of them falls silent.
@@ -57,26 +59,6 @@ pub struct Robot {
     pub protection: Option<Protection>,
     /// Home switches, by joint; none for a joint with an absolute encoder.
     pub homes: Vec<Option<HomeSwitch>>,
-}
-
-/// One driven joint.
-#[derive(Clone, Debug)]
-pub struct Joint {
-    /// Name in the URDF.
-    pub name: String,
-    /// \[rad\] Software range.
-    pub range: [f64; 2],
-    /// \[rad/s\]
-    pub speed_limit: f64,
-    /// \[rad/s^2\] Deceleration for bringing the joint to rest.
-    pub braking: f64,
-    /// \[rad/s^2\] Acceleration that its drives can give it at any angle of its range ([`Robot::acceleration`] is exact);
-    /// infinite for a robot of ideal drives.
-    pub acceleration: f64,
-    /// \[rad\] Comfortable angle for redundancy resolution.
-    pub comfort: f64,
-    /// \[1\] Weight W of the joint's speed in the inverse kinematics (5.36).
-    pub weight: f64,
 }
 
 /// One foot.
@@ -175,6 +157,17 @@ impl Robot {
         self.joints.iter().position(|joint| joint.name == name)
     }
 
+    /// \[rad/s^2\] Most that the drives of joint `j` can accelerate it at these angles \[rad\] of all joints; infinite for a
+    /// joint without a drive.
+    pub fn acceleration(&self, j: usize, angles: &[f64]) -> f64 {
+        acceleration::at(&self.drives, j, angles)
+    }
+
+    /// \[N\] Weight.
+    pub fn weight(&self) -> f64 {
+        self.total_mass * multibody::GRAVITY_ACCELERATION
+    }
+
     /// Everything but the URDF's text: `urdf` is its file name here.
     fn build(top: &Section<'_, '_>, name: String) -> Self {
         let joints = top.tables("joint", Joint::build);
@@ -195,8 +188,8 @@ impl Robot {
             contact: top.table("contact", Contact::build).unwrap_or(Contact::NONE),
             imu: top.numbers("imu", "m", -2.0..=2.0),
             poses: poses(top, &joints),
-            layout: Layout::default(),
-            classic: Ok(Layout::default()),
+            layout: FrameLayout::default(),
+            classic: Ok(FrameLayout::default()),
             can: Can::default(),
             spare: Vec::new(),
             head: optional(top, "head", |table| Head::build(table, &joints)),
@@ -216,28 +209,6 @@ fn optional<T>(
     build: impl FnOnce(&Section<'_, '_>) -> Option<T>,
 ) -> Option<T> {
     if top.has(key) { top.table(key, build).flatten() } else { None }
-}
-
-impl Joint {
-    fn build(row: &Section<'_, '_>) -> Self {
-        Self {
-            name: row.text("name"),
-            range: row.interval("range_deg", "deg", -360.0..=360.0).map(f64::to_radians),
-            speed_limit: row.number("speed_limit", "rad/s", POSITIVE),
-            braking: row.number("braking", "rad/s^2", POSITIVE),
-            acceleration: f64::INFINITY,
-            comfort: row.number("comfort_deg", "deg", -360.0..=360.0).to_radians(),
-            weight: row.number("weight", "", POSITIVE),
-        }
-        .checked(row)
-    }
-
-    fn checked(self, row: &Section<'_, '_>) -> Self {
-        if self.comfort < self.range[0] || self.comfort > self.range[1] {
-            row.problem("comfort_deg", format!("lies outside of range_deg of joint `{}`", self.name));
-        }
-        self
-    }
 }
 
 impl Contact {
@@ -318,16 +289,6 @@ impl Foot {
     }
 }
 
-/// The position of a joint that a key names.
-pub(crate) fn joint_index(at: &Section<'_, '_>, key: &str, name: &str, joints: &[&str]) -> Option<usize> {
-    let found = joints.iter().position(|joint| *joint == name);
-    if found.is_none() && !name.is_empty() {
-        let hint = nearest(name, joints).map_or(String::new(), |n| format!("; the nearest is `{n}`"));
-        at.problem(key, format!("there is no joint `{name}`{hint}"));
-    }
-    found
-}
-
 fn feet(top: &Section<'_, '_>, joints: &[&str]) -> [Foot; 2] {
     let foot = |table: &Section<'_, '_>, side| table.table(side, |foot| Foot::build(foot, joints));
     let feet =
@@ -389,7 +350,7 @@ impl Can {
 }
 
 /// Frames of a robot that has no file of them.
-fn written(robot: &str, can: &Can, form: FrameForm, joints: &[&str]) -> Result<Layout, String> {
+fn written(robot: &str, can: &Can, form: FrameForm, joints: &[&str]) -> Result<FrameLayout, String> {
     if can.nodes.is_empty() {
         let key = if form == FrameForm::Fd { "fd" } else { "classic" };
         return Err(format!("can: needs `{key}`, a DBC file, or its local controllers as [[can.node]]"));
@@ -402,7 +363,7 @@ fn written(robot: &str, can: &Can, form: FrameForm, joints: &[&str]) -> Result<L
 }
 
 /// Local controllers by name.
-fn spare(layout: &Layout, names: &[String]) -> Result<Vec<usize>, String> {
+fn spare(layout: &FrameLayout, names: &[String]) -> Result<Vec<usize>, String> {
     let node = |name: &String| {
         layout.nodes.iter().position(|node| node == name).ok_or_else(|| {
             let there = layout.nodes.join(", ");

@@ -12,11 +12,15 @@ use crate::crane::{Crane, DriveStart};
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
 use crate::joint_control;
+use crate::method::{Integrator, Method};
+use crate::plant_mismatch::PlantMismatch;
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
-use crate::sensors::Sensors;
+use crate::sensors::SensorErrors;
 use crate::terrain::{self, TerrainObject};
-use crate::tolerance::{Method, Tolerance};
-use crate::unknown::Unknown;
+use crate::tolerance::Tolerance;
+
+/// Seed of a scene that says none.
+pub const SEED: u64 = 1;
 
 /// `scenes/NAME.toml`.
 #[derive(Clone, Debug)]
@@ -48,16 +52,16 @@ pub struct Scene {
     pub start_pose: String,
     /// \[s\]
     pub duration: f64,
-    /// Seed of everything random.
+    /// Seed of everything random: noise of sensors, faults of the bus; [`SEED`] if the scene says none.
     pub seed: u64,
     /// Objects on the ground.
     pub objects: Vec<TerrainObject>,
     /// Errors of the sensors.
-    pub sensors: Sensors,
+    pub sensors: SensorErrors,
     /// Joint control of all drives, instead of the robot's.
     pub joint_control: Option<JointControl>,
     /// Plant mismatch: differences from the model of the robot's software.
-    pub unknown: Unknown,
+    pub plant_mismatch: PlantMismatch,
     /// Crane that holds the robot at the start; none: it stands.
     pub crane: Option<Crane>,
     /// Drives as they are at switch-on; none: they know their angles, and nothing protects them.
@@ -68,26 +72,6 @@ pub struct Scene {
     pub pushes: Vec<(f64, PushCommand)>,
     /// Faults of the field bus by time, ascending.
     pub bus_faults: Vec<BusFault>,
-}
-
-/// Integrator of the equations of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Integrator {
-    /// Explicit Euler, first order.
-    Euler,
-    /// Classical Runge-Kutta, fourth order between contact changes.
-    RungeKutta4,
-    /// Drives implicit, contact and bodies explicit, first order: dry friction sticks, and motors do not limit the step.
-    SemiImplicit,
-    /// Backward differentiation with steps chosen for a tolerance; for comparison, not for real time.
-    Bdf,
-}
-
-impl Integrator {
-    /// All of them, in the order of [`Integrator::WORDS`].
-    pub const ALL: [Self; 4] = [Self::Euler, Self::RungeKutta4, Self::SemiImplicit, Self::Bdf];
-    /// Their names in scene files.
-    pub const WORDS: [&str; 4] = ["euler", "rk4", "semi_implicit", "bdf"];
 }
 
 impl Scene {
@@ -131,14 +115,14 @@ impl Scene {
             cycle: top.number("cycle", "s", 1e-4..=0.02),
             start_pose: top.text("start_pose"),
             duration: top.number("duration", "s", POSITIVE),
-            seed: top.integer("seed", 0..=u64::MAX),
+            seed: if top.has("seed") { top.integer("seed", 0..=u64::MAX) } else { SEED },
             objects: top.tables("object", terrain::object),
             sensors: sensors(top),
             joint_control: top
                 .has("joint_control")
                 .then(|| top.table("joint_control", joint_control::build))
                 .flatten(),
-            unknown: unknown(top),
+            plant_mismatch: plant_mismatch(top),
             crane: top.has("crane").then(|| top.table("crane", Crane::build)).flatten(),
             drives: top.has("drives").then(|| top.table("drives", DriveStart::build)).flatten(),
             commands: top.tables("command", command),
@@ -211,14 +195,14 @@ fn method(top: &Section<'_, '_>) -> (Method, Option<Tolerance>) {
 }
 
 /// `[sensors]`, if it is there.
-fn sensors(top: &Section<'_, '_>) -> Sensors {
-    let named = top.has("sensors").then(|| top.table("sensors", Sensors::build));
+fn sensors(top: &Section<'_, '_>) -> SensorErrors {
+    let named = top.has("sensors").then(|| top.table("sensors", SensorErrors::build));
     named.flatten().unwrap_or_default()
 }
 
-/// `[unknown]`, if it is there.
-fn unknown(top: &Section<'_, '_>) -> Unknown {
-    let named = top.has("unknown").then(|| top.table("unknown", Unknown::build));
+/// `[plant_mismatch]`, if it is there.
+fn plant_mismatch(top: &Section<'_, '_>) -> PlantMismatch {
+    let named = top.has("plant_mismatch").then(|| top.table("plant_mismatch", PlantMismatch::build));
     named.flatten().unwrap_or_default()
 }
 

@@ -21,7 +21,7 @@ const VARIABLE: &str = "GANGWERK_CONFIG";
 
 /// A configuration directory, and why it is this one.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Found {
+pub struct ConfigDirectory {
     /// The directory, or [`BUILT_IN`].
     pub dir: PathBuf,
     /// Reason for taking it.
@@ -32,7 +32,7 @@ pub struct Found {
 ///
 /// # Errors
 /// The directory named by `--config` or the environment is no configuration; nothing else is taken instead.
-pub fn find(asked: Option<&Path>) -> Result<Found, ConfigError> {
+pub fn find(asked: Option<&Path>) -> Result<ConfigDirectory, ConfigError> {
     search(asked, |name| std::env::var_os(name).filter(|value| !value.is_empty()), Path::new(""))
 }
 
@@ -41,8 +41,8 @@ fn search(
     asked: Option<&Path>,
     variable: impl Fn(&str) -> Option<OsString>,
     here: &Path,
-) -> Result<Found, ConfigError> {
-    let found = |dir: &Path, why: &str| Found { dir: dir.into(), why: why.into() };
+) -> Result<ConfigDirectory, ConfigError> {
+    let found = |dir: &Path, why: &str| ConfigDirectory { dir: dir.into(), why: why.into() };
     // What somebody has named is taken, or refused.
     if let Some(dir) = asked {
         return named(dir, "--config").map(|()| found(dir, "named by --config"));

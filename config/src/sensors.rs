@@ -18,22 +18,22 @@ use crate::section::Section;
 
 /// `[sensors]` of a scene. The default measures exactly.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sensors {
+pub struct SensorErrors {
     /// Which encoders the joint angles and speeds of the record come from.
-    pub side: Side,
+    pub side: EncoderSide,
     /// Link side; resolution per turn of the joint.
-    pub encoder: Encoder,
+    pub encoder: EncoderErrors,
     /// Motor side; resolution per turn of the joint: counts of the motor times gear ratio.
-    pub motor_encoder: Encoder,
+    pub motor_encoder: EncoderErrors,
     /// Both feet.
-    pub force_torque: ForceTorque,
+    pub force_torque: ForceTorqueErrors,
     /// Upper body.
-    pub imu: Imu,
+    pub imu: ImuErrors,
 }
 
 /// Where joint angles are measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Side {
+pub enum EncoderSide {
     /// At the joint.
     #[default]
     Link,
@@ -43,7 +43,7 @@ pub enum Side {
 
 /// Errors of the encoders of one side.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Encoder {
+pub struct EncoderErrors {
     /// \[1\] Counts per turn of the joint; not quantised where a joint has none.
     pub counts: PerJoint,
     /// \[rad\] Static error of calibration, added to the angle.
@@ -56,7 +56,7 @@ pub struct Encoder {
 
 /// Errors of the force/torque sensors. Zeros stand for "none".
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ForceTorque {
+pub struct ForceTorqueErrors {
     /// Weight and inertia of the bodies below the sensor are measured, too.
     pub inertia: bool,
     /// Set to zero while hanging with level feet.
@@ -77,7 +77,7 @@ pub struct ForceTorque {
     pub delay: f64,
 }
 
-impl Default for ForceTorque {
+impl Default for ForceTorqueErrors {
     fn default() -> Self {
         Self {
             inertia: false,
@@ -95,17 +95,17 @@ impl Default for ForceTorque {
 
 /// Errors of the inertial measurement unit. Zeros stand for "none".
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Imu {
+pub struct ImuErrors {
     /// \[Hz\] Cut-off frequency of the first-order low pass of all three signals; 0: none.
     pub bandwidth: f64,
     /// \[rad\] Rotation vector from the torso to the misaligned sensor; on the orientation only.
     pub bias: [f64; 3],
     /// Of the orientation \[rad\].
-    pub orientation: Signal,
+    pub orientation: SignalErrors,
     /// Of the angular velocity \[rad/s\].
-    pub rate: Signal,
+    pub rate: SignalErrors,
     /// Of the specific force \[m/s^2\].
-    pub acceleration: Signal,
+    pub acceleration: SignalErrors,
     /// \[s\] Between two readings, in whole cycles; 0: one in every cycle.
     pub period: f64,
     /// \[s\] Dead time, in whole cycles.
@@ -114,7 +114,7 @@ pub struct Imu {
 
 /// Noise, quantisation and range of one signal, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Signal {
+pub struct SignalErrors {
     /// Standard deviation of the white noise of each component.
     pub noise: f64,
     /// Quantisation.
@@ -123,7 +123,7 @@ pub struct Signal {
     pub range: f64,
 }
 
-impl Default for Signal {
+impl Default for SignalErrors {
     fn default() -> Self {
         Self { noise: 0.0, step: 0.0, range: f64::INFINITY }
     }
@@ -141,27 +141,29 @@ pub struct PerJoint {
 /// \[1\] Most counts per turn of an encoder: 32 bit.
 const MOST_COUNTS: f64 = 4_294_967_296.0;
 
-impl Sensors {
+impl SensorErrors {
     pub(crate) fn build(table: &Section<'_, '_>) -> Self {
-        let sides = [Side::Link, Side::Motor];
+        let sides = [EncoderSide::Link, EncoderSide::Motor];
         Self {
             side: optional(table, "side", |t, key| sides[t.word(key, &["link", "motor"])]),
-            encoder: optional(table, "encoder", |t, key| t.table(key, Encoder::link).unwrap_or_default()),
+            encoder: optional(table, "encoder", |t, key| {
+                t.table(key, EncoderErrors::link).unwrap_or_default()
+            }),
             motor_encoder: optional(table, "motor_encoder", |t, key| {
-                t.table(key, Encoder::motor).unwrap_or_default()
+                t.table(key, EncoderErrors::motor).unwrap_or_default()
             }),
             force_torque: optional(table, "force_torque", |t, key| {
-                t.table(key, ForceTorque::build).unwrap_or_default()
+                t.table(key, ForceTorqueErrors::build).unwrap_or_default()
             }),
-            imu: optional(table, "imu", |t, key| t.table(key, Imu::build).unwrap_or_default()),
+            imu: optional(table, "imu", |t, key| t.table(key, ImuErrors::build).unwrap_or_default()),
         }
     }
 
     /// What the joints named here are wrong about: key, text.
     pub(crate) fn unknown_joints(&self, robot: &str, joints: &[&str]) -> Vec<(String, String)> {
-        let tables = [("encoder", &self.encoder), ("motor_encoder", &self.motor_encoder)];
-        let named = tables.iter().flat_map(|(table, e)| {
-            let keys = [("counts", &e.counts), ("bias_rad", &e.bias)];
+        let tables = [("encoder", "bits", &self.encoder), ("motor_encoder", "counts", &self.motor_encoder)];
+        let named = tables.iter().flat_map(|(table, of_counts, e)| {
+            let keys = [(*of_counts, &e.counts), ("bias_rad", &e.bias)];
             keys.into_iter()
                 .flat_map(move |(key, per)| per.own.iter().map(move |(name, _)| (table, key, name)))
         });
@@ -175,18 +177,15 @@ impl Sensors {
     }
 }
 
-impl Encoder {
+impl EncoderErrors {
     fn link(table: &Section<'_, '_>) -> Self {
-        let counts = PerJoint::build(table, "counts", "counts per turn", 2.0..=MOST_COUNTS);
-        let mut bits = PerJoint::build(table, "bits", "bit", 1.0..=32.0);
-        if table.has("bits") && table.has("counts") {
-            table.problem("bits", "counts is given, too; keep one of them");
+        let mut counts = PerJoint::build(table, "bits", "bit", 1.0..=32.0);
+        for bits in counts.values() {
+            if bits.fract() != 0.0 && !bits.is_nan() {
+                table.problem("bits", format!("{bits} is not a whole number"));
+            }
+            *bits = bits.exp2(); // 2^Q counts: errata 1, V15
         }
-        for bit in bits.values().filter(|bit| bit.fract() != 0.0 && !bit.is_nan()) {
-            table.problem("bits", format!("{bit} is not a whole number"));
-        }
-        bits.values().for_each(|bit| *bit = bit.exp2()); // 2^Q counts: errata 1, V15
-        let counts = if table.has("bits") { bits } else { counts };
         Self { counts, ..Self::any(table) }
     }
 
@@ -215,7 +214,7 @@ impl Encoder {
     }
 }
 
-impl ForceTorque {
+impl ForceTorqueErrors {
     fn build(table: &Section<'_, '_>) -> Self {
         let range = |key, unit| match table.has(key) {
             true => table.numbers(key, unit, 1e-3..=1e6),
@@ -247,12 +246,12 @@ impl ForceTorque {
     }
 }
 
-impl Imu {
+impl ImuErrors {
     fn build(table: &Section<'_, '_>) -> Self {
         let number = |key: String, unit: &str, most: f64| {
             optional(table, &key, |t, key| t.number(key, unit, 0.0..=most))
         };
-        let signal = |name: &str, unit: &str, most: f64| Signal {
+        let signal = |name: &str, unit: &str, most: f64| SignalErrors {
             noise: number(format!("{name}_noise"), unit, most),
             step: number(format!("{name}_step"), unit, most),
             range: f64::INFINITY,
@@ -260,7 +259,7 @@ impl Imu {
         let ranged = |name: &str, unit: &str| {
             let key = format!("{name}_range");
             let range = if table.has(&key) { table.number(&key, unit, 1e-3..=1e6) } else { f64::INFINITY };
-            Signal { range, ..signal(name, unit, 1e3) }
+            SignalErrors { range, ..signal(name, unit, 1e3) }
         };
         Self {
             bandwidth: optional(table, "bandwidth", |t, key| t.number(key, "Hz", 1e-3..=1e5)),

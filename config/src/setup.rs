@@ -7,8 +7,8 @@ use messages::{Command, nearest};
 
 use crate::error::{ConfigError, Problem};
 use crate::file::Hash;
+use crate::method::Method;
 use crate::section::listed;
-use crate::tolerance::Method;
 use crate::{Gait, Robot, Scene, System, scenes};
 
 /// A scene, the robot and gait it names, and the run-time system; each fits the others.
@@ -126,18 +126,12 @@ impl Setup {
             let text = format!("robot {} has no [home.JOINT]: every joint knows its angle", scene.robot);
             note("drives.homing".to_owned(), text);
         }
-        let heated = scene.drives.iter().flat_map(|drives| &drives.temperature.own);
-        for (name, _) in heated.filter(|(name, _)| !joints.contains(&name.as_str())) {
-            let near = nearest(name, &joints).unwrap_or("none");
-            let text = format!("robot {} has no joint `{name}`; the nearest is `{near}`", scene.robot);
-            note("drives.temperature".to_owned(), text);
-        }
         // Names of joints and local controllers in plant mismatch and bus faults.
-        for (name, _) in &scene.unknown.joint_offset.own {
+        for (name, _) in &scene.plant_mismatch.joint_offset.own {
             if !joints.contains(&name.as_str()) {
                 let near = nearest(name, &joints).unwrap_or("none");
                 let text = format!("robot {} has no joint `{name}`; the nearest is `{near}`", scene.robot);
-                note("unknown.joint_offset_rad".to_owned(), text);
+                note("plant_mismatch.joint_offset_rad".to_owned(), text);
             }
         }
         let nodes: Vec<&str> = self.robot.layout.nodes.iter().map(String::as_str).collect();

@@ -13,7 +13,7 @@ pub struct TerrainObject {
     /// In messages.
     pub name: String,
     /// Kind.
-    pub shape: Shape,
+    pub shape: ObjectShape,
     /// Pose at the beginning.
     pub pose: TerrainPose,
     /// \[1\] Coefficient of friction, if not that of the robot's soles.
@@ -30,7 +30,7 @@ pub struct TerrainObject {
 
 /// The surface of an object.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum ObjectShape {
     /// \[m\] Lengths along x, y and z; its origin is the centre.
     Box([f64; 3]),
     /// A file in `objects/`.
@@ -88,23 +88,23 @@ pub(crate) fn object(row: &Section<'_, '_>) -> TerrainObject {
     object
 }
 
-fn shape(row: &Section<'_, '_>) -> Shape {
+fn shape(row: &Section<'_, '_>) -> ObjectShape {
     match (row.has("box"), row.has("mesh")) {
-        (true, false) => Shape::Box(row.numbers("box", "m", 1e-3..=1e3)),
+        (true, false) => ObjectShape::Box(row.numbers("box", "m", 1e-3..=1e3)),
         (false, true) => {
             let file = PathBuf::from(row.text("mesh"));
             if !file.components().all(|part| matches!(part, Component::Normal(_))) {
                 row.problem("mesh", "must lie in the directory `objects` of the configuration");
             }
             let scale = if row.has("scale") { row.number("scale", "m", POSITIVE) } else { 1.0 };
-            Shape::Mesh { file, bytes: Arc::default(), scale }
+            ObjectShape::Mesh { file, bytes: Arc::default(), scale }
         }
         _ => {
             row.problem(
                 "box",
                 "an object takes either `box`, three lengths in m, or `mesh`, a file in `objects`",
             );
-            Shape::Box([f64::NAN; 3])
+            ObjectShape::Box([f64::NAN; 3])
         }
     }
 }
@@ -118,7 +118,7 @@ fn pose(row: &Section<'_, '_>) -> TerrainPose {
 /// Reads the files of meshes in `objects/` of the configuration directory `root`, and adds their bytes to `hash`.
 pub(crate) fn find(objects: &mut [TerrainObject], root: &Path, hash: &mut Hash) -> Result<(), ConfigError> {
     for object in objects {
-        if let Shape::Mesh { file, bytes, .. } = &mut object.shape {
+        if let ObjectShape::Mesh { file, bytes, .. } = &mut object.shape {
             *file = root.join("objects").join(&*file);
             *bytes = file::include(file, hash)?.into();
         }

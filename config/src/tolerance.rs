@@ -1,4 +1,4 @@
-//! `depth = "auto"`: which outputs of a scene must be how accurate, and the method that was found to do it.
+//! `depth = "auto"`: which outputs of a scene must be how accurate.
 //!
 //! ```toml
 //! depth = "auto"
@@ -12,10 +12,6 @@
 //! Type, integrator and steps are what is chosen, so such a scene names none of them. `gangwerk sim` and `gangwerk run`
 //! choose before they begin.
 
-use std::fmt;
-use std::str::FromStr;
-
-use crate::scene::Integrator;
 use crate::section::{POSITIVE, Section, listed};
 
 /// Something that a simulation is asked for.
@@ -103,56 +99,5 @@ impl Tolerance {
     /// Whether an output asks for motors.
     pub fn needs_motors(&self) -> bool {
         self.outputs.iter().any(|(output, _)| output.needs_motors())
-    }
-}
-
-/// How deep a model is and how it is integrated; as text `type 2, semi_implicit x 4`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Method {
-    /// Modelling depth, 1 to 5.
-    pub depth: u8,
-    /// Integrator of the simulated robot.
-    pub integrator: Integrator,
-    /// \[1\] Integration steps per bus cycle.
-    pub substeps: u32,
-}
-
-impl fmt::Display for Method {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let integrator = Integrator::ALL.iter().position(|i| *i == self.integrator).unwrap_or(0);
-        write!(f, "type {}, {} x {}", self.depth, Integrator::WORDS[integrator], self.substeps)
-    }
-}
-
-impl FromStr for Method {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.strip_prefix("type ").and_then(|rest| {
-            let (depth, rest) = rest.split_once(", ")?;
-            let (word, substeps) = rest.split_once(" x ")?;
-            let integrator = Integrator::WORDS.iter().position(|w| *w == word)?;
-            let (depth, substeps) = (depth.parse().ok()?, substeps.parse().ok()?);
-            Some(Self { depth, integrator: Integrator::ALL[integrator], substeps })
-        });
-        parts
-            .filter(|m| (1..=5).contains(&m.depth) && (1..=1000).contains(&m.substeps))
-            .ok_or_else(|| format!("`{text}` is no method; one is `type 2, semi_implicit x 4`"))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_method_is_read_as_it_is_written() {
-        for integrator in Integrator::ALL {
-            let method = Method { depth: 5, integrator, substeps: 1000 };
-            assert_eq!(method.to_string().parse(), Ok(method));
-        }
-        for wrong in ["", "type 2", "type 6, euler x 1", "type 2, euler x 0", "type 2, eulr x 1"] {
-            assert!(wrong.parse::<Method>().is_err(), "{wrong}");
-        }
     }
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use config::bus_fault::{BusFault, FaultKind, Way};
+use config::bus_fault::{BusFault, FaultKind, FrameDirection};
 use config::{ConfigError, Setup};
 
 /// The shipped configuration with one scene of its own; gone when dropped.
@@ -58,7 +58,7 @@ cycles = 3
     let all = BusFault::new(FaultKind::Lost, 1.0, f64::INFINITY);
     let some = BusFault {
         node: Some("shank_left".into()),
-        way: Some(Way::FromDrives),
+        way: Some(FrameDirection::FromDrives),
         share: 0.25,
         cycles: 3,
         ..BusFault::new(FaultKind::Late, 2.0, 0.5)

@@ -1,10 +1,10 @@
 //! Layouts from DBC files: the shipped ones carry everything, and a broken one says what is wrong with it.
 
 use codec::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
-use codec::layout::{Carries, Layout};
+use codec::layout::{Carries, FrameLayout};
 use config::database::Database;
 use config::{Robot, dbc};
-use drives::cia402::{self, Fault, REFERENCED, State, VOLTAGE, WARNING};
+use drives::cia402::{self, DriveFault, DriveState, REFERENCED, VOLTAGE, WARNING};
 use messages::{BusFrames, JointTargets, Sensors};
 
 fn robots() -> Vec<Robot> {
@@ -47,7 +47,7 @@ fn sensors(robot: &Robot, tick: u64) -> Sensors {
 }
 
 /// Half a unit of the signal that carries it, or 0 if none does.
-fn unit(layout: &Layout, carries: Carries) -> Option<f64> {
+fn unit(layout: &FrameLayout, carries: Carries) -> Option<f64> {
     let signals = layout.messages.iter().flat_map(|m| &m.signals);
     signals.filter(|s| s.carries == carries).map(|s| 0.5 * s.scale * (1.0 + 1e-9)).next()
 }
@@ -190,18 +190,18 @@ fn words(carries: Carries) -> Vec<(u16, &'static str)> {
             cia402::WORDS.into_iter().zip(text).collect()
         }
         Carries::Error(_) => {
-            Fault::ALL.map(|f| (f as u16, f.text())).into_iter().chain([(0, "none")]).collect()
+            DriveFault::ALL.map(|f| (f as u16, f.text())).into_iter().chain([(0, "none")]).collect()
         }
         Carries::Status(_) => {
             let states = [
-                (State::NotReady, "not ready"),
-                (State::SwitchOnDisabled, "switch on disabled"),
-                (State::Ready, "ready"),
-                (State::SwitchedOn, "switched on"),
-                (State::OperationEnabled, "operation enabled"),
-                (State::QuickStop, "quick stop"),
-                (State::FaultReaction, "fault reaction"),
-                (State::Fault, "fault"),
+                (DriveState::NotReady, "not ready"),
+                (DriveState::SwitchOnDisabled, "switch on disabled"),
+                (DriveState::Ready, "ready"),
+                (DriveState::SwitchedOn, "switched on"),
+                (DriveState::OperationEnabled, "operation enabled"),
+                (DriveState::QuickStop, "quick stop"),
+                (DriveState::FaultReaction, "fault reaction"),
+                (DriveState::Fault, "fault"),
             ];
             let bits = [0, WARNING, REFERENCED, WARNING | REFERENCED].map(|bits| bits | VOLTAGE);
             let of = |(state, text)| bits.map(|bits| (cia402::status_of(state) | bits, text));
@@ -250,7 +250,7 @@ fn every_line_carries_two_or_three_joints_and_its_sync_comes_last() {
     assert_eq!(classic.nodes.len(), 9);
     assert_eq!(classic.nodes, robot.layout.nodes);
     for (node, name) in classic.nodes.iter().enumerate() {
-        let joints = |layout: &Layout| {
+        let joints = |layout: &FrameLayout| {
             let all = layout.messages.iter().filter(|m| m.node == node).flat_map(|m| &m.signals);
             all.filter(|s| matches!(s.carries, Carries::Target(_))).count()
         };

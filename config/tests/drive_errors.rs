@@ -256,7 +256,7 @@ fn joint_control_of_one_drive() {
     let spoilt = Spoilt::new("own", "robots/lola/robot.toml", &[("stator = \"right_thigh\"", own)]);
     spoilt.with_files_named();
     let robot = Robot::load(&spoilt.0).unwrap();
-    let differ = robot.drives.iter().filter(|d| matches!(d.control.law, drives::Law::Voltage(_)));
+    let differ = robot.drives.iter().filter(|d| matches!(d.control.law, drives::ControlLaw::Voltage(_)));
     assert_eq!(differ.map(|d| d.name.as_str()).collect::<Vec<_>>(), ["right_knee_flexion"]);
 }
 

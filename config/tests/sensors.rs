@@ -1,6 +1,8 @@
 //! What `[sensors]` of a scene becomes.
 
-use config::sensors::{Encoder, ForceTorque, Imu, PerJoint, Sensors, Side, Signal};
+use config::sensors::{
+    EncoderErrors, EncoderSide, ForceTorqueErrors, ImuErrors, PerJoint, SensorErrors, SignalErrors,
+};
 use config::{Scene, root};
 
 /// The shipped scene `stand` with more at its end.
@@ -19,7 +21,7 @@ fn named(all: Option<f64>, own: &[(&str, f64)]) -> PerJoint {
 
 #[test]
 fn absent_is_exact() {
-    let exact = Sensors::default();
+    let exact = SensorErrors::default();
     assert_eq!(scene("absent", "").sensors, exact);
     assert_eq!(scene("empty", "[sensors]\n[sensors.encoder]\n[sensors.imu]").sensors, exact);
 }
@@ -61,19 +63,19 @@ fn every_key() {
         period = 0.005
         delay = 0.003
     "#;
-    let expected = Sensors {
-        side: Side::Motor,
-        encoder: Encoder {
+    let expected = SensorErrors {
+        side: EncoderSide::Motor,
+        encoder: EncoderErrors {
             counts: named(Some(131_072.0), &[("right_toe_flexion", 65_536.0)]),
             bias: named(None, &[("right_ankle_flexion", -0.05)]),
             speed_by_difference: true,
             delay: 0.002,
         },
-        motor_encoder: Encoder {
+        motor_encoder: EncoderErrors {
             counts: named(Some(1_152_000.0), &[("head_pan", 200_000.0), ("right_toe_flexion", 576_000.0)]),
-            ..Encoder::default()
+            ..EncoderErrors::default()
         },
-        force_torque: ForceTorque {
+        force_torque: ForceTorqueErrors {
             inertia: true,
             bias_compensation: true,
             offset: [3.0, 0.2],
@@ -84,12 +86,12 @@ fn every_key() {
             moment_range: [200.0, 200.0, 100.0],
             delay: 0.001,
         },
-        imu: Imu {
+        imu: ImuErrors {
             bandwidth: 50.0,
             bias: [0.005, 0.0, 0.0],
-            orientation: Signal { noise: 2e-4, step: 1e-4, range: f64::INFINITY },
-            rate: Signal { noise: 1e-3, step: 2e-3, range: 3.49 },
-            acceleration: Signal { noise: 0.02, step: 0.01, range: 19.62 },
+            orientation: SignalErrors { noise: 2e-4, step: 1e-4, range: f64::INFINITY },
+            rate: SignalErrors { noise: 1e-3, step: 2e-3, range: 3.49 },
+            acceleration: SignalErrors { noise: 0.02, step: 0.01, range: 19.62 },
             period: 0.005,
             delay: 0.003,
         },
@@ -100,8 +102,7 @@ fn every_key() {
 /// A joint that is not named has what stands under `all`; without `all`, nothing.
 #[test]
 fn joints_have_their_own_or_that_of_all() {
-    let encoder =
-        scene("own", "[sensors.encoder]\ncounts = { head_pan = 90 }\nbias_rad = 0.01").sensors.encoder;
-    assert_eq!((encoder.counts.of("head_pan"), encoder.counts.of("head_tilt")), (Some(90.0), None));
+    let encoder = scene("own", "[sensors.encoder]\nbits = { head_pan = 9 }\nbias_rad = 0.01").sensors.encoder;
+    assert_eq!((encoder.counts.of("head_pan"), encoder.counts.of("head_tilt")), (Some(512.0), None));
     assert_eq!(encoder.bias.of("head_tilt"), Some(0.01));
 }

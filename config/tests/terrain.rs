@@ -1,7 +1,7 @@
 //! What lies on the ground of the shipped scenes, and what is wrong with other objects.
 
 use config::Scene;
-use config::terrain::Shape;
+use config::terrain::ObjectShape;
 
 fn shipped(name: &str) -> Scene {
     Scene::load(&config::root(None).join("scenes").join(name).with_extension("toml")).unwrap()
@@ -15,7 +15,7 @@ fn flat_scenes_have_no_objects() {
 #[test]
 fn a_board_lies_on_the_ground() {
     let [board] = &shipped("board").objects[..] else { panic!() };
-    let Shape::Box([_, _, thickness]) = board.shape else { panic!() };
+    let ObjectShape::Box([_, _, thickness]) = board.shape else { panic!() };
     assert_eq!((thickness, board.pose.position[2] - thickness / 2.0), (0.008, 0.0));
     assert_eq!((board.appears, board.vanishes, board.friction), (0.0, f64::INFINITY, None));
 }
@@ -31,7 +31,7 @@ fn a_box_moves() {
 #[test]
 fn meshes_are_files_of_the_configuration() {
     for (scene, of_file) in [("stairs", 1.0), ("uneven", 0.6)] {
-        let Shape::Mesh { file, scale, .. } = &shipped(scene).objects[0].shape else { panic!() };
+        let ObjectShape::Mesh { file, scale, .. } = &shipped(scene).objects[0].shape else { panic!() };
         assert!(file.is_file() && *scale == of_file, "{}", file.display());
     }
 }

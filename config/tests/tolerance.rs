@@ -1,7 +1,8 @@
 //! What `depth = "auto"` of a scene becomes, and what is said about wrong ones.
 
-use config::scene::Integrator;
-use config::tolerance::{Method, Output, Tolerance};
+use config::method::Integrator;
+use config::method::Method;
+use config::tolerance::{Output, Tolerance};
 use config::{ConfigError, Scene, Setup, root};
 
 /// Seven lines, then what the test says about depth.

@@ -4,7 +4,7 @@
 //! if the foot bounces off. Contact that does not come at its time is searched for downwards, slowly and not far. What either has changed in height is
 //! kept while the foot carries and given up in the next swing (5.32).
 
-use config::gait::Control;
+use config::gait::StabilizerGains;
 
 /// Contact phase of a foot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub(crate) struct FootContact {
 
 impl FootContact {
     /// One cycle.
-    pub(crate) fn update(&mut self, control: &Control, signs: &Signs) {
+    pub(crate) fn update(&mut self, control: &StabilizerGains, signs: &Signs) {
         let [low, high] = control.force_blend;
         self.felt = ((signs.force - low) / (high - low)).clamp(0.0, 1.0);
         let [now, end] = signs.load;

@@ -12,8 +12,11 @@
 //! the sensor; the lower right entry of (5.11) is 1; below 5 cm between the sensors no normal force is shifted;
 //! moments are limited to what the sole can carry.
 
-use config::gait::Control;
+use config::gait::StabilizerGains;
 use nalgebra::{Vector2, Vector3};
+
+/// \[1\] F_z,max over the robot's weight (5.12): thesis 5.2.
+const FORCE_MAX: f64 = 2.0;
 
 /// Force and moment about a force sensor, axes of the planning frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,7 +47,7 @@ pub struct Support {
 /// `error` and `rate` are (dphi_x, dphi_y) and their rates, `height` and `height_rate` the error of the centre of
 /// gravity's height \[m, m/s\], all desired minus actual.
 pub fn stabilize(
-    gains: &Control,
+    gains: &StabilizerGains,
     error: Vector2<f64>,
     rate: Vector2<f64>,
     height: f64,
@@ -64,7 +67,7 @@ pub fn stabilize(
 /// `zmp` is the planned zero-moment point on the ground at height 0 \[m\], `force` the planned total force \[N\],
 /// `com` the centre of gravity \[m\], `weight` \[N\] the robot's weight.
 pub(crate) fn distribute(
-    gains: &Control,
+    gains: &StabilizerGains,
     weight: f64,
     (force, zmp, com): (Vector3<f64>, Vector2<f64>, Vector3<f64>),
     (moment_com, lift): (Vector3<f64>, f64),
@@ -87,13 +90,13 @@ pub(crate) fn distribute(
 
 /// Delta F_z,stab and the moment that remains for the feet, (5.10)-(5.14), (5.19).
 fn shift_normal_force(
-    gains: &Control,
+    gains: &StabilizerGains,
     weight: f64,
     f_z: f64,
     t: Vector3<f64>,
     feet: &[Support; 2],
 ) -> (f64, Vector3<f64>) {
-    let f_max = gains.force_max * weight;
+    let f_max = FORCE_MAX * weight;
     let r = feet[0].sensor - feet[1].sensor; // Delta r_ref,01
     let d = r.xy().norm();
     let [rho_0, rho_1] = [feet[0].load, feet[1].load];
@@ -142,7 +145,7 @@ fn limit(w: &mut FootWrench, foot: &Support) -> Vector3<f64> {
 mod tests {
     use super::*;
 
-    fn gains() -> Control {
+    fn gains() -> StabilizerGains {
         crate::test_gains()
     }
 
@@ -184,7 +187,13 @@ mod tests {
         let (dt, df) = (Vector3::new(15.0, -20.0, 0.0), 13.0);
         let mut shifted = Vec::new();
         for force_shift in [0.0, 0.5, 1.0] {
-            let w = distribute(&Control { force_shift, ..gains() }, 597.0, (f, zmp, com), (dt, df), &feet);
+            let w = distribute(
+                &StabilizerGains { force_shift, ..gains() },
+                597.0,
+                (f, zmp, com),
+                (dt, df),
+                &feet,
+            );
             let total: Vector3<f64> = w[0].force + w[1].force;
             assert!((total - f - Vector3::z() * df).norm() < 1e-10);
             let about_com: Vector3<f64> =

@@ -16,7 +16,7 @@
 //! the return to zero uses x_d0 (5.32); compression is positive, so the stiffness enters with a minus sign (5.28);
 //! an edge has no vanishing row but rank 2: what it does not resist is position controlled.
 
-use config::gait::Control;
+use config::gait::StabilizerGains;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 use crate::contact::{ContactPhase, FootContact};
@@ -39,6 +39,10 @@ pub fn contact_stiffness(
     k
 }
 
+/// \[m/s\] Speed at which a foot is lowered that finds no ground at its time ...
+const SEARCH_SPEED: f64 = 0.15;
+/// \[m\] ... and how far.
+const SEARCH_DEPTH: f64 = 0.04;
 /// \[s\] Ramp-up time of the ground-search speed: what a foot misses is mostly just below it.
 const HASTE: f64 = 0.05;
 
@@ -104,7 +108,7 @@ impl Modification {
     }
 
     /// Moves component `i`, which is coordinate `c` of its foot, within its limits (5.33).
-    fn step(&mut self, control: &Control, (i, c): (usize, usize), wanted: f64, dt: f64) {
+    fn step(&mut self, control: &StabilizerGains, (i, c): (usize, usize), wanted: f64, dt: f64) {
         let (limit, rate_limit) = (control.modification_limit[c], control.modification_rate[c]);
         let rate = wanted.clamp(-rate_limit, rate_limit);
         let value = (self.value[i] + rate * dt).clamp(-limit, limit);
@@ -140,7 +144,7 @@ pub(crate) struct FootReference {
 ///
 /// `motion` is N. A foot in the air is position controlled; its forces do not matter (errata 2 to (5.32)).
 pub(crate) fn modify(
-    control: &Control,
+    control: &StabilizerGains,
     motion: &Matrix6<f64>,
     feet: &[(Compliance, FootReference); 2],
     forces: &ForceTargets,
@@ -164,7 +168,7 @@ pub(crate) fn modify(
     next.limited = false;
     for (i, (compliance, reference)) in feet.iter().enumerate() {
         let value = last.value.fixed_rows::<3>(3 * i).into_owned();
-        let fall = search_speed(control, value[0], -last.rate[3 * i] - reference.rise, dt);
+        let fall = search_speed(value[0], -last.rate[3 * i] - reference.rise, dt);
         let rate =
             force_part.fixed_rows::<3>(3 * i) + free_part(control, compliance, reference, &value, fall);
         for c in 0..3 {
@@ -177,7 +181,7 @@ pub(crate) fn modify(
 /// Rate of what is not force controlled: (5.32), second line, and what early and late contact ask for; a foot
 /// that is late, or has bounced off, goes down at `fall` \[m/s\].
 fn free_part(
-    control: &Control,
+    control: &StabilizerGains,
     foot: &Compliance,
     reference: &FootReference,
     value: &Vector3<f64>,
@@ -199,9 +203,9 @@ fn free_part(
 
 /// \[m/s\] Speed of a foot that goes down to search for the ground, whose modification is `height` \[m\] and that went down
 /// at `last` \[m/s\].
-fn search_speed(control: &Control, height: f64, last: f64, dt: f64) -> f64 {
-    let [most, depth] = control.search;
-    if height > -depth { most.min(last.max(0.0) + most * dt / HASTE) } else { 0.0 }
+fn search_speed(height: f64, last: f64, dt: f64) -> f64 {
+    let faster = last.max(0.0) + SEARCH_SPEED * dt / HASTE;
+    if height > -SEARCH_DEPTH { SEARCH_SPEED.min(faster) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -274,7 +278,7 @@ mod tests {
     /// (5.26): on the contact it assumes, each force error decays as exp(-K t), by itself, feet coupled or not.
     #[test]
     fn force_errors_decay_independently() {
-        let control = Control { force_feed_forward: 0.0, ..crate::test_gains() };
+        let control = StabilizerGains { force_feed_forward: 0.0, ..crate::test_gains() };
         let mut motion = Matrix6::identity();
         (motion[(0, 3)], motion[(3, 0)], motion[(2, 5)]) = (-0.2, -0.3, 0.1);
         let mut k = Matrix6::zeros();
@@ -324,15 +328,15 @@ mod tests {
         let mut m = Modification::default();
         m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
         assert!((m.rate[0] + feet[0].1.rise).abs() < 1e-12, "does not go on down");
-        assert!((m.rate[3] + control.search[0] * 1e-3 / HASTE).abs() < 1e-12, "begins gently");
+        assert!((m.rate[3] + SEARCH_SPEED * 1e-3 / HASTE).abs() < 1e-12, "begins gently");
         for _ in 0..50 {
             m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
         }
-        assert!((m.rate[3] + control.search[0]).abs() < 1e-12);
+        assert!((m.rate[3] + SEARCH_SPEED).abs() < 1e-12);
         for _ in 0..1000 {
             m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
         }
-        let lowest = control.search[1].min(control.modification_limit[0]);
+        let lowest = SEARCH_DEPTH.min(control.modification_limit[0]);
         assert!((m.value[3] + lowest).abs() < 1e-3, "{}", m.value[3]);
     }
 

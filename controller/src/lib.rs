@@ -33,13 +33,12 @@ mod watch;
 pub use stabilizer::{Controller, verdict};
 
 #[cfg(test)]
-pub(crate) fn test_gains() -> config::gait::Control {
-    config::gait::Control {
+pub(crate) fn test_gains() -> config::gait::StabilizerGains {
+    config::gait::StabilizerGains {
         inclination_p: [1350.0; 2],
         inclination_d: [250.0; 2],
         height_p: 2000.0,
         height_d: 400.0,
-        force_max: 2.0,
         force_shift: 1.0,
         force_gain: [20.0; 3],
         force_feed_forward: 1.0,
@@ -48,8 +47,6 @@ pub(crate) fn test_gains() -> config::gait::Control {
         modification_limit: [0.03, 0.15, 0.15],
         modification_rate: [0.5, 2.0, 2.0],
         drift_gain: 50.0,
-        null_space_gain: 1.0,
-        search: [0.15, 0.04],
         inclination_compensation: 1.0,
         planned_deformation: 0.0,
         feedback: 1,

@@ -8,7 +8,7 @@ mod speeds;
 mod task;
 mod telemetry;
 
-use config::gait::Control;
+use config::gait::StabilizerGains;
 use config::parameters::STABILIZER;
 use config::{Gait, Robot};
 use messages::{
@@ -46,7 +46,7 @@ struct Followed {
 #[derive(Clone)]
 pub struct Controller {
     robot: Robot,
-    control: Control,
+    control: StabilizerGains,
     clock: CycleClock,
     plan: PlanFollower,
     watch: SafetyWatch,
@@ -72,7 +72,7 @@ impl Controller {
             clock: CycleClock::new(dt),
             plan: PlanFollower::new([0, 1].map(|i| [robot.feet[i].support[0], robot.feet[i].support[1]])),
             watch: SafetyWatch::default(),
-            speeds: JointSpeeds::new(robot, &desired, gait.control.null_space_gain, gait.arm_swing)?,
+            speeds: JointSpeeds::new(robot, &desired, gait.arm_swing)?,
             measured,
             desired,
             contacts: FootContacts::new(),

@@ -1,6 +1,6 @@
 //! The stabilizer on Lola's kinematics, with a robot that does exactly as commanded and presses exactly as desired.
 
-use config::gait::Control;
+use config::gait::StabilizerGains;
 use config::{Gait, Robot, root};
 use controller::Controller;
 use curves::{Path, Sample};
@@ -21,7 +21,7 @@ impl Rig {
     }
 
     /// With another setting of the stabilizer.
-    fn with(pose: &str, set: impl Fn(&mut Control)) -> Self {
+    fn with(pose: &str, set: impl Fn(&mut StabilizerGains)) -> Self {
         let robot = Robot::load(&root(None).join("robots/lola")).unwrap();
         let mut gait = Gait::load(&root(None).join("gaits/lola.toml")).unwrap();
         set(&mut gait.control);

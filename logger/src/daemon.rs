@@ -3,7 +3,7 @@
 //! Not a real-time process: it looks at all rings again and again under the ordinary scheduler. Nobody waits for it
 //! in real time; in lockstep the joint loop does not run further ahead than half a ring.
 
-use crate::{Follower, Logging, Open, Origin, Output, Parts, Pass, recorder};
+use crate::{Follower, LogOutput, Logging, Open, Origin, Parts, Pass, recorder};
 use config::Setup;
 use ipc::{Bell, IpcError, Mode, Run, Space, Writer};
 use messages::topics::{EVENTS_LOGGER, ForType, LOG_TICK, with_type};
@@ -44,7 +44,7 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
 /// counted, and tried again every half second; at the end it is an error, so that nobody takes it for the whole run.
 pub fn run(run: &Run, stop: &Stop) -> Result<(), String> {
     let space = run.enter(Process::Logger).map_err(|e| e.to_string())?;
-    let output = Output::new(open(run, again(&space))?);
+    let output = LogOutput::new(open(run, again(&space))?);
     let ended = serve(&space, output, run.mode, stop).map_err(|e| e.to_string())?;
     if ended.broken {
         return Err(format!(
@@ -87,7 +87,7 @@ pub struct Logged {
 ///
 /// # Errors
 /// A topic cannot be opened.
-pub fn serve(space: &Space, output: Output, mode: Mode, stop: &Stop) -> Result<Logged, IpcError> {
+pub fn serve(space: &Space, output: LogOutput, mode: Mode, stop: &Stop) -> Result<Logged, IpcError> {
     let mut logging = Logging::new(output);
     for topic in TOPICS.iter().filter(|t| t.logged && t.name != EVENTS_LOGGER.name) {
         with_type(topic.name, FollowTopic { space, logging: &mut logging }).unwrap_or(Ok(()))?;

@@ -1,6 +1,6 @@
 //! One topic on its way into the log.
 
-use crate::output::Output;
+use crate::output::LogOutput;
 use messages::{Header, Record, Topic};
 
 /// Source of the records of a topic, in order.
@@ -41,7 +41,7 @@ pub(crate) trait Follow {
     /// The topic.
     fn topic(&self) -> &'static Topic;
     /// Writes up to `most` records; returns how many, and the header of the last one.
-    fn write_some(&mut self, output: &mut Output, most: usize) -> (usize, Option<Header>);
+    fn write_some(&mut self, output: &mut LogOutput, most: usize) -> (usize, Option<Header>);
     /// See [`Source::lost`].
     fn lost(&self) -> u64;
 }
@@ -51,7 +51,7 @@ impl<T: Record, S: Source<T>> Follow for Follower<T, S> {
         self.topic
     }
 
-    fn write_some(&mut self, output: &mut Output, most: usize) -> (usize, Option<Header>) {
+    fn write_some(&mut self, output: &mut LogOutput, most: usize) -> (usize, Option<Header>) {
         let (mut count, mut last) = (0, None);
         while count < most {
             let Some((number, record)) = self.source.follow() else { break };

@@ -5,14 +5,14 @@ use config::robot::Drive;
 use messages::{Joints, Sensors};
 use multibody::{Data, Frame, Model, ModelError};
 use nalgebra::UnitQuaternion;
-use recording::{Link, LinkPoses, Pose};
+use recording::{LinkFrame, LinkPoses, RecordedPose};
 
 /// The robot's tree of links.
 pub struct Kinematics {
     model: Model,
     data: Data,
     frames: Vec<Frame>,
-    links: Vec<Link>,
+    links: Vec<LinkFrame>,
     q: Vec<f64>,
     drives: Vec<Drive>,
 }
@@ -33,7 +33,7 @@ impl Kinematics {
                 let joint = frames[k].joint();
                 let first = carrier(joint).filter(|first| *first != k);
                 let parent = first.or_else(|| joint.and_then(|j| carrier(model.parent_joint(j))));
-                Link { name, parent, fixed: first.is_some() }
+                LinkFrame { name, parent, fixed: first.is_some() }
             })
             .collect();
         let (data, q) = (Data::new(&model), model.neutral());
@@ -42,11 +42,11 @@ impl Kinematics {
 }
 
 impl LinkPoses for Kinematics {
-    fn links(&self) -> &[Link] {
+    fn links(&self) -> &[LinkFrame] {
         &self.links
     }
 
-    fn poses(&mut self, base: &Pose, joint_angle: &Joints, out: &mut [Pose]) {
+    fn poses(&mut self, base: &RecordedPose, joint_angle: &Joints, out: &mut [RecordedPose]) {
         self.q[..3].copy_from_slice(&base.position);
         self.q[3..7].copy_from_slice(&base.orientation);
         let joints = self.q.len() - 7;
@@ -55,7 +55,7 @@ impl LinkPoses for Kinematics {
         for (frame, pose) in self.frames.iter().zip(out) {
             let world = self.model.frame_pose(&self.data, frame);
             let turn = UnitQuaternion::from_rotation_matrix(&world.rotation);
-            *pose = Pose {
+            *pose = RecordedPose {
                 position: world.translation.vector.into(),
                 orientation: [turn.i, turn.j, turn.k, turn.w],
             };

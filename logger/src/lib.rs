@@ -1,7 +1,7 @@
 //! Writes every logged topic to a file, outside of the control processes, and never holds anybody up.
 //!
 //! - [`Logging`]: follows sources and writes what they give; the pure part.
-//! - [`Output`]: the file: goes on counting when the disk is full, and begins a new part when it no longer is.
+//! - [`LogOutput`]: the file: goes on counting when the disk is full, and begins a new part when it no longer is.
 //! - [`recorder`], [`Kinematics`]: a log of a configured robot, with the poses of its links; also for a simulation in
 //!   one process.
 //! - [`daemon`]: the process.
@@ -19,5 +19,5 @@ mod robot;
 pub use follow::{Follower, Source};
 pub use kinematics::Kinematics;
 pub use logging::{Logging, Pass};
-pub use output::{Open, Output, Parts};
+pub use output::{LogOutput, Open, Parts};
 pub use robot::{CONFIG, Origin, recorder, robot_info};

@@ -1,7 +1,7 @@
 //! All topics on their way into one log.
 
 use crate::follow::{Follow, Follower, Source};
-use crate::output::Output;
+use crate::output::LogOutput;
 use messages::topics::{EVENTS_LOGGER, SENSORS};
 use messages::{Detail, Event, EventCode, Header, Record};
 
@@ -26,14 +26,14 @@ pub struct Pass {
 /// Follows every source and writes it all to one output.
 pub struct Logging {
     followers: Vec<Box<dyn Follow>>,
-    output: Output,
+    output: LogOutput,
     newest: Option<Header>,
     lost: u64,
 }
 
 impl Logging {
     /// Nothing to follow yet.
-    pub fn new(output: Output) -> Self {
+    pub fn new(output: LogOutput) -> Self {
         Self { followers: Vec::new(), output, newest: None, lost: 0 }
     }
 
@@ -43,7 +43,7 @@ impl Logging {
     }
 
     /// The log.
-    pub fn output(&mut self) -> &mut Output {
+    pub fn output(&mut self) -> &mut LogOutput {
         &mut self.output
     }
 

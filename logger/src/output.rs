@@ -25,7 +25,7 @@ impl Parts {
 
 /// A log that goes on when its disk does not: what cannot be written is counted, and when writing is possible again a
 /// new part begins.
-pub struct Output {
+pub struct LogOutput {
     open: Open,
     recorder: Option<Recorder>,
     part: u32,
@@ -39,8 +39,8 @@ pub struct Output {
     complaint: Option<String>,
 }
 
-impl Output {
-    /// Opens the first part. If that fails the run has no log yet; see [`Output::complaint`] and [`Output::retry`].
+impl LogOutput {
+    /// Opens the first part. If that fails the run has no log yet; see [`LogOutput::complaint`] and [`LogOutput::retry`].
     pub fn new(open: Open) -> Self {
         let mut output = Self {
             open,

@@ -4,7 +4,7 @@ use crate::kinematics::Kinematics;
 use config::{Robot, Setup};
 use ipc::Run;
 use messages::MAX_JOINTS;
-use recording::{FootInfo, LinkPoses, Pose, Recorder, RecordingError, RobotInfo, RunInfo, WallClock};
+use recording::{FootInfo, LinkPoses, RecordedPose, Recorder, RecordingError, RobotInfo, RunInfo, WallClock};
 use std::path::Path;
 
 /// Of a run what its configuration does not say.
@@ -89,8 +89,8 @@ pub fn recorder(path: &Path, setup: &Setup, origin: &Origin) -> Result<Recorder,
 fn between_soles(kinematics: &mut Kinematics, info: &RobotInfo, pose: &[f64]) -> [f64; 3] {
     let mut angle = [0.0; MAX_JOINTS];
     angle[..pose.len()].copy_from_slice(pose);
-    let mut links = vec![Pose::IDENTITY; kinematics.links().len()];
-    kinematics.poses(&Pose::IDENTITY, &angle, &mut links);
+    let mut links = vec![RecordedPose::IDENTITY; kinematics.links().len()];
+    kinematics.poses(&RecordedPose::IDENTITY, &angle, &mut links);
     let sole = |foot: &FootInfo| {
         let at = kinematics.links().iter().position(|link| link.name == foot.link);
         at.map_or([0.0; 3], |at| links[at].place(foot.sole))

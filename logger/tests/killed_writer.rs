@@ -1,7 +1,7 @@
 //! What a process wrote last before it was killed is in the log: the rings outlive it, and the logger saves them.
 
 use ipc::{Mode, Space};
-use logger::{Output, Parts};
+use logger::{LogOutput, Parts};
 use messages::topics::{EVENTS_LOGGER, LOG_TICK, SENSORS};
 use messages::{Event, EventCode, Header, Process, Sensors};
 use realtime::Stop;
@@ -71,7 +71,7 @@ fn the_last_words_of_killed_writers_are_in_the_log() {
         let space = Space::open(&log_dir, Process::Logger).unwrap();
         let open =
             move |part| Recorder::create(&parts.path(part), &RobotInfo::default(), &RunInfo::default());
-        logger::daemon::serve(&space, Output::new(Box::new(open)), Mode::Lockstep, &asked)
+        logger::daemon::serve(&space, LogOutput::new(Box::new(open)), Mode::Lockstep, &asked)
     });
     let mut tick = space.reader::<Event>(&LOG_TICK).unwrap();
     wait_for("the log's tick", || tick.latest().is_some_and(|t| t.header.tick == RECORDS - 1));

@@ -4,7 +4,7 @@ use config::Robot;
 use logger::{Kinematics, robot_info};
 use messages::MAX_JOINTS;
 use multibody::{Data, Model};
-use recording::{LinkPoses, Pose};
+use recording::{LinkPoses, RecordedPose};
 
 fn lola() -> Robot {
     Robot::load(&config::root(None).join("robots/lola")).unwrap_or_else(|e| panic!("{e}"))
@@ -46,9 +46,9 @@ fn poses_are_those_of_the_model() {
     let mut data = Data::new(&model);
     let mut kinematics = Kinematics::new(&robot).unwrap();
     let (sin, cos) = 0.3f64.sin_cos();
-    let base = Pose { position: [1.0, 2.0, 3.0], orientation: [0.6 * sin, 0.0, 0.8 * sin, cos] };
+    let base = RecordedPose { position: [1.0, 2.0, 3.0], orientation: [0.6 * sin, 0.0, 0.8 * sin, cos] };
     let angles: [f64; MAX_JOINTS] = std::array::from_fn(|k| 0.1 * (k as f64 + 1.0).sin());
-    let mut poses = vec![Pose::IDENTITY; kinematics.links().len()];
+    let mut poses = vec![RecordedPose::IDENTITY; kinematics.links().len()];
     kinematics.poses(&base, &angles, &mut poses);
     let mut q = vec![0.0; model.nq()];
     q[..3].copy_from_slice(&base.position);

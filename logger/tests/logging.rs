@@ -1,6 +1,6 @@
 //! The pure part of the logger, against sources in memory and disks that fail.
 
-use logger::{Follower, Logging, Output, Parts, Source};
+use logger::{Follower, LogOutput, Logging, Parts, Source};
 use messages::topics::{EVENTS_LOGGER, POWER, SENSORS};
 use messages::{Event, EventCode, Header, Power, Record, Sensors};
 use recording::{Log, Recorder, RecordingError, RobotInfo, RunInfo};
@@ -60,9 +60,9 @@ fn file(name: &str) -> PathBuf {
     path
 }
 
-fn to_file(path: &Path) -> Output {
+fn to_file(path: &Path) -> LogOutput {
     let parts = Parts::new(path);
-    Output::new(Box::new(move |part| {
+    LogOutput::new(Box::new(move |part| {
         Recorder::create(&parts.path(part), &RobotInfo::default(), &RunInfo::default())
     }))
 }
@@ -163,7 +163,7 @@ fn after_a_full_disk_a_new_part_begins_and_says_what_is_missing() {
     let path = file("full");
     let full = Arc::new(AtomicBool::new(false));
     let (parts, disk_full) = (Parts::new(&path), full.clone());
-    let mut logging = Logging::new(Output::new(Box::new(move |part| {
+    let mut logging = Logging::new(LogOutput::new(Box::new(move |part| {
         let file = std::fs::File::create(parts.path(part))
             .map_err(|e| RecordingError::Create(parts.path(part), e))?;
         Recorder::to(Box::new(Disk(file, disk_full.clone())), &RobotInfo::default(), &RunInfo::default())

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::time::Duration;
 
 use codec::frames::{self, DriveCommand, Received, encode_targets};
-use fieldbus::{End, Lines};
+use fieldbus::{BusEnd, BusLines};
 use messages::{BusFrames, MAX_FRAMES};
 use realtime::clock;
 
@@ -19,7 +19,7 @@ const ASK: u64 = clock::SECOND / 4;
 
 /// CAN lines whose far end is a robot, a simulated one, or a recording.
 pub(crate) struct CanBus {
-    lines: Lines,
+    lines: BusLines,
     settings: BusSettings,
     /// Frames since the last cycle.
     rx: BusFrames,
@@ -36,7 +36,7 @@ impl CanBus {
         fd: bool,
         interfaces: &[String],
     ) -> Result<Self, Box<dyn Error>> {
-        let lines = Lines::open(interfaces, &settings.layout, fd, End::Near)?;
+        let lines = BusLines::open(interfaces, &settings.layout, fd, BusEnd::Near)?;
         let alive = ((1u64 << settings.layout.nodes.len()) - 1) as u32;
         Ok(Self { lines, settings, rx: BusFrames::default(), asked: 0, alive })
     }

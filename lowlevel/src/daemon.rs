@@ -13,7 +13,7 @@ use messages::topics::{
 use messages::{
     BusFrames, Detail, Event, EventCode, Header, JointTargets, Live, Power, Process, Sensors, WatchdogReset,
 };
-use realtime::{Period, Verdict, clock};
+use realtime::{CycleVerdict, Period, clock};
 use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
@@ -208,7 +208,7 @@ fn real_time(d: &mut Daemon, p: &mut LowlevelPorts, joints: &mut JointLoop, last
         d.log.keep(&WATCHDOG_RESET, reset);
         report(d, p.bus.as_mut(), joints, header);
         let verdict = period.finish(clock::now());
-        if let Verdict::TooMany { .. } = verdict {
+        if let CycleVerdict::TooMany { .. } = verdict {
             cause = Some(EventCode::TooManyOverruns);
         }
         if verdict.skipped() > 0 {

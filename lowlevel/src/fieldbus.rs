@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use codec::layout::Layout;
+use codec::layout::FrameLayout;
 use messages::{BusFrames, EventQueue};
 
 /// A field bus that exchanges the frames of one cycle. Implementations neither allocate nor block in [`Fieldbus::send`] and
@@ -52,7 +52,7 @@ pub trait RunControl {
 #[derive(Clone, Debug)]
 pub struct BusSettings {
     /// Frames of the robot.
-    pub layout: Layout,
+    pub layout: FrameLayout,
     /// \[ns\] Bus cycle.
     pub period_ns: u64,
     /// Simulated time: every answer is waited for.

@@ -20,9 +20,6 @@ use crate::start_up::{StartUpSequence, is_enabled};
 use crate::target_age::TargetAge;
 use drives::cia402::{Wanted, controlword};
 
-/// \[m/s^2\]
-const GRAVITY: f64 = 9.81;
-
 /// State of the joint loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoopState {
@@ -72,7 +69,7 @@ impl JointLoop {
             age: TargetAge::new(system.targets_missed),
             setpoints: Setpoints::new(),
             guard: LineGuard::new(robot, system, dt),
-            start_up: StartUpSequence::new(robot.joints.len(), robot.total_mass * GRAVITY),
+            start_up: StartUpSequence::new(robot.joints.len(), robot.weight()),
             reports: Reports::new(),
             sensors: Sensors::default(),
             received: Received::default(),

@@ -11,7 +11,7 @@
 //! bus is a stop and no power ([`EventCode::BusOff`]), until it takes part again.
 
 use codec::frames::Received;
-use codec::layout::{Carries, Layout};
+use codec::layout::{Carries, FrameLayout};
 use config::{Robot, System};
 use drives::cia402::REFERENCED;
 use fieldbus::{ErrorFrame, ErrorState};
@@ -59,7 +59,7 @@ pub(crate) struct LineGuard {
     gaps: u64,
     /// Number of times frames were refused, by [`RefusedFrame`].
     refused: [u64; 6],
-    layout: Layout,
+    layout: FrameLayout,
     events: EventQueue,
 }
 

@@ -86,6 +86,6 @@ impl Reports {
 /// Fault of the drive of joint `j`, if it has one.
 pub(crate) fn drive_fault(sensors: &Sensors, j: usize) -> Option<Detail> {
     let state = cia402::state_of(sensors.drive_status[j] as u16);
-    let broken = matches!(state, Some(cia402::State::Fault | cia402::State::FaultReaction));
+    let broken = matches!(state, Some(cia402::DriveState::Fault | cia402::DriveState::FaultReaction));
     broken.then(|| Detail::Drive { joint: j, error: sensors.drive_error[j] as u16 })
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use messages::{BusFrames, Detail, EventCode, EventQueue};
 use realtime::clock;
 use sercos::packing::{Interfaces, Packing, stations};
-use sercos::{Event, Near, Setup, Stage};
+use sercos::{MasterSetup, Near, RingEvent, Stage};
 
 use crate::fieldbus::{BusSettings, Fieldbus, RunControl};
 
@@ -36,7 +36,7 @@ impl SercosBus {
     /// Opens the interfaces. Nothing is sent.
     pub(crate) fn new(settings: BusSettings, place: &str) -> Result<Self, Box<dyn Error>> {
         let Interfaces { near: (first, second), .. } = place.parse()?;
-        let setup = Setup {
+        let setup = MasterSetup {
             cycle: u32::try_from(settings.period_ns)?,
             losses: settings.losses,
             beat_losses: settings.losses,
@@ -173,14 +173,14 @@ impl Fieldbus for SercosBus {
     fn report(&mut self, events: &mut EventQueue) {
         while let Some(event) = self.near.master_mut().take_event() {
             match event {
-                Event::RingBroken(before, behind) => {
+                RingEvent::RingBroken(before, behind) => {
                     let stations = Detail::Stations(before.unwrap_or(0), behind.unwrap_or(0));
                     events.push(EventCode::RingBroken, stations);
                 }
-                Event::RingClosed => events.push(EventCode::RingClosed, Detail::Nothing),
-                Event::Restart => events.push(EventCode::BusRestart, Detail::Nothing),
+                RingEvent::RingClosed => events.push(EventCode::RingClosed, Detail::Nothing),
+                RingEvent::Restart => events.push(EventCode::BusRestart, Detail::Nothing),
                 // Silent nodes are reported by the joint loop, on every bus the same.
-                Event::Phase(_) | Event::Lost(_) | Event::Back(_) => {}
+                RingEvent::Phase(_) | RingEvent::Lost(_) | RingEvent::Back(_) => {}
             }
         }
     }

@@ -11,7 +11,7 @@
 //! Nothing is followed before every drive is in Operation enabled. No drive is switched on while a joint does not know its
 //! angle, but to find it out.
 
-use drives::cia402::{REFERENCED, State, Wanted, state_of};
+use drives::cia402::{DriveState, REFERENCED, Wanted, state_of};
 use messages::{Command, Detail, EventCode, EventQueue, Reason, Sensors, StartUp, Verdict, Wrench};
 
 /// Share of the weight on a foot up to which it counts as unloaded: nothing but what hangs on its sensor, and its offset.
@@ -240,7 +240,7 @@ impl StartUpSequence {
 
 /// True if the drive of joint `j` follows its targets.
 pub(crate) fn is_enabled(sensors: &Sensors, j: usize) -> bool {
-    state_of(sensors.drive_status[j] as u16) == Some(State::OperationEnabled)
+    state_of(sensors.drive_status[j] as u16) == Some(DriveState::OperationEnabled)
 }
 
 /// \[N\] Larger normal force of both feet, without its sign.

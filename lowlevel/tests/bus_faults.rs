@@ -2,7 +2,7 @@
 
 use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use codec::layout::Carries;
-use config::bus_fault::{BusFault, FaultKind, Way};
+use config::bus_fault::{BusFault, FaultKind, FrameDirection};
 use config::{Robot, System};
 use drives::cia402::{self, REFERENCED, status_of};
 use fieldbus::{ErrorFrame, ErrorState, Injector};
@@ -39,7 +39,7 @@ impl Rig {
         let robot = Robot::load(&root.join("robots/lola")).unwrap();
         let system = System::load(&root.join("system.toml")).unwrap();
         let mut drives = Sensors { power: 1, ..Sensors::default() };
-        drives.drive_status.fill(u32::from(status_of(cia402::State::OperationEnabled) | REFERENCED));
+        drives.drive_status.fill(u32::from(status_of(cia402::DriveState::OperationEnabled) | REFERENCED));
         for (j, q) in robot.poses["stand"].iter().enumerate() {
             (drives.joint_angle[j], drives.motor_angle[j]) = (*q, *q);
         }
@@ -96,7 +96,7 @@ impl Rig {
     /// The line of the local controller that reads a joint.
     fn line(&self, name: &str) -> u32 {
         let j = self.joint(name);
-        let reads = |m: &&codec::layout::Message| m.signals.iter().any(|s| s.carries == Carries::Angle(j));
+        let reads = |m: &&codec::layout::BusMessage| m.signals.iter().any(|s| s.carries == Carries::Angle(j));
         self.robot.layout.sent(false).find(reads).unwrap().node as u32
     }
 
@@ -344,13 +344,17 @@ fn nothing_is_allocated_while_the_bus_fails() {
 /// Sent frames of two runs, and what was read: one with a fault, one in which the frames it touched are simply absent.
 fn both(kind: FaultKind, share: f64, cycles: u32, seed: u64) -> Result<(), TestCaseError> {
     let (mut with, mut without) = (Rig::moving(), Rig::moving());
-    let fault =
-        BusFault { share, cycles, way: Some(Way::FromDrives), ..BusFault::new(kind, 0.0, f64::INFINITY) };
+    let fault = BusFault {
+        share,
+        cycles,
+        way: Some(FrameDirection::FromDrives),
+        ..BusFault::new(kind, 0.0, f64::INFINITY)
+    };
     let mut injector = Injector::new(&[fault], &with.robot.layout, DT, seed).unwrap().unwrap();
     for _ in 0..60 {
         let whole = with.answer();
         without.answer();
-        let came = *injector.pass(Way::FromDrives, &whole);
+        let came = *injector.pass(FrameDirection::FromDrives, &whole);
         // Of what came, the whole frames of this cycle, each once.
         let same =
             |a: &Frame, b: &Frame| a.line == b.line && a.id == b.id && a.len == b.len && a.data == b.data;
@@ -382,13 +386,13 @@ proptest! {
     #[test]
     fn a_bent_bit_is_refused_or_harmless(seed in any::<u64>()) {
         let mut rig = Rig::moving();
-        let fault = BusFault { share: 0.05, way: Some(Way::FromDrives), ..BusFault::new(FaultKind::Flipped, 0.0, f64::INFINITY) };
+        let fault = BusFault { share: 0.05, way: Some(FrameDirection::FromDrives), ..BusFault::new(FaultKind::Flipped, 0.0, f64::INFINITY) };
         let mut injector = Injector::new(&[fault], &rig.robot.layout, DT, seed).unwrap().unwrap();
         let weight = rig.robot.total_mass * 9.80665;
         for _ in 0..60 {
             let truth = rig.drives;
             let whole = rig.answer();
-            let came = *injector.pass(Way::FromDrives, &whole);
+            let came = *injector.pass(FrameDirection::FromDrives, &whole);
             rig.cycle(Some(&came));
             // Two cycles of allowance: a node refused once may jump twice as far.
             for (j, joint) in rig.robot.joints.iter().enumerate() {

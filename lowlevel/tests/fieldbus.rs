@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::error::Error;
 
 use codec::frames::{DriveCommand, decode_targets, encode_sensors};
-use codec::layout::Layout;
+use codec::layout::FrameLayout;
 use config::{Robot, System};
 use drives::cia402::{self, REFERENCED, status_of};
 use lowlevel::joint_loop::LoopState;
@@ -15,7 +15,7 @@ const DT: f64 = 1e-3;
 
 /// Drives at the far end, which are at once where they are commanded to be.
 struct Loopback {
-    layout: Layout,
+    layout: FrameLayout,
     joints: usize,
     command: DriveCommand,
     drives: Sensors,
@@ -87,7 +87,7 @@ fn the_joint_loop_leads_drives_over_a_bus_without_shared_memory() {
     let robot = Robot::load(&root.join("robots/lola")).unwrap();
     let system = System::load(&root.join("system.toml")).unwrap();
     let mut drives = Sensors { power: 1, ..Sensors::default() };
-    drives.drive_status.fill(u32::from(status_of(cia402::State::OperationEnabled) | REFERENCED));
+    drives.drive_status.fill(u32::from(status_of(cia402::DriveState::OperationEnabled) | REFERENCED));
     let stand = &robot.poses["stand"];
     drives.joint_angle[..stand.len()].copy_from_slice(stand);
     let mut bus = Loopback {

@@ -27,7 +27,7 @@ impl Rig {
         let robot = Robot::load(&root.join("robots/lola")).unwrap();
         let system = System::load(&root.join("system.toml")).unwrap();
         let mut drives = Sensors { power: 1, ..Sensors::default() };
-        drives.drive_status.fill(u32::from(status_of(cia402::State::OperationEnabled) | REFERENCED));
+        drives.drive_status.fill(u32::from(status_of(cia402::DriveState::OperationEnabled) | REFERENCED));
         for (j, q) in robot.poses["stand"].iter().enumerate() {
             drives.joint_angle[j] = *q;
         }

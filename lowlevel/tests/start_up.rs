@@ -3,7 +3,7 @@
 use codec::frames::{DriveCommand, decode_targets, encode_sensors};
 use codec::layout::Carries;
 use config::{Robot, System};
-use drives::cia402::{self, DriveInputs, Fault, REFERENCED};
+use drives::cia402::{self, DriveFault, DriveInputs, REFERENCED};
 use lowlevel::JointLoop;
 use lowlevel::joint_loop::LoopState;
 use messages::{
@@ -24,7 +24,7 @@ struct Rig {
     loop_: JointLoop,
     drives: Vec<cia402::DriveStateMachine>,
     known: Vec<bool>,
-    fault: Option<(usize, Fault)>,
+    fault: Option<(usize, DriveFault)>,
     said: Sensors,
     seen: Sensors,
     told: DriveCommand,
@@ -132,7 +132,7 @@ impl Rig {
 
     /// Takes away what the local controller of joint `j` says.
     fn cut(&self, j: usize, frames: &mut BusFrames) {
-        let reads = |m: &&codec::layout::Message| m.signals.iter().any(|s| s.carries == Carries::Angle(j));
+        let reads = |m: &&codec::layout::BusMessage| m.signals.iter().any(|s| s.carries == Carries::Angle(j));
         let line = self.robot.layout.messages.iter().find(reads).unwrap().node as u32;
         let all = *frames;
         frames.count = 0;
@@ -227,7 +227,7 @@ fn commands_are_answered_by_the_state_they_come_in() {
     };
     let stopped = || {
         let mut rig = Rig::on(WEIGHT);
-        rig.fault = Some((KNEE, Fault::OverTemperature));
+        rig.fault = Some((KNEE, DriveFault::OverTemperature));
         rig.cycles(5);
         rig
     };
@@ -327,11 +327,11 @@ fn zeroing_with_load_on_the_feet_is_refused() {
 #[test]
 fn a_drive_with_a_fault_is_a_controlled_stop_that_names_it_and_only_a_reset_ends_it() {
     let mut rig = Rig::on(WEIGHT);
-    rig.fault = Some((KNEE, Fault::OverTemperature));
+    rig.fault = Some((KNEE, DriveFault::OverTemperature));
     rig.cycles(3);
     rig.fault = None;
     rig.cycles(50);
-    let named = Detail::Drive { joint: KNEE, error: Fault::OverTemperature as u16 };
+    let named = Detail::Drive { joint: KNEE, error: DriveFault::OverTemperature as u16 };
     assert_eq!(rig.events, [(EventCode::DriveTripped, named)]);
     assert_eq!(
         (rig.loop_.state(), rig.state()),
@@ -352,7 +352,7 @@ fn a_fault_behind_a_silent_line_is_named_when_its_frames_come_back() {
     let mut rig = Rig::on(WEIGHT);
     rig.mute = Some(KNEE);
     rig.cycles(21);
-    rig.fault = Some((KNEE, Fault::Heartbeat));
+    rig.fault = Some((KNEE, DriveFault::Heartbeat));
     rig.cycles(10);
     (rig.fault, rig.mute) = (None, None);
     assert_eq!(rig.loop_.state(), LoopState::Stop(EventCode::NodeSilent));
@@ -371,7 +371,7 @@ fn a_fault_behind_a_silent_line_is_named_when_its_frames_come_back() {
 #[test]
 fn a_robot_that_stands_goes_on_without_a_drive_it_can_spare() {
     let mut rig = Rig::on(WEIGHT);
-    rig.fault = Some((ARM, Fault::Heartbeat));
+    rig.fault = Some((ARM, DriveFault::Heartbeat));
     rig.cycles(3);
     rig.fault = None;
     rig.cycles(300);
@@ -384,7 +384,7 @@ fn a_robot_that_stands_goes_on_without_a_drive_it_can_spare() {
     assert_eq!((rig.state(), rig.loop_.state(), rig.enabled()), (StartUp::Standing, LoopState::Track, 24));
 
     let mut hangs = Rig::on(0.0);
-    hangs.fault = Some((ARM, Fault::Heartbeat));
+    hangs.fault = Some((ARM, DriveFault::Heartbeat));
     hangs.cycles(3);
     assert_eq!(hangs.loop_.state(), LoopState::Stop(EventCode::DriveTripped));
 }
@@ -418,5 +418,5 @@ fn a_joint_that_does_not_follow_is_told_to_stop_at_once() {
         rig.cycle(None);
     }
     assert_eq!(rig.events, [(EventCode::FollowingError, Detail::Joint(KNEE))]);
-    assert!(rig.drives.iter().all(|drive| drive.state() == cia402::State::QuickStop));
+    assert!(rig.drives.iter().all(|drive| drive.state() == cia402::DriveState::QuickStop));
 }

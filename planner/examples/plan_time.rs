@@ -9,7 +9,7 @@ use messages::{Command, command::VelocityCommand};
 use planner::boundary::{BoundarySolver, EndConditions, PlanarState};
 use planner::closed_form::ClosedForm;
 use planner::collocation::Collocation;
-use planner::pose::Pose;
+use planner::pose::PlanarPose;
 use planner::sole::Sole;
 use planner::zmp::ZmpProblem;
 use realtime::clock;
@@ -89,7 +89,7 @@ fn timed<T>(mut call: impl FnMut() -> T) -> [f64; 2] {
 fn chain(steps: usize) -> ZmpProblem {
     let sole = Sole { center: [0.0; 2], half: [0.1, 0.03] };
     let mut chain = ZmpProblem::new();
-    let foot = |k: usize| Pose::new(0.4 * k as f64, if k.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0);
+    let foot = |k: usize| PlanarPose::new(0.4 * k as f64, if k.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0);
     chain.fix(0.0, [0.0, -0.1]);
     for k in 1..=steps {
         let begin = 0.8 * (k - 1) as f64;

@@ -10,7 +10,7 @@
 //! | gamma | amplitudes of the modifications (4.49) | m |
 //! | w, xi | sqrt(om2) at the right end, divergent component r + v/w | 1/s, m |
 
-use crate::pose::{Pose, rotate};
+use crate::pose::{PlanarPose, rotate};
 use crate::verdict::PlanVerdict;
 use curves::Sample;
 
@@ -131,7 +131,7 @@ pub struct EndSlopes {
 impl EndSlopes {
     /// The start state of the periodic solution whose end is its start, moved as `from` is moved to `to`
     /// ((4.31), errata 2.9). Complex numbers stand for vectors in the plane: x + i y.
-    pub fn periodic_state(&self, from: &Pose, to: &Pose) -> PlanarState {
+    pub fn periodic_state(&self, from: &PlanarPose, to: &PlanarPose) -> PlanarState {
         let [a, b] = &self.slopes;
         let angle = to.heading - from.heading;
         let turn = |v: [f64; 2]| rotate(angle, v);

@@ -23,9 +23,7 @@ use crate::verdict::PlanVerdict;
 use crate::zmp::{Trapezoid, ZmpProblem};
 use config::gait;
 use curves::{Cursor, Path, Polyline, Sample};
-
-/// \[m/s^2\] Gravity, downwards.
-pub const GRAVITY: f64 = 9.81;
+use multibody::GRAVITY_ACCELERATION as GRAVITY;
 
 /// Pieces of a height path.
 pub(crate) const HEIGHT_PIECES: usize = 16;
@@ -127,7 +125,7 @@ fn level(ground: &GroundPath) -> Option<f64> {
 
 impl ThreeMassModel {
     /// For the masses of `model`.
-    pub(crate) fn new(model: &gait::Model) -> Self {
+    pub(crate) fn new(model: &gait::GaitModel) -> Self {
         Self {
             leg: model.leg_mass,
             body: 1.0 - 2.0 * model.leg_mass,

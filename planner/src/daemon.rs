@@ -1,8 +1,9 @@
 //! The process around the planner: `gangwerk planner --run DIR`.
 
+use crate::Planner;
 use crate::gait::MAX_COMMANDS;
 use crate::lease::WalkLease;
-use crate::{Planner, vision};
+use crate::obstacles::KnownObstacles;
 use config::Timeline;
 use daemon::{Connect, Daemon};
 use ipc::Mode;
@@ -63,7 +64,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut lease = WalkLease::default();
     let mut timeline = Timeline::new(&d.setup.scene, Process::Planner);
     let mut planner = Planner::of(&d.setup.gait, &d.setup.robot);
-    planner.see(vision::known(&d.setup)?);
+    planner.see(KnownObstacles::new(d.setup.known_obstacles()?));
     let mut made = Box::new(Plan::default());
     if plan.epoch() > 1 {
         timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late

@@ -5,7 +5,7 @@
 
 use crate::foot_rollover::FootRollover;
 use crate::origin::PlanOrigin;
-use crate::pose::Pose;
+use crate::pose::PlanarPose;
 use crate::steps::{Heights, Stride};
 use crate::walking_model::WalkingModel;
 use config::gait;
@@ -41,7 +41,7 @@ pub struct Swing {
 
 impl Swing {
     /// A swing between lift-off and landing.
-    pub fn new(lift: f64, end: f64, step: &gait::Step) -> Self {
+    pub fn new(lift: f64, end: f64, step: &gait::StepSettings) -> Self {
         let h = end - lift;
         Self {
             lift,
@@ -71,7 +71,7 @@ impl Swing {
     }
 
     /// The foot at `t`.
-    pub(crate) fn at(&self, t: f64, from: &Pose, to: &Pose, heights: &Heights) -> Sample<4> {
+    pub(crate) fn at(&self, t: f64, from: &PlanarPose, to: &PlanarPose, heights: &Heights) -> Sample<4> {
         let (s, ds, dds) = ramp(t, self.depart, self.arrive);
         let apex = heights.takeoff.max(heights.landing) + heights.lift;
         let (ground, (z, dz, ddz)) = if t < self.lowering {
@@ -93,7 +93,7 @@ impl Swing {
 
 impl Stride {
     /// The swing of the step. One that is lifted higher than usual moves to the front later: it rises first.
-    pub(crate) fn swing(&self, step: &gait::Step) -> Swing {
+    pub(crate) fn swing(&self, step: &gait::StepSettings) -> Swing {
         let swing = Swing::new(self.lift, self.end, step);
         if self.is_high(step) { swing.upright() } else { swing }
     }
@@ -133,12 +133,12 @@ pub fn ramp(t: f64, begin: f64, end: f64) -> (f64, f64, f64) {
 }
 
 /// A foot that stands: the beginning of every path.
-pub fn stand(path: &mut FootPath, start: f64, at: &Pose, ground: f64) {
+pub fn stand(path: &mut FootPath, start: f64, at: &PlanarPose, ground: f64) {
     path.restart(start, [at.x, at.y, ground, at.heading]);
 }
 
 /// Appends a rest until lift-off and the swing to `to`.
-pub fn swing(path: &mut FootPath, swing: &Swing, from: &Pose, to: &Pose, heights: &Heights) {
+pub fn swing(path: &mut FootPath, swing: &Swing, from: &PlanarPose, to: &PlanarPose, heights: &Heights) {
     let rest = Sample::rest([from.x, from.y, heights.takeoff, from.heading]);
     if swing.lift > path.end() {
         path.push(&rest, &rest, swing.lift);

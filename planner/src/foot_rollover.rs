@@ -1,4 +1,4 @@
-//! Foot rollover: toe joints and pitch of the soles (thesis 4.5, (4.29), (4.30)).
+//! Foot rollover: toe joints and heel strike (thesis 4.5, (4.29), (4.30)).
 //!
 //! A foot path is the path of its *footprint*, flat. A positive pitch turns the foot about the front edge of that
 //! footprint, a negative one about its rear edge, so an edge that touches the ground stays where it is: the rolling
@@ -12,7 +12,7 @@
 //! Values and slopes in between are those of least acceleration (4.30).
 
 use crate::origin::PlanOrigin;
-use crate::pose::Pose;
+use crate::pose::PlanarPose;
 use crate::steps::Stride;
 use config::{Gait, gait, gait::Bend};
 use curves::{Path, Sample, least_acceleration};
@@ -38,7 +38,6 @@ const RESERVE: f64 = 0.02;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FootRollover {
     toes: Option<Bend>,
-    forefoot: Option<Bend>,
     heel: Option<Bend>,
     /// \[rad\] Pitch, toes down, of a foot that is lifted high, and toe joint of the foot from which the other one steps
     /// down; none: the robot stays on level ground.
@@ -53,7 +52,6 @@ impl FootRollover {
         let farther = |[low, high]: [f64; 2]| if -low > high { low + RESERVE } else { high - RESERVE };
         Self {
             toes: gait.toes,
-            forefoot: gait.forefoot_roll,
             heel: gait.heel_strike,
             tilt: gait.obstacles.map(|o| o.tilt),
             range: ranges.map(|r| r.map_or(0.0, farther)),
@@ -88,7 +86,7 @@ impl FootRollover {
     /// Toes down while a foot that is lifted high is still behind.
     pub(crate) fn tilt<const N: usize>(
         &self,
-        step: &gait::Step,
+        step: &gait::StepSettings,
         strides: &[Stride],
         pitch: &mut [AnglePath<N>; 2],
     ) {
@@ -132,10 +130,9 @@ impl FootRollover {
 
     /// Appends the pitch of the foot that swings in `s`; `flat` \[s\] is when its sole lies flat again.
     fn pitch<const N: usize>(&self, path: &mut AnglePath<N>, from: &Sample<1>, s: &Stride, flat: f64) {
-        let peak = self.forefoot.map_or(0.0, |b| b.at(advance(&s.takeoff, &s.foothold)));
         let heel = self.heel.map_or(0.0, |b| b.at(advance(&s.foothold, &s.landing)));
         let swing = |share: f64| s.lift + share * (s.end - s.lift);
-        up_and_down(path, from, s, (peak, f64::INFINITY), swing(LEVEL.0));
+        up_and_down(path, from, s, (0.0, f64::INFINITY), swing(LEVEL.0));
         if heel > 0.0 {
             let rest = Some([Some(0.0); 3]);
             let times = [swing(LEVEL.1), s.end, flat];
@@ -151,7 +148,7 @@ fn rests(s: &Sample<1>) -> bool {
 }
 
 /// \[m\] Way that `to` lies ahead of `from`.
-fn advance(from: &Pose, to: &Pose) -> f64 {
+fn advance(from: &PlanarPose, to: &PlanarPose) -> f64 {
     from.relative(to).x
 }
 

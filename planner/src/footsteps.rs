@@ -3,7 +3,7 @@
 
 use crate::obstacles::KnownObstacles;
 use crate::origin::PlanOrigin;
-use crate::pose::Pose;
+use crate::pose::PlanarPose;
 use crate::reactive::Reactive;
 use crate::skills::{Script, Skill};
 use crate::steps::{Heights, MAX_STEPS, StepParameters, Stride, next_foothold, next_width, nu};
@@ -55,8 +55,8 @@ pub(crate) struct Footsteps {
 struct Foothold {
     stance: usize,
     /// Poses of the stance foot and of the foot that is going to swing.
-    at: Pose,
-    takeoff: Pose,
+    at: PlanarPose,
+    takeoff: PlanarPose,
     heights: Heights,
     /// Parameters and width of the step before.
     parameters: StepParameters,
@@ -103,7 +103,7 @@ impl Footsteps {
             let (parameters, width, landing) = if closing {
                 // The swing foot is put beside the stance foot.
                 let parameters = StepParameters::on_the_spot(last.parameters.duration);
-                (parameters, step.width, last.at.compose(&Pose::new(0.0, nu * step.width, 0.0)))
+                (parameters, step.width, last.at.compose(&PlanarPose::new(0.0, nu * step.width, 0.0)))
             } else {
                 let (parameters, why) = self.parameters(model, demand, n, &last);
                 sequence.blocked = sequence.blocked.or(why);

@@ -5,7 +5,7 @@
 //! | gait coordination, finite state machine | 4.2, figure 4.5 | | [`gait`], `touchdown`, [`origin`] |
 //! | walking commands | 4.6.1 | | [`commands`], [`lease`] |
 //! | step sequence planning | 4.3, (4.1)-(4.4) | 2.1, 2.2 | [`footsteps`], [`steps`] |
-//! | reactive step sequence planning, algorithm 3 | 4.3.3 | | `reactive`, [`obstacles`], [`vision`] |
+//! | reactive step sequence planning, algorithm 3 | 4.3.3 | | `reactive`, [`obstacles`] |
 //! | higher level behaviour | 4.3.4 | | [`skills`] |
 //! | foot trajectories | 4.5, (4.22)-(4.28) | 2.5 | [`feet`] |
 //! | foot rollover, toe joints | 4.5, (4.29), (4.30) | 2.5, gaps 7, 8 | [`foot_rollover`] |
@@ -46,7 +46,6 @@ pub mod steps;
 pub mod torso;
 mod touchdown;
 pub mod verdict;
-pub mod vision;
 pub mod walk;
 pub mod walking_model;
 pub mod zmp;

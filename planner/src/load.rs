@@ -7,7 +7,7 @@
 //! foot take what the other one cannot carry; what both can carry together is `(1 - rho) S_0 + rho S_1`, a sum of
 //! rectangles, and a plan whose zero-moment point leaves that cannot be walked.
 
-use crate::pose::Pose;
+use crate::pose::PlanarPose;
 use crate::segment::{Horizon, standing_shape};
 use crate::sole::Sole;
 use curves::{Path, Polyline, Sample};
@@ -29,7 +29,7 @@ pub(crate) struct DoubleSupport<'a> {
     /// Times \[s\] and zero-moment points \[m\], ascending; at most four.
     pub kinks: &'a [(f64, [f64; 2])],
     /// Sole frames: right, left.
-    pub feet: [Pose; 2],
+    pub feet: [PlanarPose; 2],
     /// Soles: right, left.
     pub soles: &'a [Sole; 2],
     /// Load factor of the left foot at the begin and at the end.
@@ -146,7 +146,7 @@ pub(crate) fn lay<const N: usize>(
     let mut load = horizon.from.load_left;
     path.restart(0.0, [load]);
     let mut least = f64::INFINITY;
-    let mut lay = |begin: f64, end: f64, until: f64, feet: [Pose; 2], to: f64| {
+    let mut lay = |begin: f64, end: f64, until: f64, feet: [PlanarPose; 2], to: f64| {
         // Kinks of a modification in the double support, left out where there is none.
         let times = standing_shape(begin, end).corners();
         let kinks = times.map(|t| (t, zmp.sample(t).0));

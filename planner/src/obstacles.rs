@@ -3,7 +3,7 @@
 //! A triangle is cut with half spaces, one after the other; what is left is a convex polygon. Nothing left: it does not
 //! reach into their intersection. That is exact for a box, and needs no case for edges or corners.
 
-use crate::pose::{Pose, rotate};
+use crate::pose::{PlanarPose, rotate};
 
 /// A point or direction \[m\].
 type Point = [f64; 3];
@@ -33,7 +33,7 @@ pub struct Extent {
 #[derive(Clone, Copy, Debug)]
 pub struct Upright {
     /// Its pose in I_0.
-    pub at: Pose,
+    pub at: PlanarPose,
     /// \[m\] Back, front, right, left, as [`crate::sole::Sole::new`] takes them.
     pub sides: [f64; 4],
     /// \[m\] Its lower and its upper side, in I_0.
@@ -41,6 +41,13 @@ pub struct Upright {
 }
 
 impl KnownObstacles {
+    /// Obstacles of one list of triangles \[m\] @I_0 each.
+    pub fn new(obstacles: impl IntoIterator<Item = Vec<[Point; 3]>>) -> Self {
+        let mut known = Self::default();
+        obstacles.into_iter().for_each(|triangles| known.add(triangles));
+        known
+    }
+
     /// Adds one obstacle, triangles \[m\] @I_0. Those with a number that is not finite are left out.
     pub fn add(&mut self, triangles: impl IntoIterator<Item = [Point; 3]>) {
         let finite = |t: &[Point; 3]| t.iter().flatten().all(|x| x.is_finite());
@@ -55,7 +62,7 @@ impl KnownObstacles {
     }
 
     /// Extent of the part of each obstacle between y = `strip[0]` and `strip[1]` of the frame `at`.
-    pub(crate) fn extents(&self, at: Pose, strip: [f64; 2]) -> impl Iterator<Item = Extent> {
+    pub(crate) fn extents(&self, at: PlanarPose, strip: [f64; 2]) -> impl Iterator<Item = Extent> {
         (0..self.count).filter_map(move |k| {
             let own = self.triangles.iter().filter(move |(_, number)| *number == k);
             own.filter_map(|(corners, _)| {
@@ -95,7 +102,7 @@ struct Polygon {
 }
 
 impl Polygon {
-    fn seen_from(frame: &Pose, triangle: &[Point; 3]) -> Self {
+    fn seen_from(frame: &PlanarPose, triangle: &[Point; 3]) -> Self {
         let mut corners = [[0.0; 3]; MAX_CORNERS];
         for (to, from) in corners.iter_mut().zip(triangle) {
             let [x, y] = rotate(-frame.heading, [from[0] - frame.x, from[1] - frame.y]);
@@ -155,13 +162,13 @@ mod tests {
     #[test]
     fn extent_in_a_strip_is_that_of_the_cut_diamond() {
         let r = std::f64::consts::FRAC_1_SQRT_2;
-        let all: Vec<_> = diamond().extents(Pose::default(), [0.5, 1.0]).collect();
+        let all: Vec<_> = diamond().extents(PlanarPose::default(), [0.5, 1.0]).collect();
         assert_eq!(all.len(), 1);
         assert!((all[0].end - (r - 0.5)).abs() < 1e-12 && (all[0].begin + (r - 0.5)).abs() < 1e-12);
         assert_eq!(all[0].top, 0.1);
-        assert_eq!(diamond().extents(Pose::default(), [0.8, 1.0]).count(), 0);
+        assert_eq!(diamond().extents(PlanarPose::default(), [0.8, 1.0]).count(), 0);
         // Seen from a frame turned by 45 degrees it is an upright square.
-        let turned = Pose::new(2.0, 0.0, std::f64::consts::FRAC_PI_4);
+        let turned = PlanarPose::new(2.0, 0.0, std::f64::consts::FRAC_PI_4);
         let e = diamond().extents(turned, [-9.0, 9.0]).next().unwrap();
         assert!((e.end - e.begin - 1.0).abs() < 1e-12);
     }
@@ -170,7 +177,7 @@ mod tests {
     fn boxes_hit_exactly_what_they_reach() {
         let r = std::f64::consts::FRAC_1_SQRT_2;
         let foot = |x: f64, y: f64, heading: f64, height: [f64; 2]| Upright {
-            at: Pose::new(x, y, heading),
+            at: PlanarPose::new(x, y, heading),
             sides: [-0.2, 0.1, -0.05, 0.05],
             height,
         };
@@ -198,7 +205,7 @@ mod tests {
             let t: [Point; 3] = std::array::from_fn(|_| std::array::from_fn(|_| random(-0.5, 0.5)));
             let mut obstacles = KnownObstacles::default();
             obstacles.add([t]);
-            let at = Pose::new(random(-0.3, 0.3), random(-0.3, 0.3), random(-3.0, 3.0));
+            let at = PlanarPose::new(random(-0.3, 0.3), random(-0.3, 0.3), random(-3.0, 3.0));
             let foot = Upright { at, sides: [-0.2, 0.1, -0.05, 0.1], height: [-0.1, 0.2] };
             let inside = (0..=60)
                 .flat_map(|i| (0..=60 - i).map(move |j| (i as f64 / 60.0, j as f64 / 60.0)))

@@ -1,7 +1,7 @@
 //! Origin of a plan: motion of the robot at the instant at which the plan takes over.
 
 use crate::planned_walk::PlannedWalk;
-use crate::pose::{Pose, rotate};
+use crate::pose::{PlanarPose, rotate};
 use crate::steps::StepParameters;
 use curves::Sample;
 use messages::{ControllerState, LEFT, RIGHT};
@@ -11,13 +11,13 @@ use std::f64::consts::FRAC_PI_2;
 #[derive(Clone, Copy, Debug)]
 pub struct PlanOrigin {
     /// Planning frame in I_0.
-    pub frame: Pose,
+    pub frame: PlanarPose,
     /// \[m\] Its height there.
     pub height: f64,
     /// Foot that carries the first single support; the planning frame lies below it.
     pub stance: usize,
     /// Sole frames.
-    pub feet: [Pose; 2],
+    pub feet: [PlanarPose; 2],
     /// \[m\] Heights of the soles, right, left: that of the stance foot is zero.
     pub heights: [f64; 2],
     /// Centre of gravity.
@@ -53,7 +53,7 @@ impl PlanOrigin {
         width: Option<f64>,
     ) -> Self {
         let plan = &*walk.plan;
-        let feet = soles.map(|p| Pose::new(p[0], p[1], p[3]));
+        let feet = soles.map(|p| PlanarPose::new(p[0], p[1], p[3]));
         let (frame, ground) = (feet[stance], soles[stance][2]);
         let feet = feet.map(|f| frame.relative(&f));
         // The motion goes on without a jump: position, velocity and acceleration, in the new frame.
@@ -69,7 +69,7 @@ impl PlanOrigin {
         torso.position[2] -= frame.heading;
         let [x, y, heading] = plan.origin;
         Self {
-            frame: Pose::new(x, y, heading).compose(&frame),
+            frame: PlanarPose::new(x, y, heading).compose(&frame),
             height: plan.height + ground,
             stance,
             feet,
@@ -100,7 +100,7 @@ impl PlanOrigin {
         if !all.into_iter().all(|x| x.is_finite()) {
             return None;
         }
-        let feet = state.feet.map(|f| Pose::new(f[0], f[1], f[3]));
+        let feet = state.feet.map(|f| PlanarPose::new(f[0], f[1], f[3]));
         let ground = 0.5 * (state.feet[0][2] + state.feet[1][2]);
         // The planning frame lies below the right foot, on the mean height of both soles.
         let frame = feet[RIGHT];
@@ -110,7 +110,7 @@ impl PlanOrigin {
         let mean = 0.5 * (feet[0].heading + feet[1].heading);
         // At rest, both feet flat: whatever else is measured is noise.
         let from = Self {
-            frame: Pose::new(x, y, heading).compose(&frame),
+            frame: PlanarPose::new(x, y, heading).compose(&frame),
             height: 0.0,
             stance: RIGHT,
             feet,

@@ -2,7 +2,7 @@
 
 /// Position and heading of a frame in another one.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Pose {
+pub struct PlanarPose {
     /// \[m\] Forward.
     pub x: f64,
     /// \[m\] To the left.
@@ -11,7 +11,7 @@ pub struct Pose {
     pub heading: f64,
 }
 
-impl Pose {
+impl PlanarPose {
     /// A pose from (x, y, heading).
     pub const fn new(x: f64, y: f64, heading: f64) -> Self {
         Self { x, y, heading }
@@ -28,7 +28,7 @@ impl Pose {
         [self.x + q[0], self.y + q[1]]
     }
 
-    /// A point of the outer frame, seen from this one: the inverse of [`Pose::point`].
+    /// A point of the outer frame, seen from this one: the inverse of [`PlanarPose::point`].
     pub fn local(&self, p: [f64; 2]) -> [f64; 2] {
         rotate(-self.heading, [p[0] - self.x, p[1] - self.y])
     }
@@ -39,7 +39,7 @@ impl Pose {
         Self { x: p[0], y: p[1], heading: self.heading + inner.heading }
     }
 
-    /// A pose of the outer frame, seen from this one: the inverse of [`Pose::compose`].
+    /// A pose of the outer frame, seen from this one: the inverse of [`PlanarPose::compose`].
     pub fn relative(&self, outer: &Self) -> Self {
         let p = self.local([outer.x, outer.y]);
         Self { x: p[0], y: p[1], heading: outer.heading - self.heading }

@@ -14,7 +14,7 @@
 
 use crate::obstacles::{Extent, KnownObstacles, Upright};
 use crate::origin::PlanOrigin;
-use crate::pose::Pose;
+use crate::pose::PlanarPose;
 use crate::sole::Sole;
 use crate::steps::{ROUNDING, StepParameters, Stride, nu};
 use crate::verdict::Blocked;
@@ -62,7 +62,7 @@ impl Reactive {
     }
 
     /// The first obstacle ahead of a foot at `at`, together with those behind it that leave no room for a foot.
-    fn ahead(&self, at: Pose, strip: [f64; 2], sole: &Sole) -> Option<Extent> {
+    fn ahead(&self, at: PlanarPose, strip: [f64; 2], sole: &Sole) -> Option<Extent> {
         let room = 2.0 * (sole.half[0] + self.rules.distance);
         let mut first: Option<Extent> = None;
         loop {
@@ -129,7 +129,7 @@ impl Reactive {
     pub(crate) fn adapt(
         &self,
         model: &WalkingModel,
-        at: Pose,
+        at: PlanarPose,
         ground: f64,
         stance: usize,
         p: &StepParameters,
@@ -200,7 +200,7 @@ impl Reactive {
         let margin = 0.5 * self.rules.distance;
         let ends = [s.takeoff, s.landing].map(|p| s.foothold.relative(&p));
         let range = |d: usize| {
-            let of = |p: &Pose| [p.x, p.y][d] + sole.center[d];
+            let of = |p: &PlanarPose| [p.x, p.y][d] + sole.center[d];
             let reach =
                 sole.half[0].hypot(sole.half[1]).min(sole.half[d] + 0.5 * ends[1].heading.abs()) + margin;
             [of(&ends[0]).min(of(&ends[1])) - reach, of(&ends[0]).max(of(&ends[1])) + reach]
@@ -222,7 +222,7 @@ impl Reactive {
             let p = swing.at(t, &s.takeoff, &s.landing, &s.heights).position;
             let z = from.height + p[2];
             let foot = Upright {
-                at: from.frame.compose(&Pose::new(p[0], p[1], p[3])),
+                at: from.frame.compose(&PlanarPose::new(p[0], p[1], p[3])),
                 sides: [x - a, x + a, y - b, y + b],
                 height: [z, z + FOOT_HEIGHT],
             };

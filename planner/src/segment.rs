@@ -48,7 +48,12 @@ pub(crate) struct WalkSegment<'a> {
 
 impl<'a> WalkSegment<'a> {
     /// The head: from the present zero-moment point to `to` \[m\], that of the periodic solution.
-    pub(crate) fn head(step: &gait::Step, shrunk: &[Sole; 2], horizon: &Horizon<'a>, to: [f64; 2]) -> Self {
+    pub(crate) fn head(
+        step: &gait::StepSettings,
+        shrunk: &[Sole; 2],
+        horizon: &Horizon<'a>,
+        to: [f64; 2],
+    ) -> Self {
         let strides = &horizon.strides[..2];
         let mut reference = begin(horizon.from, 0.0, horizon.from.zmp, true);
         hold(&mut reference, shrunk, &strides[0], true);
@@ -64,7 +69,7 @@ impl<'a> WalkSegment<'a> {
 
     /// The tail: from `from` \[m\] to rest at `goal` \[m\].
     pub(crate) fn tail(
-        step: &gait::Step,
+        step: &gait::StepSettings,
         shrunk: &[Sole; 2],
         horizon: &Horizon<'a>,
         from: [f64; 2],
@@ -156,12 +161,12 @@ pub(crate) fn standing_shape(begin: f64, end: f64) -> Trapezoid {
 }
 
 /// Shape of a modification during a step: from its double support to its landing.
-fn shape(step: &gait::Step, s: &Stride) -> Trapezoid {
+fn shape(step: &gait::StepSettings, s: &Stride) -> Trapezoid {
     Trapezoid { rise: (s.begin, s.lift), fall: (s.swing(step).lowering(), s.end) }
 }
 
 /// Shape during the first step; one out of standing modifies its double support only.
-fn first_shape(step: &gait::Step, state: GaitState, s: &Stride) -> Trapezoid {
+fn first_shape(step: &gait::StepSettings, state: GaitState, s: &Stride) -> Trapezoid {
     if state == GaitState::Starting { standing_shape(0.0, s.lift) } else { shape(step, s) }
 }
 
@@ -185,7 +190,7 @@ fn hold(reference: &mut ZmpProblem, shrunk: &[Sole; 2], s: &Stride, both: bool) 
     }
 }
 
-fn mark(marks: &mut Marks, step: &gait::Step, strides: &[Stride]) {
+fn mark(marks: &mut Marks, step: &gait::StepSettings, strides: &[Stride]) {
     for s in strides {
         marks.add(&[s.begin]);
         marks.add(&s.swing(step).marks());

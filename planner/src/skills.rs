@@ -11,7 +11,7 @@
 
 use crate::commands;
 use crate::origin::PlanOrigin;
-use crate::pose::Pose;
+use crate::pose::PlanarPose;
 use crate::sole::Sole;
 use crate::steps::{StepParameters, Stride};
 
@@ -69,7 +69,7 @@ impl Script {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkillCourse {
     /// Between the feet where it begins, in I_0.
-    begin: Pose,
+    begin: PlanarPose,
     /// \[m\] Its length, negative backwards.
     length: f64,
     /// Largest step.
@@ -141,7 +141,7 @@ impl SkillTask {
     pub(crate) fn begin(&self, from: &PlanOrigin, gait: &Gait, sole: &Sole) -> Option<Skill> {
         self.check(gait, sole).ok()?;
         let [r, l] = from.feet;
-        let middle = Pose::new(0.5 * (r.x + l.x), 0.5 * (r.y + l.y), 0.5 * (r.heading + l.heading));
+        let middle = PlanarPose::new(0.5 * (r.x + l.x), 0.5 * (r.y + l.y), 0.5 * (r.heading + l.heading));
         let begin = from.frame.compose(&middle);
         match self {
             Self::Distance(d) => {
@@ -305,7 +305,7 @@ mod tests {
 
     fn way(length: f64, most: f64, change: f64) -> SkillCourse {
         let cruise = StepParameters { length: most, ..StepParameters::on_the_spot(1.0) };
-        SkillCourse { begin: Pose::default(), length, cruise, change }
+        SkillCourse { begin: PlanarPose::default(), length, cruise, change }
     }
 
     /// All the way, step by step, as the planner asks.

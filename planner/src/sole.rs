@@ -1,6 +1,6 @@
 //! Support rectangles: where a foot can carry, and how far a point is from leaving it (4.40).
 
-use crate::pose::Pose;
+use crate::pose::PlanarPose;
 
 /// Rectangle of a foot in its sole frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,25 +26,25 @@ impl Sole {
     }
 
     /// The point of the rectangle at `pose` that is nearest to `p`.
-    pub fn nearest(&self, pose: &Pose, p: [f64; 2]) -> [f64; 2] {
+    pub fn nearest(&self, pose: &PlanarPose, p: [f64; 2]) -> [f64; 2] {
         let q = pose.local(p);
         let inside = [0, 1].map(|d| q[d].clamp(self.center[d] - self.half[d], self.center[d] + self.half[d]));
         if inside == q { p } else { pose.point(inside) }
     }
 
     /// Middle of the rectangle at `pose`.
-    pub fn middle(&self, pose: &Pose) -> [f64; 2] {
+    pub fn middle(&self, pose: &PlanarPose) -> [f64; 2] {
         pose.point(self.center)
     }
 
     /// Distance \[m\] of `p` from the edge of the rectangle at `pose`: positive inside.
-    pub fn margin(&self, pose: &Pose, p: [f64; 2]) -> f64 {
+    pub fn margin(&self, pose: &PlanarPose, p: [f64; 2]) -> f64 {
         let q = pose.local(p);
         (0..2).map(|d| self.half[d] - (q[d] - self.center[d]).abs()).fold(f64::INFINITY, f64::min)
     }
 
     /// Corners at `pose`, counter-clockwise.
-    pub fn corners(&self, pose: &Pose) -> [[f64; 2]; 4] {
+    pub fn corners(&self, pose: &PlanarPose) -> [[f64; 2]; 4] {
         [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]
             .map(|(a, b)| pose.point([self.center[0] + a * self.half[0], self.center[1] + b * self.half[1]]))
     }
@@ -60,7 +60,7 @@ pub struct Hull {
 
 impl Hull {
     /// Hull of the soles `a` and `b`, each at its pose, by gift wrapping.
-    pub fn of(a: (&Sole, &Pose), b: (&Sole, &Pose)) -> Self {
+    pub fn of(a: (&Sole, &PlanarPose), b: (&Sole, &PlanarPose)) -> Self {
         let (ca, cb) = (a.0.corners(a.1), b.0.corners(b.1));
         let corners = [ca[0], ca[1], ca[2], ca[3], cb[0], cb[1], cb[2], cb[3]];
         let lower = |p: &[f64; 2], q: &[f64; 2]| p[1] < q[1] || (p[1] == q[1] && p[0] < q[0]);
@@ -103,6 +103,6 @@ impl Hull {
 }
 
 /// Distance \[m\] of `p` from the edge of the convex hull of two soles: positive inside.
-pub fn double_support_margin(a: (&Sole, &Pose), b: (&Sole, &Pose), p: [f64; 2]) -> f64 {
+pub fn double_support_margin(a: (&Sole, &PlanarPose), b: (&Sole, &PlanarPose), p: [f64; 2]) -> f64 {
     Hull::of(a, b).margin(p)
 }

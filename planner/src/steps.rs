@@ -10,7 +10,7 @@
 //!
 //! Thesis (4.1) and (4.2) are one formula without cancellation here; (4.3) is added to the result, where it is exact.
 
-use crate::pose::{Pose, rotate};
+use crate::pose::{PlanarPose, rotate};
 use crate::sole::Sole;
 use config::gait;
 
@@ -40,7 +40,7 @@ impl StepParameters {
     }
 
     /// The parameters nearest to `wish` that differ from these by at most `share` of the largest change per step.
-    pub fn towards(&self, wish: &Self, step: &gait::Step, share: f64) -> Self {
+    pub fn towards(&self, wish: &Self, step: &gait::StepSettings, share: f64) -> Self {
         let near = |now: f64, wish: f64, most: f64| now + (wish - now).clamp(-most * share, most * share);
         Self {
             length: near(self.length, wish.length, step.change[0]),
@@ -82,11 +82,11 @@ pub struct Stride {
     /// Landing, in cycles from the start of the plan.
     pub end_cycle: u64,
     /// Pose of the stance foot.
-    pub foothold: Pose,
+    pub foothold: PlanarPose,
     /// Pose that the swing foot comes from.
-    pub takeoff: Pose,
+    pub takeoff: PlanarPose,
     /// Pose in which the swing foot lands.
-    pub landing: Pose,
+    pub landing: PlanarPose,
     /// Heights of these three, and of the swing.
     pub heights: Heights,
 }
@@ -101,9 +101,9 @@ impl Stride {
         lift: 0.0,
         end: 0.0,
         end_cycle: 0,
-        foothold: Pose::new(0.0, 0.0, 0.0),
-        takeoff: Pose::new(0.0, 0.0, 0.0),
-        landing: Pose::new(0.0, 0.0, 0.0),
+        foothold: PlanarPose::new(0.0, 0.0, 0.0),
+        takeoff: PlanarPose::new(0.0, 0.0, 0.0),
+        landing: PlanarPose::new(0.0, 0.0, 0.0),
         heights: Heights { foothold: 0.0, takeoff: 0.0, landing: 0.0, lift: 0.0 },
     };
 
@@ -113,7 +113,7 @@ impl Stride {
     }
 
     /// Is the swing foot lifted higher than in a step on level ground?
-    pub(crate) fn is_high(&self, step: &gait::Step) -> bool {
+    pub(crate) fn is_high(&self, step: &gait::StepSettings) -> bool {
         let h = &self.heights;
         h.lift > step.swing_height + ROUNDING || (h.landing - h.takeoff).abs() > ROUNDING
     }
@@ -139,11 +139,11 @@ pub fn displacement(p: &StepParameters, w_c: f64, w_n: f64, nu: f64) -> [f64; 2]
 }
 
 /// Pose of the next foothold in the frame of the stance foot, turning about the middle of the foot (4.1), (4.3).
-pub fn next_foothold(p: &StepParameters, w_c: f64, w_n: f64, nu: f64, sole: &Sole) -> Pose {
+pub fn next_foothold(p: &StepParameters, w_c: f64, w_n: f64, nu: f64, sole: &Sole) -> PlanarPose {
     let [x, y] = displacement(p, w_c, w_n, nu);
     let c = sole.center;
     let rc = rotate(p.turn, c);
-    Pose::new(x + c[0] - rc[0], y + c[1] - rc[1], p.turn) // (4.3)
+    PlanarPose::new(x + c[0] - rc[0], y + c[1] - rc[1], p.turn) // (4.3)
 }
 
 /// Lateral distance that keeps two turned soles as far apart as `width_min` keeps parallel ones (4.4).
@@ -156,7 +156,7 @@ pub fn required_distance(turn: f64, width_min: f64, sole: &Sole) -> f64 {
 ///
 /// The foot left behind becomes the swing foot: seen from the new one it must not stand in its own way either, which
 /// (4.4) does not look at. It turns while it passes, so it needs as much room as at its foothold.
-pub fn next_width(p: &StepParameters, w_c: f64, nu: f64, step: &gait::Step, sole: &Sole) -> f64 {
+pub fn next_width(p: &StepParameters, w_c: f64, nu: f64, step: &gait::StepSettings, sole: &Sole) -> f64 {
     let (s, c) = p.turn.sin_cos();
     let need = required_distance(p.turn, step.width_min, sole);
     let bound = |w_c: f64| 2.0 * (need - nu * displacement(p, w_c, 0.0, nu)[1]) / c; // (4.4)

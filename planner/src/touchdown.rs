@@ -11,7 +11,7 @@
 
 use crate::origin::PlanOrigin;
 use crate::planned_walk::{LEAD, PlannedWalk};
-use crate::pose::Pose;
+use crate::pose::PlanarPose;
 use messages::{ControllerState, Phase};
 
 /// \[m\] Differences of height below this one are not told from errors of measurement.
@@ -69,7 +69,7 @@ pub(crate) fn at_contact(
     if soles[foot][2] == s.heights.landing {
         return None;
     }
-    let ground = Pose::new(soles[foot][0], soles[foot][1], soles[foot][3]);
+    let ground = PlanarPose::new(soles[foot][0], soles[foot][1], soles[foot][3]);
     let mut from = PlanOrigin::on_plan(walk, t, soles, foot, s.parameters, Some(s.width));
     from.early = Some((s.end - t, ground.local(plan.zmp.sample(s.end).0)));
     Some(from)

@@ -1,7 +1,7 @@
 //! Builds plans: footholds → feet → ZMP reference → centre of gravity → load, heading: the stages of figure 4.1.
 
 use crate::balance::Balance;
-use crate::com::{GRAVITY, GroundPath};
+use crate::com::GroundPath;
 use crate::feet::FootTrajectories;
 use crate::foot_rollover::FootRollover;
 use crate::footsteps::{Footsteps, StepDemand};
@@ -17,7 +17,11 @@ use crate::walking_model::WalkingModel;
 use config::Gait;
 use curves::Sample;
 use messages::{GaitState, Plan, Step};
+use multibody::GRAVITY_ACCELERATION as GRAVITY;
 use std::f64::consts::FRAC_PI_2;
+
+/// \[s\] Time for raising or lowering the body while standing.
+const STAND_TIME: f64 = 2.0;
 
 /// Builds plans. All scratch is made with it.
 #[derive(Clone)]
@@ -79,7 +83,7 @@ impl Builder {
     /// Raises or lowers the body and brings the centre of gravity between the feet, whose soles are at `heights` \[m\] now.
     pub fn stand(&mut self, from: &PlanOrigin, heights: [f64; 2], out: &mut PlannedWalk) {
         let model = &self.model;
-        let end_cycle = model.cycles(model.model.stand_time);
+        let end_cycle = model.cycles(STAND_TIME);
         let end = end_cycle as f64 * model.cycle_s;
         let plan = &mut *out.plan;
         begin(plan, from, GaitState::Standing);

@@ -1,6 +1,6 @@
 //! Steps, masses, soles and cycle of one robot: all stages of planning read them, none changes them.
 
-use crate::pose::{Pose, rotate};
+use crate::pose::{PlanarPose, rotate};
 use crate::sole::Sole;
 use config::{Gait, gait};
 
@@ -8,9 +8,9 @@ use config::{Gait, gait};
 #[derive(Clone)]
 pub(crate) struct WalkingModel {
     /// Steps; its values may be changed between two plans.
-    pub step: gait::Step,
+    pub step: gait::StepSettings,
     /// The model the centre of gravity is planned with.
-    pub model: gait::Model,
+    pub model: gait::GaitModel,
     /// Support rectangles: right, left.
     pub soles: [Sole; 2],
     /// \[s\] Length of a cycle; phases end on whole cycles.
@@ -29,7 +29,7 @@ impl WalkingModel {
     }
 
     /// \[m\] Point at which the centre of gravity rests between two feet.
-    pub(crate) fn standing_point(&self, feet: &[Pose; 2]) -> [f64; 2] {
+    pub(crate) fn standing_point(&self, feet: &[PlanarPose; 2]) -> [f64; 2] {
         let heading = 0.5 * (feet[0].heading + feet[1].heading);
         let ahead = rotate(heading, [self.model.com_forward, 0.0]);
         [0.5 * (feet[0].x + feet[1].x) + ahead[0], 0.5 * (feet[0].y + feet[1].y) + ahead[1]]

@@ -11,7 +11,7 @@
 //! not settle, and solves the periodic problem: both components together, because the Hessian block is isotropic and the
 //! Euclidean projection finds the optimum.
 
-use crate::pose::Pose;
+use crate::pose::PlanarPose;
 use crate::sole::Sole;
 use crate::verdict::PlanVerdict;
 
@@ -36,7 +36,7 @@ pub struct ZmpHold {
 
 impl ZmpHold {
     /// The rectangle of `sole` at the pose `at`.
-    pub fn new(sole: &Sole, at: &Pose) -> Self {
+    pub fn new(sole: &Sole, at: &PlanarPose) -> Self {
         let (s, c) = at.heading.sin_cos();
         Self { center: sole.middle(at), axis: [c, s], half: sole.half }
     }
@@ -114,7 +114,7 @@ impl ZmpProblem {
     }
 
     /// Appends a point that a sole holds.
-    pub fn hold(&mut self, time: f64, sole: &Sole, at: &Pose) {
+    pub fn hold(&mut self, time: f64, sole: &Sole, at: &PlanarPose) {
         let hold = ZmpHold::new(sole, at);
         self.push(ZmpNode { time, p: hold.center, hold: Some(hold) });
     }
@@ -188,7 +188,7 @@ impl ZmpProblem {
 
     /// Solves (4.42) for a problem whose last point is the first one moved by the rigid motion that takes the pose
     /// `from` to `to` (gap 12).
-    pub(crate) fn solve_periodic(&mut self, from: &Pose, to: &Pose) -> PlanVerdict {
+    pub(crate) fn solve_periodic(&mut self, from: &PlanarPose, to: &PlanarPose) -> PlanVerdict {
         let wrong = self.posed();
         let n = self.len;
         if wrong != PlanVerdict::Sound || n < 3 {
@@ -255,7 +255,7 @@ struct RigidMotion {
 }
 
 impl RigidMotion {
-    fn new(from: &Pose, to: &Pose) -> Self {
+    fn new(from: &PlanarPose, to: &PlanarPose) -> Self {
         let (s, c) = (to.heading - from.heading).sin_cos();
         let still = Self { turn: [c, s], shift: [0.0; 2] };
         let moved = still.of([from.x, from.y]);

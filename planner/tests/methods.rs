@@ -3,7 +3,7 @@
 use planner::boundary::{BoundaryProblem, BoundarySolver, EndConditions, MAX_KNOTS, PlanarState};
 use planner::closed_form::ClosedForm;
 use planner::collocation::Collocation;
-use planner::pose::Pose;
+use planner::pose::PlanarPose;
 use planner::sole::{Hull, Sole};
 use planner::verdict::PlanVerdict;
 use planner::zmp::{MAX_NODES, ZmpProblem};
@@ -27,7 +27,7 @@ fn dice(mut seed: u64) -> impl FnMut() -> f64 {
 fn walk(steps: usize, step: f64) -> ZmpProblem {
     let sole = Sole { center: [0.0; 2], half: [0.1, 0.03] };
     let mut chain = ZmpProblem::new();
-    let foot = |k: usize| Pose::new(step * k as f64, if k.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0);
+    let foot = |k: usize| PlanarPose::new(step * k as f64, if k.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0);
     chain.fix(0.0, [0.0, -0.1]);
     for k in 1..=steps {
         let begin = 0.8 * (k - 1) as f64;
@@ -228,7 +228,7 @@ fn random_chain(random: &mut impl FnMut() -> f64, feet: usize) -> ZmpProblem {
     chain.fix(t, [random() * 0.1, random() * 0.1]);
     for _ in 0..feet {
         x += random() * 0.6;
-        let at = Pose::new(x, random() - 0.5, random() - 0.5);
+        let at = PlanarPose::new(x, random() - 0.5, random() - 0.5);
         let sole = Sole { center: [0.02, 0.0], half: [0.05 + 0.1 * random(), 0.03] };
         for _ in 0..2 {
             t += 0.1 + random() * 0.6;
@@ -263,7 +263,7 @@ fn direct_construction_and_sweeps_agree() {
 #[test]
 fn direct_construction_is_a_taut_string() {
     let mut c = ZmpProblem::new();
-    let box_at = |x: f64, y: f64| (Sole { center: [0.0; 2], half: [0.1, 0.05] }, Pose::new(x, y, 0.0));
+    let box_at = |x: f64, y: f64| (Sole { center: [0.0; 2], half: [0.1, 0.05] }, PlanarPose::new(x, y, 0.0));
     c.fix(0.0, [0.0, 0.0]);
     let (sole, at) = box_at(0.1, 0.3); // y in [0.25, 0.35], x in [0, 0.2]
     c.hold(1.0, &sole, &at);
@@ -281,7 +281,7 @@ fn direct_construction_is_a_taut_string() {
 #[test]
 fn reference_tells_what_is_wrong() {
     let sole = Sole { center: [0.0; 2], half: [0.1, 0.03] };
-    let here = Pose::default();
+    let here = PlanarPose::default();
     let chain = |sole: &Sole, t: [f64; 3], p: f64| {
         let mut c = ZmpProblem::new();
         c.fix(t[0], [p, 0.0]);
@@ -380,7 +380,7 @@ fn hull_of_two_soles() {
     let mut random = dice(3);
     for _ in 0..500 {
         let sole = Sole { center: [-0.1, 0.01], half: [0.15, 0.05] };
-        let poses = [0, 1].map(|_| Pose::new(random() - 0.5, random() - 0.5, 6.0 * random()));
+        let poses = [0, 1].map(|_| PlanarPose::new(random() - 0.5, random() - 0.5, 6.0 * random()));
         let hull = Hull::of((&sole, &poses[0]), (&sole, &poses[1]));
         let p = [random() - 0.5, random() - 0.5];
         let corners: Vec<_> = poses.iter().flat_map(|q| sole.corners(q)).collect();

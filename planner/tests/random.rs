@@ -8,7 +8,7 @@ use robot::checks::*;
 use robot::feasible::Worst;
 use robot::{Random, Robot};
 
-fn command(random: &mut Random, limits: &config::gait::Limits) -> Command {
+fn command(random: &mut Random, limits: &config::gait::CommandLimits) -> Command {
     match random.below(10) {
         0 => Command::Stop,
         1 => Command::Start,

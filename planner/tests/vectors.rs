@@ -2,7 +2,7 @@
 
 use planner::boundary::{BoundarySolver, PlanarState};
 use planner::collocation::Collocation;
-use planner::pose::Pose;
+use planner::pose::PlanarPose;
 use planner::sole::Sole;
 use planner::steps::{StepParameters, displacement, next_foothold, nu, required_distance};
 use planner::zmp::{Trapezoid, ZmpProblem};
@@ -157,7 +157,7 @@ fn collocation_is_of_fourth_order() {
 fn periodic_state_of_errata_2_9() {
     let p = parameters(0.4, 0.05, 0.2);
     let sole = Sole { center: [0.0; 2], half: [0.1, 0.05] };
-    let mut feet = vec![Pose::new(0.0, 0.0, 0.0)];
+    let mut feet = vec![PlanarPose::new(0.0, 0.0, 0.0)];
     for k in 0..4 {
         let last = feet[k];
         feet.push(last.compose(&next_foothold(&p, 0.22, 0.22, nu(k % 2), &sole)));
@@ -174,7 +174,7 @@ fn periodic_state_of_errata_2_9() {
     let om2 = G / 0.9;
     let zmp = |t: f64, d: usize| {
         let (k, t) = if t < 0.8 { (3, t) } else { (4, t - 0.8) };
-        let at = |f: &Pose| [f.x, f.y][d];
+        let at = |f: &PlanarPose| [f.x, f.y][d];
         let s = (t / 0.16).min(1.0);
         at(&feet[k - 1]) * (1.0 - s) + at(&feet[k]) * s
     };
@@ -214,7 +214,7 @@ fn zmp_reference_is_optimal() {
         chain.fix(t, [random() * 0.1, random() * 0.1]);
         for _ in 0..4 {
             x += random() * 0.6;
-            let at = Pose::new(x, random() - 0.5, random() - 0.5);
+            let at = PlanarPose::new(x, random() - 0.5, random() - 0.5);
             let sole = Sole { center: [0.02, 0.0], half: [0.05 + 0.1 * random(), 0.03] };
             for _ in 0..2 {
                 t += 0.1 + random() * 0.6;
@@ -242,10 +242,10 @@ fn zmp_reference_is_optimal() {
 #[test]
 fn margins_of_soles_and_hulls() {
     let sole = Sole::new([-0.26, 0.04, -0.05, 0.05]);
-    let here = Pose::new(0.0, 0.0, 0.0);
+    let here = PlanarPose::new(0.0, 0.0, 0.0);
     close(sole.margin(&here, [0.0, 0.0]), 0.04, 1e-15);
     close(sole.margin(&here, [0.05, 0.0]), -0.01, 1e-15);
-    let left = Pose::new(0.0, 0.2, 0.0);
+    let left = PlanarPose::new(0.0, 0.2, 0.0);
     let both = |p| planner::sole::double_support_margin((&sole, &here), (&sole, &left), p);
     close(both([-0.1, 0.1]), 0.14, 1e-12);
     close(both([-0.1, 0.26]), -0.01, 1e-12);

@@ -2,24 +2,24 @@
 
 mod robot;
 
-use config::gait::{Limits, Step};
-use planner::pose::Pose;
+use config::gait::{CommandLimits, StepSettings};
+use planner::pose::PlanarPose;
 use planner::sole::Sole;
 use planner::steps::{StepParameters, next_foothold, next_width, nu};
 use robot::Random;
 
 /// Lateral gap \[m\], seen from the stance foot, between its sole and the one at `landing`.
-fn gap(sole: &Sole, landing: &Pose, nu: f64) -> f64 {
+fn gap(sole: &Sole, landing: &PlanarPose, nu: f64) -> f64 {
     let near =
         sole.corners(landing).iter().map(|c| nu * (c[1] - sole.center[1])).fold(f64::INFINITY, f64::min);
     near - sole.half[1]
 }
 
 /// Least gap over random steps, each with the width that `width` says.
-fn least(width: impl Fn(&StepParameters, f64, f64, &Step, &Sole) -> f64) -> f64 {
+fn least(width: impl Fn(&StepParameters, f64, f64, &StepSettings, &Sole) -> f64) -> f64 {
     let gait = robot::gait();
     let (step, sole) = (&gait.step, &Sole::new(robot::SUPPORT[0]));
-    let Limits { length, side, turn, .. } = gait.limits;
+    let CommandLimits { length, side, turn, .. } = gait.limits;
     let mut random = Random::new(4);
     let mut w_c = step.width;
     let mut least = f64::INFINITY;

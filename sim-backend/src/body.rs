@@ -6,7 +6,7 @@ use config::{Robot, Scene};
 use messages::{Detail, EventCode, EventQueue};
 
 use crate::chatter::ChatterWatch;
-use crate::drive::{Drive, Motion};
+use crate::drive::{JointCubic, JointMotion};
 use crate::integrate::Stepper;
 use crate::layout::orientation;
 use crate::plant::{Plant, PlantInputs, Snapshot};
@@ -80,7 +80,7 @@ impl SimulatedBody {
 
     /// One cycle of time passes. Returns the first state that is not finite, if there is one: then the state is that of
     /// the beginning of the cycle.
-    pub(crate) fn advance(&mut self, references: &[Drive], inputs: &PlantInputs) -> Option<usize> {
+    pub(crate) fn advance(&mut self, references: &[JointCubic], inputs: &PlantInputs) -> Option<usize> {
         let Self { plant, stepper, chatter, state, last_good, .. } = self;
         let speed = plant.layout().speed();
         last_good.copy_from_slice(state);
@@ -128,24 +128,24 @@ impl SimulatedBody {
         }
         for event in self.plant.advance(time) {
             match *event {
-                environment::Event::Refused(i) => {
+                environment::ObjectEvent::Refused(i) => {
                     events.push(EventCode::ObjectHeld, Detail::Number(i as u64))
                 }
-                environment::Event::Resumed(i) => {
+                environment::ObjectEvent::Resumed(i) => {
                     events.push(EventCode::ObjectResumed, Detail::Number(i as u64))
                 }
-                environment::Event::Appeared(_) | environment::Event::Vanished(_) => {}
+                environment::ObjectEvent::Appeared(_) | environment::ObjectEvent::Vanished(_) => {}
             }
         }
     }
 
     /// Forces and accelerations at the end of a cycle of `dt` \[s\].
-    pub(crate) fn snapshot(&mut self, dt: f64, references: &[Drive], inputs: &PlantInputs) -> Snapshot {
+    pub(crate) fn snapshot(&mut self, dt: f64, references: &[JointCubic], inputs: &PlantInputs) -> Snapshot {
         self.plant.snapshot(dt, &self.state, references, inputs)
     }
 
     /// Motions of the joints; `goals`: of those that follow.
-    pub(crate) fn joints(&self, goals: &[Motion], motions: &mut [Motion]) {
+    pub(crate) fn joints(&self, goals: &[JointMotion], motions: &mut [JointMotion]) {
         self.plant.joints(&self.state, goals, motions);
     }
 
@@ -157,7 +157,7 @@ impl SimulatedBody {
 
 /// The robot as it is, where that is not what its software believes.
 fn with_plant_mismatch(robot: &Robot, scene: &Scene) -> Robot {
-    let (mut robot, factor) = (robot.clone(), scene.unknown.contact_stiffness);
+    let (mut robot, factor) = (robot.clone(), scene.plant_mismatch.contact_stiffness);
     robot.contact.normal_stiffness *= factor;
     robot.contact.tangential_stiffness *= factor;
     if let Some(pads) = &mut robot.contact.pads {

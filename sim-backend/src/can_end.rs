@@ -5,9 +5,9 @@
 use std::error::Error;
 use std::time::Duration;
 
-use codec::layout::{Carries, Layout, MAX_NODES};
+use codec::layout::{Carries, FrameLayout, MAX_NODES};
 use daemon::Daemon;
-use fieldbus::{End, Lines};
+use fieldbus::{BusEnd, BusLines};
 use messages::{BusFrames, Frame};
 use realtime::clock;
 
@@ -20,8 +20,8 @@ const GRACE: u64 = clock::SECOND;
 
 /// Drives on CAN lines.
 pub(crate) struct CanEnd {
-    lines: Lines,
-    layout: Layout,
+    lines: BusLines,
+    layout: FrameLayout,
     inbox: BusFrames,
     gathering: Gathering,
     whole: BusFrames,
@@ -55,7 +55,7 @@ impl CanEnd {
     /// Opens all lines.
     pub(crate) fn new(d: &Daemon, fd: bool, interfaces: &[String]) -> Result<Self, Box<dyn Error>> {
         let layout = d.setup.robot.layout.clone();
-        let lines = Lines::open(interfaces, &layout, fd, End::Far)?;
+        let lines = BusLines::open(interfaces, &layout, fd, BusEnd::Far)?;
         let gathering = Gathering::new(layout.nodes.len());
         let empty = BusFrames::default;
         let (inbox, whole, answer) = (empty(), empty(), empty());
@@ -155,7 +155,7 @@ impl Gathering {
         }
     }
 
-    fn take(&mut self, layout: &Layout, frame: &Frame) -> FrameResult {
+    fn take(&mut self, layout: &FrameLayout, frame: &Frame) -> FrameResult {
         let sync = layout.find(frame.line, frame.id).map(|i| &layout.messages[i]).filter(|m| m.is_sync());
         let counter = sync
             .filter(|m| m.len == frame.len)
@@ -216,11 +216,11 @@ mod tests {
     use codec::frames::{DriveCommand, encode_targets, look};
     use config::Robot;
 
-    fn layout() -> Layout {
+    fn layout() -> FrameLayout {
         Robot::load(&config::root(None).join("robots/lola")).unwrap().classic.unwrap()
     }
 
-    fn cycle(layout: &Layout, tick: u64) -> BusFrames {
+    fn cycle(layout: &FrameLayout, tick: u64) -> BusFrames {
         let mut command = DriveCommand::default();
         command.targets.header.tick = tick;
         let mut frames = BusFrames::default();
@@ -229,7 +229,7 @@ mod tests {
     }
 
     /// Results of the frames; and which nodes were complete in the last whole cycle.
-    fn take_all(g: &mut Gathering, layout: &Layout, frames: &[Frame]) -> (Vec<FrameResult>, Vec<bool>) {
+    fn take_all(g: &mut Gathering, layout: &FrameLayout, frames: &[Frame]) -> (Vec<FrameResult>, Vec<bool>) {
         let (mut steps, mut complete) = (Vec::new(), Vec::new());
         for frame in frames {
             let step = g.take(layout, frame);

@@ -5,7 +5,7 @@
 //! for so long does not get a joint back in mid-motion.
 
 use codec::frames::Received;
-use codec::layout::{Carries, Layout, MAX_NODES};
+use codec::layout::{Carries, FrameLayout, MAX_NODES};
 use messages::MAX_JOINTS;
 
 /// Cycles without targets after which the drives of a local controller have a fault.
@@ -38,7 +38,7 @@ pub(crate) struct CommandTimeout {
 
 impl CommandTimeout {
     /// Of a robot with this layout.
-    pub(crate) fn new(layout: &Layout) -> Self {
+    pub(crate) fn new(layout: &FrameLayout) -> Self {
         let mut node_of = [0; MAX_JOINTS];
         for message in layout.sent(true) {
             for signal in &message.signals {
@@ -86,16 +86,16 @@ impl CommandTimeout {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use codec::layout::{Message, Signal};
+    use codec::layout::{BusMessage, BusSignal};
 
-    fn layout() -> Layout {
-        let message = |node: usize| Message {
+    fn layout() -> FrameLayout {
+        let message = |node: usize| BusMessage {
             name: format!("m{node}"),
             id: 0x100 + node as u32,
             len: 8,
             node,
             to_drives: true,
-            signals: vec![Signal {
+            signals: vec![BusSignal {
                 name: "target".into(),
                 start: 0,
                 bits: 32,
@@ -105,7 +105,7 @@ mod tests {
                 carries: Carries::Target(node),
             }],
         };
-        Layout::new(vec!["a".into(), "b".into()], vec![message(0), message(1)])
+        FrameLayout::new(vec!["a".into(), "b".into()], vec![message(0), message(1)])
     }
 
     /// Only the node `missing` did not receive all.

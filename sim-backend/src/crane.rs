@@ -59,17 +59,17 @@ impl Rope {
 
 /// The crane of one robot.
 #[derive(Clone, Debug)]
-pub(crate) struct Crane {
+pub(crate) struct CraneRope {
     rope: Rope,
     speed: f64,
     /// \[m\] Height of the trolley to be reached.
     goal: f64,
 }
 
-impl Crane {
+impl CraneRope {
     /// A crane that holds a robot of this mass \[kg\] with the hook at `at` @world: taut, and in balance.
     pub(crate) fn new(of: &Description, hook: Vector3<f64>, at: Vector3<f64>, mass: f64) -> Self {
-        let stretch = mass * -multibody::GRAVITY.z / of.stiffness;
+        let stretch = mass * multibody::GRAVITY_ACCELERATION / of.stiffness;
         let anchor = at + Vector3::z() * (of.rope + stretch);
         let rope = Rope { anchor, hook, length: of.rope, stiffness: of.stiffness, damping: of.damping };
         Self { rope, speed: of.speed, goal: anchor.z }
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn carries_the_weight_at_the_start_and_nothing_when_slack() {
         let hook = Vector3::z() * 0.4;
-        let mut crane = Crane::new(&CRANE, hook, Vector3::z(), 60.0);
+        let mut crane = CraneRope::new(&CRANE, hook, Vector3::z(), 60.0);
         let rope = crane.follow(&Vector3::z(), 1e-3);
         assert!((pull(&rope, 1.0, 0.0) - 60.0 * 9.81).abs() < 1e-9);
         assert!((pull(&rope, 1.0, -0.1) - 60.0 * 9.81 - 100.0).abs() < 1e-9, "damped");
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn lowers_at_its_speed_and_follows_a_robot_that_walks_away_once_slack() {
-        let mut crane = Crane::new(&CRANE, Vector3::z() * 0.4, Vector3::z(), 60.0);
+        let mut crane = CraneRope::new(&CRANE, Vector3::z() * 0.4, Vector3::z(), 60.0);
         let top = crane.rope.anchor.z;
         crane.lower(0.05);
         for _ in 0..250 {

@@ -6,12 +6,12 @@
 
 use config::protection::Protection;
 use config::{Robot, Scene};
-use drives::cia402::{self, DriveInputs, Fault, REFERENCED, WARNING, WORDS};
+use drives::cia402::{self, DriveFault, DriveInputs, REFERENCED, WARNING, WORDS};
 use drives::homing::{HomeSwitch, Homing};
 use messages::{JointMode, MAX_JOINTS, Sensors};
 
 use crate::command_timeout::CommandTimeout;
-use crate::drive::Motion;
+use crate::drive::JointMotion;
 
 /// \[rad/s\] Speed of a reference below which it is at rest, but for rounding.
 const REST: f64 = 1e-9;
@@ -81,13 +81,10 @@ impl DriveElectronics {
             Some(Search { switch, homing: Homing::Search, began_closed, origin: *angle })
         };
         let protection = robot.protection.clone().filter(|_| start.is_some());
-        let warm = |(joint, winding): (&config::robot::Joint, &drives::thermal::Thermal)| {
-            start.and_then(|start| start.temperature.of(&joint.name)).unwrap_or(winding.surroundings)
-        };
         let windings = protection.iter().flat_map(|p| &p.windings);
         Self {
             searches: robot.homes.iter().zip(pose).map(search).collect(),
-            temperature: robot.joints.iter().zip(windings).map(warm).collect(),
+            temperature: windings.map(|winding| winding.surroundings).collect(),
             actions: vec![Action::Off; drives.len()],
             off_for: vec![f64::INFINITY; drives.len()],
             protection,
@@ -107,8 +104,8 @@ impl DriveElectronics {
         command: &ReceivedCommand<'_>,
         supply: bool,
         dt: f64,
-        goals: &[Motion],
-        now: &[Motion],
+        goals: &[JointMotion],
+        now: &[JointMotion],
         current: Option<&[f64]>,
     ) -> Option<usize> {
         let mut stopped = None;
@@ -123,12 +120,12 @@ impl DriveElectronics {
                 permit: home || self.knows(j),
                 fault: self
                     .fault(j, &drive, dt, goals[j], now[j], current)
-                    .or(silent.then_some(Fault::Heartbeat)),
+                    .or(silent.then_some(DriveFault::Heartbeat)),
                 still: goals[j].speed.abs() < REST,
             };
             self.drives[j].step(&inputs);
             // Reported once, as its error begins.
-            if drive.error().is_none() && self.drives[j].error() == Some(Fault::Heartbeat) {
+            if drive.error().is_none() && self.drives[j].error() == Some(DriveFault::Heartbeat) {
                 stopped = stopped.or(Some(j));
             }
             self.actions[j] = self.choose(j, now[j].angle);
@@ -158,10 +155,10 @@ impl DriveElectronics {
         j: usize,
         drive: &cia402::DriveStateMachine,
         dt: f64,
-        goal: Motion,
-        now: Motion,
+        goal: JointMotion,
+        now: JointMotion,
         current: Option<&[f64]>,
-    ) -> Option<Fault> {
+    ) -> Option<DriveFault> {
         let (p, current) = self.protection.as_ref().zip(current)?;
         let winding = &p.windings[j];
         self.temperature[j] = winding.after(self.temperature[j], current[j], dt);
@@ -172,9 +169,9 @@ impl DriveElectronics {
         let burns = !(current[j].abs() <= most);
         let hot = !(self.temperature[j] <= winding.highest);
         burns
-            .then_some(Fault::OverCurrent)
-            .or(hot.then_some(Fault::OverTemperature))
-            .or(strays.then_some(Fault::FollowingError))
+            .then_some(DriveFault::OverCurrent)
+            .or(hot.then_some(DriveFault::OverTemperature))
+            .or(strays.then_some(DriveFault::FollowingError))
     }
 
     fn choose(&mut self, j: usize, angle: f64) -> Action {
@@ -219,7 +216,7 @@ mod tests {
     use crate::command_timeout::TIMEOUT_CYCLES;
     use codec::frames::Received;
     use config::{Setup, root};
-    use drives::cia402::{DISABLE_VOLTAGE, ENABLE_OPERATION, FAULT_RESET, SHUTDOWN, State};
+    use drives::cia402::{DISABLE_VOLTAGE, DriveState, ENABLE_OPERATION, FAULT_RESET, SHUTDOWN};
 
     const KNEE: usize = 5;
     const HEAD: usize = 22;
@@ -228,8 +225,8 @@ mod tests {
     /// The drives of the scene `startup`, with what they see.
     struct Rig {
         electronics: DriveElectronics,
-        goals: Vec<Motion>,
-        now: Vec<Motion>,
+        goals: Vec<JointMotion>,
+        now: Vec<JointMotion>,
         current: [f64; MAX_JOINTS],
         mode: JointMode,
         supply: bool,
@@ -244,8 +241,8 @@ mod tests {
             let mut setup = Setup::load(&root(None), "startup").unwrap();
             setup.scene.drives.as_mut().unwrap().homing = homing;
             let pose = &setup.robot.poses["hang"];
-            let goals: Vec<Motion> =
-                pose.iter().map(|&angle| Motion { angle, ..Motion::default() }).collect();
+            let goals: Vec<JointMotion> =
+                pose.iter().map(|&angle| JointMotion { angle, ..JointMotion::default() }).collect();
             let mut rig = Self {
                 electronics: DriveElectronics::new(&setup.robot, &setup.scene, pose),
                 now: goals.clone(),
@@ -277,11 +274,11 @@ mod tests {
             (0..count).for_each(|_| self.step());
         }
 
-        fn state(&self, j: usize) -> State {
+        fn state(&self, j: usize) -> DriveState {
             self.electronics.drives[j].state()
         }
 
-        fn error(&self, j: usize) -> Option<Fault> {
+        fn error(&self, j: usize) -> Option<DriveFault> {
             self.electronics.drives[j].error()
         }
     }
@@ -289,10 +286,10 @@ mod tests {
     #[test]
     fn a_joint_without_reference_is_enabled_only_to_find_it() {
         let mut rig = Rig::new(true);
-        assert_eq!((rig.state(HEAD), rig.electronics.action(HEAD)), (State::SwitchedOn, Action::Off));
+        assert_eq!((rig.state(HEAD), rig.electronics.action(HEAD)), (DriveState::SwitchedOn, Action::Off));
         assert_eq!(
             (rig.state(KNEE), rig.electronics.action(KNEE)),
-            (State::OperationEnabled, Action::Follow)
+            (DriveState::OperationEnabled, Action::Follow)
         );
         assert_eq!(rig.electronics.origin(HEAD), rig.now[HEAD].angle, "its encoder counts from zero");
         rig.mode = JointMode::Home;
@@ -317,7 +314,7 @@ mod tests {
         let mut rig = Rig::new(false);
         rig.current[KNEE] = 40.0;
         let (mut cycles, mut warned, mut out) = (0, 0, Sensors::default());
-        while rig.state(KNEE) == State::OperationEnabled {
+        while rig.state(KNEE) == DriveState::OperationEnabled {
             rig.step();
             cycles += 1;
             rig.electronics.report(&mut out);
@@ -326,13 +323,13 @@ mod tests {
         let expected = 60.0 * (4.0_f64 / 3.0).ln() / DT;
         assert!((f64::from(cycles) - expected).abs() < 5.0, "{cycles} cycles, not {expected}");
         assert!(warned > 1000 && (out.temperature[KNEE] - 120.0).abs() < 0.01);
-        assert_eq!(rig.error(KNEE), Some(Fault::OverTemperature));
+        assert_eq!(rig.error(KNEE), Some(DriveFault::OverTemperature));
         assert_eq!(rig.electronics.action(KNEE), Action::Ramp);
         rig.step();
-        assert_eq!(rig.state(KNEE), State::Fault, "no reset while it is hot");
+        assert_eq!(rig.state(KNEE), DriveState::Fault, "no reset while it is hot");
         rig.electronics.report(&mut out);
         assert_eq!(out.drive_error[KNEE], 0x4310);
-        assert_eq!(rig.state(KNEE + 1), State::OperationEnabled);
+        assert_eq!(rig.state(KNEE + 1), DriveState::OperationEnabled);
     }
 
     #[test]
@@ -340,13 +337,16 @@ mod tests {
         let mut rig = Rig::new(false);
         rig.current[KNEE] = -59.0;
         rig.step();
-        assert_eq!(rig.state(KNEE), State::OperationEnabled);
+        assert_eq!(rig.state(KNEE), DriveState::OperationEnabled);
         rig.current[KNEE] = -61.0;
         rig.step();
-        assert_eq!((rig.error(KNEE), rig.electronics.action(KNEE)), (Some(Fault::OverCurrent), Action::Off));
+        assert_eq!(
+            (rig.error(KNEE), rig.electronics.action(KNEE)),
+            (Some(DriveFault::OverCurrent), Action::Off)
+        );
         rig.current[HEAD] = f64::NAN;
         rig.step();
-        assert_eq!(rig.error(HEAD), Some(Fault::OverCurrent), "no number is no small one");
+        assert_eq!(rig.error(HEAD), Some(DriveFault::OverCurrent), "no number is no small one");
     }
 
     #[test]
@@ -355,12 +355,12 @@ mod tests {
         rig.goals[KNEE].speed = 1.0;
         rig.now[KNEE].angle -= 0.07; // 0.06 rad at rest, 0.08 rad at 1 rad/s
         rig.step();
-        assert_eq!(rig.state(KNEE), State::OperationEnabled);
+        assert_eq!(rig.state(KNEE), DriveState::OperationEnabled);
         rig.goals[KNEE].speed = 0.0;
         rig.step();
         assert_eq!(
             (rig.error(KNEE), rig.electronics.action(KNEE)),
-            (Some(Fault::FollowingError), Action::Ramp)
+            (Some(DriveFault::FollowingError), Action::Ramp)
         );
     }
 
@@ -370,23 +370,26 @@ mod tests {
         let mut rig = Rig::new(false);
         (rig.goals[KNEE].speed, rig.receives) = (1.0, false);
         rig.steps(TIMEOUT_CYCLES);
-        assert_eq!((rig.state(KNEE), rig.stopped), (State::OperationEnabled, None));
+        assert_eq!((rig.state(KNEE), rig.stopped), (DriveState::OperationEnabled, None));
         rig.step();
-        assert_eq!((rig.state(KNEE), rig.stopped), (State::FaultReaction, Some(0)));
-        assert_eq!((rig.error(KNEE), rig.electronics.action(KNEE)), (Some(Fault::Heartbeat), Action::Ramp));
+        assert_eq!((rig.state(KNEE), rig.stopped), (DriveState::FaultReaction, Some(0)));
+        assert_eq!(
+            (rig.error(KNEE), rig.electronics.action(KNEE)),
+            (Some(DriveFault::Heartbeat), Action::Ramp)
+        );
         rig.step();
-        assert_eq!((rig.state(KNEE), rig.stopped), (State::FaultReaction, None), "not yet at rest");
+        assert_eq!((rig.state(KNEE), rig.stopped), (DriveState::FaultReaction, None), "not yet at rest");
         rig.goals[KNEE].speed = 0.0;
         rig.steps(2);
-        assert_eq!((rig.state(KNEE), rig.electronics.action(KNEE)), (State::Fault, Action::Off));
+        assert_eq!((rig.state(KNEE), rig.electronics.action(KNEE)), (DriveState::Fault, Action::Off));
         rig.receives = true;
         rig.steps(100);
         let mut out = Sensors::default();
         rig.electronics.report(&mut out);
-        assert_eq!((rig.state(KNEE), out.drive_error[KNEE]), (State::Fault, 0x8130));
+        assert_eq!((rig.state(KNEE), out.drive_error[KNEE]), (DriveState::Fault, 0x8130));
         rig.word = FAULT_RESET;
         rig.step();
-        assert_eq!((rig.state(KNEE), rig.error(KNEE)), (State::SwitchOnDisabled, None));
+        assert_eq!((rig.state(KNEE), rig.error(KNEE)), (DriveState::SwitchOnDisabled, None));
     }
 
     #[test]
@@ -396,7 +399,7 @@ mod tests {
         rig.step();
         rig.receives = false;
         rig.steps(1000);
-        assert_eq!((rig.state(KNEE), rig.error(KNEE)), (State::Ready, None));
+        assert_eq!((rig.state(KNEE), rig.error(KNEE)), (DriveState::Ready, None));
     }
 
     #[test]
@@ -405,7 +408,7 @@ mod tests {
         for bit in 0..16 {
             rig.word = ENABLE_OPERATION ^ 1 << bit;
             rig.step();
-            assert_eq!(rig.state(KNEE), State::OperationEnabled, "bit {bit}");
+            assert_eq!(rig.state(KNEE), DriveState::OperationEnabled, "bit {bit}");
         }
         rig.now[KNEE].angle -= 0.2;
         rig.word = DISABLE_VOLTAGE;
@@ -414,7 +417,7 @@ mod tests {
         for bit in 0..16 {
             rig.word = DISABLE_VOLTAGE ^ 1 << bit;
             rig.step();
-            assert_eq!(rig.state(KNEE), State::Fault, "bit {bit}");
+            assert_eq!(rig.state(KNEE), DriveState::Fault, "bit {bit}");
         }
     }
 

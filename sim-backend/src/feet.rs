@@ -10,9 +10,9 @@ use std::sync::Arc;
 
 use config::Robot;
 use contact::frame::frame;
-use contact::hexahedron::{Elasticity, Volume};
-use contact::point::{self, Law, State};
-use contact::{Ground, Layer, Material, Memory, Pad, Report, Settings, TOUCHING, Twist};
+use contact::hexahedron::{LinearElasticity, Volume};
+use contact::point::{self, ContactLaw, PointState};
+use contact::{Ground, Layer, Material, Memory, Pad, SegmentMotion, Settings, SolverReport, TOUCHING};
 use environment::{Environment, Hit, Surface};
 use multibody::{Data, Frame, Model};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
@@ -22,14 +22,14 @@ use crate::depth::ContactModel;
 /// Contact elements of both feet.
 #[derive(Clone)]
 pub struct Feet {
-    law: Law,
+    law: ContactLaw,
     settings: Settings,
     segments: Vec<Segment>,
     /// True if each object of the environment carries something.
     touched: Vec<bool>,
     /// \[m\] @world Every node that can touch; kept only where there are objects.
     places: Vec<[f64; 3]>,
-    worst: Report,
+    worst: SolverReport,
 }
 
 /// A link that carries contact elements.
@@ -58,7 +58,7 @@ struct PadBlock {
     ground: Vec<Option<Ground>>,
 }
 
-const CONVERGED: Report = Report { sweeps: 0, residual: 0.0, converged: true, unique: true };
+const CONVERGED: SolverReport = SolverReport { sweeps: 0, residual: 0.0, converged: true, unique: true };
 
 /// Ground below the feet, and notes about it.
 struct Below<'a> {
@@ -141,7 +141,7 @@ impl Feet {
     }
 
     /// Worst end of the solver of the pads since the last call.
-    pub(crate) fn take_worst(&mut self) -> Report {
+    pub(crate) fn take_worst(&mut self) -> SolverReport {
         std::mem::replace(&mut self.worst, CONVERGED)
     }
 
@@ -191,7 +191,7 @@ impl Feet {
                 Elements::Points(places) => points(law, places, &pose, &twist, &mut below, d, rate),
                 Elements::Pads(blocks) => {
                     // A pad is solved in the axes of its link, where its matrices are constant.
-                    let inside = Twist {
+                    let inside = SegmentMotion {
                         linear: pose.rotation.inverse() * twist.linear,
                         angular: pose.rotation.inverse() * twist.angular,
                     };
@@ -246,7 +246,7 @@ impl Feet {
 
 /// Independent nodes of one segment: force and moment on it, world axes.
 fn points(
-    law: &Law,
+    law: &ContactLaw,
     places: &[Vector3<f64>],
     pose: &IsometryMatrix3<f64>,
     twist: &multibody::Twist,
@@ -267,9 +267,10 @@ fn points(
         } else {
             let e: Matrix3<f64> = frame(&Vector3::from(hit.normal));
             let inside = |x: &Vector3<f64>| <[f64; 3]>::from(e.tr_mul(x));
-            let law = Law { friction: below.ground.friction(hit.surface).unwrap_or(law.friction), ..*law };
+            let law =
+                ContactLaw { friction: below.ground.friction(hit.surface).unwrap_or(law.friction), ..*law };
             let answer = point::solve(&law, inside(&d), inside(&w), hit.gap);
-            if let (Surface::Object(i), true) = (hit.surface, answer.state != State::Open) {
+            if let (Surface::Object(i), true) = (hit.surface, answer.state != PointState::Open) {
                 below.touched[i] = true;
             }
             (e * Vector3::from(answer.force), e * Vector3::from(answer.rate))
@@ -361,16 +362,21 @@ fn layer(robot: &Robot) -> Result<Arc<Layer>, Box<dyn Error>> {
     let material = Material {
         size: p.size,
         bricks: p.bricks,
-        elasticity: Elasticity { modulus: p.modulus, poisson: p.poisson },
+        elasticity: LinearElasticity { modulus: p.modulus, poisson: p.poisson },
         volume: Volume::Full,
         damping_time: robot.contact.damping_time,
     };
     Ok(Arc::new(Layer::new(&material)?))
 }
 
-fn law(robot: &Robot) -> Law {
+fn law(robot: &Robot) -> ContactLaw {
     let c = &robot.contact;
     let stiffness = [c.tangential_stiffness, c.tangential_stiffness, c.normal_stiffness];
     // Penetration of a finite step is taken back within a few milliseconds, much faster than the layer relaxes.
-    Law { stiffness, damping: stiffness.map(|k| k * c.damping_time), friction: c.friction, recovery: 200.0 }
+    ContactLaw {
+        stiffness,
+        damping: stiffness.map(|k| k * c.damping_time),
+        friction: c.friction,
+        recovery: 200.0,
+    }
 }

@@ -68,7 +68,7 @@ impl GroundContact {
     }
 
     /// Moves the objects of the environment to `time` \[s\], as far as nothing touches them; returns what happened.
-    pub(crate) fn advance(&mut self, time: f64) -> &[environment::Event] {
+    pub(crate) fn advance(&mut self, time: f64) -> &[environment::ObjectEvent] {
         if !self.environment.objects().is_empty() {
             self.forget();
         }

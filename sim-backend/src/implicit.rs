@@ -13,10 +13,10 @@
 //! | C | level of dry friction and brake | N m |
 //! | A, B | speed of an elastic rotor at the end, th'+ = A + B q'+ | rad/s, 1 |
 
-use drives::{Cascade, Elasticity, Law, NoLoadTorque, Side, Sliding};
+use drives::{Cascade, ControlLaw, Elasticity, GearSide, NoLoadTorque, Sliding};
 use multibody::{Data, Model};
 
-use crate::local_control::{ControllerOutput, LocalController};
+use crate::local_control::{ControllerOutput, MotorController};
 use crate::shaft::{Shaft, TrainInputs};
 
 /// \[1\] Resistance of a sticking shaft, in its inertia per step.
@@ -72,7 +72,7 @@ impl ShaftStep {
         &mut self,
         h: f64,
         shaft: &Shaft,
-        controller: &LocalController,
+        controller: &MotorController,
         inputs: &TrainInputs<'_>,
     ) -> Result<(), NoLoadTorque> {
         let on = inputs.switches.has_torque(shaft.motor);
@@ -195,7 +195,7 @@ impl ShaftStep {
 }
 
 /// Torque of the motor: (2.57) and the control laws, implicit.
-fn motor_line(h: f64, shaft: &Shaft, controller: &LocalController, current: f64) -> TorqueLine {
+fn motor_line(h: f64, shaft: &Shaft, controller: &MotorController, current: f64) -> TorqueLine {
     let motor = &shaft.drive.motor;
     let constant = motor.torque_constant;
     // A voltage that does not change: the current of the end by (2.57), with the motor's own damping.
@@ -205,7 +205,7 @@ fn motor_line(h: f64, shaft: &Shaft, controller: &LocalController, current: f64)
         TorqueLine { t: constant * a * current + per * voltage, b: per * constant, link: 0.0 }
     };
     let voltage = controller.voltage(shaft, current);
-    let Law::Cascade(cascade) = shaft.drive.control.law else { return at_voltage(voltage) };
+    let ControlLaw::Cascade(cascade) = shaft.drive.control.law else { return at_voltage(voltage) };
     // At its limit the voltage no longer answers to the current, and the loops are open.
     if voltage.abs() >= shaft.drive.voltage_limit {
         return at_voltage(voltage);
@@ -229,7 +229,7 @@ fn motor_line(h: f64, shaft: &Shaft, controller: &LocalController, current: f64)
 fn lost_lag(h: f64, shaft: &Shaft, cascade: &Cascade) -> [f64; 2] {
     let mut seen = [0.0; 2];
     // Behind a stiff gear both sides are the motor's.
-    let mut add = |side: Side, x: f64| seen[if shaft.elastic.is_some() { side as usize } else { 1 }] += x;
+    let mut add = |side: GearSide, x: f64| seen[if shaft.elastic.is_some() { side as usize } else { 1 }] += x;
     add(cascade.feedback.position(), h * cascade.position_gain);
     add(cascade.feedback.speed(), 1.0);
     seen

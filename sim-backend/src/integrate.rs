@@ -1,12 +1,12 @@
 //! Time steps: explicit Euler and classical Runge-Kutta on a flat state vector, semi-implicit Euler by the plant itself,
 //! and the adaptive method of [`crate::stiff`].
 
-use config::scene::Integrator;
+use config::method::Integrator;
 
-use crate::drive::Drive;
+use crate::drive::JointCubic;
 use crate::inputs::PlantInputs;
 use crate::plant::Plant;
-use crate::stiff::{GaveUp, Limits, Stiff};
+use crate::stiff::{GaveUp, Stiff, StiffLimits};
 
 /// Tolerance of the adaptive method, unless it is given another one.
 const TOLERANCE: f64 = 1e-6;
@@ -28,14 +28,14 @@ impl Stepper {
             integrator,
             k: std::array::from_fn(|_| vec![0.0; n]),
             x: vec![0.0; n],
-            stiff: Stiff::new(Limits::of_tolerance(TOLERANCE)),
+            stiff: Stiff::new(StiffLimits::of_tolerance(TOLERANCE)),
             gave_up: None,
         }
     }
 
     /// The same with a tolerance of the adaptive method.
     pub fn with_tolerance(self, tolerance: f64) -> Self {
-        Self { stiff: Stiff::new(Limits::of_tolerance(tolerance)), ..self }
+        Self { stiff: Stiff::new(StiffLimits::of_tolerance(tolerance)), ..self }
     }
 
     /// The last time the adaptive method gave up since the last call; a semi-implicit step went on from there.
@@ -50,7 +50,7 @@ impl Stepper {
         t: f64,
         h: f64,
         state: &mut [f64],
-        drives: &[Drive],
+        drives: &[JointCubic],
         inputs: &PlantInputs,
     ) {
         let mut rate = |t: f64, x: &[f64], dx: &mut [f64]| plant.rate(t, x, drives, inputs, dx);

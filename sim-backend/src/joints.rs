@@ -6,7 +6,7 @@ use messages::{BusFrames, Sensors};
 
 use crate::command_timeout::{CommandTimeout, Follows};
 use crate::depth::JointModel;
-use crate::drive::{Drive, Motion};
+use crate::drive::{JointCubic, JointMotion};
 use crate::drive_electronics::{Action, DriveElectronics, ReceivedCommand};
 use crate::inputs::DriveSwitches;
 
@@ -21,42 +21,43 @@ pub(crate) struct SimulatedJoints {
     /// \[rad\] Excess of each joint's encoders.
     offset: Vec<f64>,
     /// References in this cycle, and where they end.
-    references: Vec<Drive>,
-    goals: Vec<Motion>,
+    references: Vec<JointCubic>,
+    goals: Vec<JointMotion>,
     /// Motions of the joints themselves.
-    motions: Vec<Motion>,
+    motions: Vec<JointMotion>,
 }
 
 impl SimulatedJoints {
     /// Joints of a robot at rest in the start pose of a scene.
     pub(crate) fn new(robot: &Robot, scene: &Scene) -> Self {
         let pose = &robot.poses[&scene.start_pose];
-        let resting = |&angle: &f64| Motion { angle, ..Motion::default() };
-        let offset = |joint: &config::robot::Joint| scene.unknown.joint_offset.of(&joint.name).unwrap_or(0.0);
+        let resting = |&angle: &f64| JointMotion { angle, ..JointMotion::default() };
+        let offset =
+            |joint: &config::robot::Joint| scene.plant_mismatch.joint_offset.of(&joint.name).unwrap_or(0.0);
         Self {
             electronics: DriveElectronics::new(robot, scene, pose),
             timeout: CommandTimeout::new(&robot.layout),
             command: DriveCommand::default(),
             followed: 0,
             offset: robot.joints.iter().map(offset).collect(),
-            references: pose.iter().map(|&q| Drive::resting(q)).collect(),
+            references: pose.iter().map(|&q| JointCubic::resting(q)).collect(),
             goals: pose.iter().map(resting).collect(),
             motions: pose.iter().map(resting).collect(),
         }
     }
 
     /// References of this cycle.
-    pub(crate) fn references(&self) -> &[Drive] {
+    pub(crate) fn references(&self) -> &[JointCubic] {
         &self.references
     }
 
     /// Motions of the joints.
-    pub(crate) fn motions(&self) -> &[Motion] {
+    pub(crate) fn motions(&self) -> &[JointMotion] {
         &self.motions
     }
 
     /// Ends of the references, and the motions of the joints to be written.
-    pub(crate) fn goals_and_motions(&mut self) -> (&[Motion], &mut [Motion]) {
+    pub(crate) fn goals_and_motions(&mut self) -> (&[JointMotion], &mut [JointMotion]) {
         (&self.goals, &mut self.motions)
     }
 
@@ -101,16 +102,16 @@ impl SimulatedJoints {
             let follows = self.timeout.follows(j, angle - from.angle, joint.speed_limit * dt);
             self.references[j] = match (action, follows) {
                 // A limp joint with a motor moves as it will; one that only follows comes to rest and stays.
-                (Action::Off, _) if model == JointModel::Motors => Drive::resting(self.motions[j].angle),
-                (Action::Off | Action::Ramp, _) => Drive::brake(joint, from, dt),
+                (Action::Off, _) if model == JointModel::Motors => JointCubic::resting(self.motions[j].angle),
+                (Action::Off | Action::Ramp, _) => JointCubic::brake(joint, from, dt),
                 (Action::Search(speed), _) => {
                     let change = joint.braking * dt;
                     let speed = from.speed + (speed - from.speed).clamp(-change, change);
-                    Drive::follow(from, from.angle + 0.5 * (from.speed + speed) * dt, speed, dt)
+                    JointCubic::follow(from, from.angle + 0.5 * (from.speed + speed) * dt, speed, dt)
                 }
-                (Action::Follow, Follows::Target) => Drive::follow(from, angle, targets.speed[j], dt),
+                (Action::Follow, Follows::Target) => JointCubic::follow(from, angle, targets.speed[j], dt),
                 (Action::Follow, Follows::LastSpeed) => {
-                    Drive::follow(from, from.angle + from.speed * dt, from.speed, dt)
+                    JointCubic::follow(from, from.angle + from.speed * dt, from.speed, dt)
                 }
             };
             // Brakes close some time after the torque has gone, and are open until a drive has had torque once.
@@ -133,7 +134,7 @@ impl SimulatedJoints {
     pub(crate) fn come_to_rest(&mut self) {
         for (goal, reference) in self.goals.iter_mut().zip(&mut self.references) {
             goal.speed = 0.0;
-            *reference = Drive::resting(goal.angle);
+            *reference = JointCubic::resting(goal.angle);
         }
     }
 }

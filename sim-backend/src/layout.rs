@@ -19,7 +19,7 @@ use nalgebra::UnitQuaternion;
 
 /// Components of a model and their states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Layout {
+pub struct StateLayout {
     /// Joints with dynamics of their own.
     pub joints: usize,
     /// Elastic gears.
@@ -43,7 +43,7 @@ pub struct StateCounts {
     pub odes: usize,
 }
 
-impl Layout {
+impl StateLayout {
     /// Length of the state vector.
     pub fn len(&self) -> usize {
         self.current().end
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn ranges_follow_each_other_without_gaps() {
-        let l = Layout { joints: 24, elastic: 16, nodes: 16, motors: 24 };
+        let l = StateLayout { joints: 24, elastic: 16, nodes: 16, motors: 24 };
         let ranges = [l.pose(), l.speed(), l.rotor_angle(), l.rotor_speed(), l.layer(), l.current()];
         assert!(ranges.windows(2).all(|w| w[0].end == w[1].start));
         assert_eq!(l.counts().odes + 1, l.len());
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn states_have_names() {
-        let l = Layout { joints: 24, elastic: 16, nodes: 16, motors: 24 };
+        let l = StateLayout { joints: 24, elastic: 16, nodes: 16, motors: 24 };
         for (state, name) in [
             (2, "position z of the torso"),
             (6, "orientation w of the torso"),

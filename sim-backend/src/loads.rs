@@ -4,8 +4,8 @@ use config::Scene;
 use messages::command::{LowerCommand, PushCommand};
 use nalgebra::Vector3;
 
-use crate::crane::Crane;
-use crate::drive::Drive;
+use crate::crane::CraneRope;
+use crate::drive::JointCubic;
 use crate::external_forces::ExternalForces;
 use crate::plant::{Plant, PlantInputs};
 
@@ -16,12 +16,12 @@ pub(crate) struct Loads {
     scripted: Vec<(f64, PushCommand)>,
     /// The newest push by command, and when it ends \[s\].
     commanded: Option<(PushCommand, f64)>,
-    crane: Option<Crane>,
+    crane: Option<CraneRope>,
 }
 
 impl Loads {
     /// Loads of a scene, whose robot is in this state at rest.
-    pub(crate) fn new(scene: &Scene, plant: &mut Plant, state: &[f64], references: &[Drive]) -> Self {
+    pub(crate) fn new(scene: &Scene, plant: &mut Plant, state: &[f64], references: &[JointCubic]) -> Self {
         Self {
             scripted: scene.pushes.clone(),
             commanded: None,
@@ -60,10 +60,15 @@ impl Loads {
 }
 
 /// The crane of a scene with its hook above the centre of gravity, which hangs in balance.
-fn hooked(crane: &config::crane::Crane, plant: &mut Plant, state: &[f64], references: &[Drive]) -> Crane {
+fn hooked(
+    crane: &config::crane::Crane,
+    plant: &mut Plant,
+    state: &[f64],
+    references: &[JointCubic],
+) -> CraneRope {
     let snapshot = plant.snapshot(0.0, state, references, &PlantInputs::default());
     let torso = Vector3::from_column_slice(&state[..3]);
     let mut hook = snapshot.com - torso;
     hook.z = crane.hook;
-    Crane::new(crane, hook, torso + hook, plant.model().mass())
+    CraneRope::new(crane, hook, torso + hook, plant.model().mass())
 }

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Between two cycles of the bus the references are the cubic through the targets of both, angle and speed
-//! ([`crate::drive::Drive`]). Controllers that count and look up instead of measuring and computing: `resolution.rs`.
+//! ([`crate::drive::JointCubic`]). Controllers that count and look up instead of measuring and computing: `resolution.rs`.
 //!
 //! a, b: sides of an elastic gear that are measured; behind a rigid one both are the same. A law is computed at every
 //! instant, or once per bus cycle with the references of that instant, and then held.
@@ -19,7 +19,7 @@
 //! | K_x, K_v, w_c, C, D | gains, see [`drives::JointControl`]; `K_v = w_v J/k_M` | |
 
 use config::robot::{Drive as DriveData, Joint};
-use drives::{JointControl, Law, OutOfDomain, Sampled, Sampling, Side};
+use drives::{ControlLaw, GearSide, JointControl, OutOfDomain, Sampled, Sampling};
 
 use crate::resolution::{Angles, Coarse};
 use crate::shaft::{Shaft, TrainInputs};
@@ -57,7 +57,7 @@ struct Sampler {
 
 /// Controller of one motor.
 #[derive(Clone)]
-pub(crate) struct LocalController {
+pub(crate) struct MotorController {
     /// K_v \[A s/rad\].
     pub(crate) speed_gain: f64,
     /// Speed that the position loop of a cascade asks for, and its distance from the speed seen \[rad/s\].
@@ -74,14 +74,14 @@ impl Sampler {
     fn new(control: &JointControl) -> Self {
         let output = match (control.sampling, control.law) {
             (Sampling::Continuous, _) => ControllerOutput::Continuous,
-            (Sampling::Cycle(_), Law::Cascade(_)) => ControllerOutput::Current(0.0),
-            (Sampling::Cycle(_), Law::Voltage(_)) => ControllerOutput::Voltage(0.0),
+            (Sampling::Cycle(_), ControlLaw::Cascade(_)) => ControllerOutput::Current(0.0),
+            (Sampling::Cycle(_), ControlLaw::Voltage(_)) => ControllerOutput::Voltage(0.0),
         };
         Self { output, next: output, last: None }
     }
 }
 
-impl LocalController {
+impl MotorController {
     /// Controller of a drive that moves some of `joints`; its speed loop is tuned later.
     ///
     /// # Errors
@@ -104,14 +104,14 @@ impl LocalController {
     pub(crate) fn load(&mut self, shaft: &Shaft, inputs: &TrainInputs<'_>) -> (f64, Result<(), OutOfDomain>) {
         let looked = self.look(shaft, inputs);
         let seen = self.read(shaft, inputs);
-        if let Law::Cascade(cascade) = shaft.drive.control.law {
+        if let ControlLaw::Cascade(cascade) = shaft.drive.control.law {
             let feedback = cascade.feedback;
             self.wanted = cascade.speed_wanted(seen.error[feedback.position() as usize], seen.wanted);
             self.lag = self.wanted - seen.speed[feedback.speed() as usize];
         }
         // Without supply nobody computes.
         let looked = if inputs.switches.powered { looked } else { Ok(()) };
-        (seen.speed[Side::Motor as usize], looked)
+        (seen.speed[GearSide::Motor as usize], looked)
     }
 
     /// Gives the joints' angles to a controller with coarse numbers.
@@ -121,23 +121,23 @@ impl LocalController {
             |of: &dyn Fn(usize) -> f64| [0, 1, 2].map(|i| if i < shaft.coupled { of(i) } else { 0.0 });
         let at = Angles {
             reference: angles(&|i| inputs.reference[shaft.joints[i]].angle),
-            measured: [Side::Link, Side::Motor].map(|side| angles(&|i| shaft.at(side, i, inputs).0)),
+            measured: [GearSide::Link, GearSide::Motor].map(|side| angles(&|i| shaft.at(side, i, inputs).0)),
         };
         coarse.look(&shaft.drive.transmission, &at)
     }
 
-    /// Measures and computes once, at the state of [`LocalController::load`]; `cycle` \[s\] since the last time.
+    /// Measures and computes once, at the state of [`MotorController::load`]; `cycle` \[s\] since the last time.
     pub(crate) fn sample(&mut self, shaft: &Shaft, cycle: f64, inputs: &TrainInputs<'_>) {
         let Sampling::Cycle(sampled) = shaft.drive.control.sampling else { return };
         let seen = self.read_sample(shaft, cycle, inputs, sampled);
-        let motor = Side::Motor as usize;
+        let motor = GearSide::Motor as usize;
         let output = match shaft.drive.control.law {
-            Law::Cascade(cascade) => {
+            ControlLaw::Cascade(cascade) => {
                 let feedback = cascade.feedback;
                 let wanted = cascade.speed_wanted(seen.error[feedback.position() as usize], seen.wanted);
                 ControllerOutput::Current(self.speed_gain * (wanted - seen.speed[feedback.speed() as usize]))
             }
-            Law::Voltage(law) => {
+            ControlLaw::Voltage(law) => {
                 let motor_seen = (seen.error[motor], seen.speed[motor]);
                 ControllerOutput::Voltage(law.voltage(
                     &shaft.drive.motor,
@@ -161,7 +161,7 @@ impl LocalController {
         sampled: Sampled,
     ) -> ShaftReadings {
         let mut seen = self.read(shaft, inputs);
-        let angles = [Side::Link, Side::Motor].map(|side| {
+        let angles = [GearSide::Link, GearSide::Motor].map(|side| {
             let place = |i: usize| if i < shaft.coupled { shaft.at(side, i, inputs).0 } else { 0.0 };
             [place(0), place(1), place(2)]
         });
@@ -174,7 +174,7 @@ impl LocalController {
             }
             // Who counts differentiates his counts, not the angles behind them.
             if let Some(coarse) = &mut self.coarse {
-                seen.speed[Side::Motor as usize] = coarse.speed(cycle);
+                seen.speed[GearSide::Motor as usize] = coarse.speed(cycle);
             }
         }
         seen
@@ -186,7 +186,7 @@ impl LocalController {
         for i in 0..shaft.coupled {
             let (c, reference) = (shaft.gear.ratio[i], &inputs.reference[shaft.joints[i]]);
             seen.wanted += c * reference.speed;
-            for side in [Side::Link, Side::Motor] {
+            for side in [GearSide::Link, GearSide::Motor] {
                 let (angle, speed) = shaft.at(side, i, inputs);
                 seen.error[side as usize] += c * (reference.angle - angle);
                 seen.speed[side as usize] += c * speed;
@@ -214,11 +214,11 @@ impl LocalController {
     pub(crate) fn voltage(&self, shaft: &Shaft, current: f64) -> f64 {
         let voltage = match (self.sampler.output, shaft.drive.control.law) {
             (ControllerOutput::Voltage(held), _) => held,
-            (_, Law::Cascade(c)) => {
+            (_, ControlLaw::Cascade(c)) => {
                 c.voltage(&shaft.drive.motor, self.wanted_current(shaft), current, shaft.speed)
             }
             // Never: a voltage law is sampled, its output a voltage.
-            (_, Law::Voltage(_)) => 0.0,
+            (_, ControlLaw::Voltage(_)) => 0.0,
         };
         voltage.clamp(-shaft.drive.voltage_limit, shaft.drive.voltage_limit)
     }

@@ -11,13 +11,13 @@ use multibody::{Data, Frame, Model};
 use nalgebra::{Vector3, Vector6};
 
 use crate::depth::{Depth, JointModel};
-use crate::drive::{Drive, Motion};
+use crate::drive::{JointCubic, JointMotion};
 use crate::external_forces::at_base;
 use crate::ground::GroundContact;
 use crate::implicit::ShaftStep;
 pub use crate::inputs::PlantInputs;
 pub use crate::layout::orientation;
-use crate::layout::{Layout, quaternion_rate};
+use crate::layout::{StateLayout, quaternion_rate};
 use crate::sensors::carried;
 use crate::shaft::TrainInputs;
 use crate::train::{Train, TrainFault, rotors};
@@ -31,7 +31,7 @@ pub struct Plant {
     model: Model,
     data: Data,
     depth: Depth,
-    layout: Layout,
+    layout: StateLayout,
     ground: GroundContact,
     joints: Joints,
     /// \[s\] Length of the implicit steps by which the state moves; none if it moves by [`Plant::rate`].
@@ -55,7 +55,7 @@ struct Scratch {
     v: Vec<f64>,
     joint_acceleration: Vec<f64>,
     /// References of the joints.
-    reference: Vec<Motion>,
+    reference: Vec<JointMotion>,
     force: Vec<f64>,
     acceleration: Vec<f64>,
     bias: Vec<f64>,
@@ -116,9 +116,9 @@ impl Plant {
         let (joints, layout) = match train {
             Some(train) if driven => {
                 let (elastic, motors) = (train.elastic(), train.motors());
-                (Joints::Driven(train), Layout { joints: model.n(), elastic, nodes, motors })
+                (Joints::Driven(train), StateLayout { joints: model.n(), elastic, nodes, motors })
             }
-            train => (Joints::Following(train), Layout { joints: 0, elastic: 0, nodes, motors: 0 }),
+            train => (Joints::Following(train), StateLayout { joints: 0, elastic: 0, nodes, motors: 0 }),
         };
         let scratch = Scratch::new(&model, &layout);
         let implicit = driven.then_some(FIRST_STEP);
@@ -131,7 +131,7 @@ impl Plant {
     }
 
     /// Places of the states.
-    pub fn layout(&self) -> &Layout {
+    pub fn layout(&self) -> &StateLayout {
         &self.layout
     }
 
@@ -155,7 +155,7 @@ impl Plant {
         self.ground.forget();
         let Self { ground: GroundContact { feet, .. }, .. } = self;
         let depth = match height {
-            None => feet.deflection(self.model.mass() * -multibody::GRAVITY.z),
+            None => feet.deflection(self.model.mass() * multibody::GRAVITY_ACCELERATION),
             Some(height) => -height,
         };
         x[2] = -feet.lowest(&self.model, &self.data) - depth;
@@ -170,19 +170,19 @@ impl Plant {
     }
 
     /// Motions of the joints in a state; of joints that follow: those of their references.
-    pub fn joints(&self, x: &[f64], reference: &[Motion], out: &mut [Motion]) {
+    pub fn joints(&self, x: &[f64], reference: &[JointMotion], out: &mut [JointMotion]) {
         if let Joints::Following(_) = self.joints {
             return out.copy_from_slice(reference);
         }
         let l = &self.layout;
         let (q, v) = (&x[l.pose()][7..], &x[l.speed()][6..]);
         for (j, m) in out.iter_mut().enumerate() {
-            *m = Motion { angle: q[j], speed: v[j], acceleration: self.scratch.acceleration[6 + j] };
+            *m = JointMotion { angle: q[j], speed: v[j], acceleration: self.scratch.acceleration[6 + j] };
         }
     }
 
     /// The sampled controllers measure, at the beginning of a cycle \[s\] in state `x`, and compute what they hold in it.
-    pub fn sample(&mut self, cycle: f64, x: &[f64], drives: &[Drive], inputs: &PlantInputs) {
+    pub fn sample(&mut self, cycle: f64, x: &[f64], drives: &[JointCubic], inputs: &PlantInputs) {
         let Joints::Driven(train) = &self.joints else { return };
         if train.is_sampled() {
             self.load(0.0, x, drives);
@@ -194,7 +194,7 @@ impl Plant {
     }
 
     /// The derivative of `x` with the references of `drives`, `tau` \[s\] into the cycle.
-    pub fn rate(&mut self, tau: f64, x: &[f64], drives: &[Drive], inputs: &PlantInputs, dx: &mut [f64]) {
+    pub fn rate(&mut self, tau: f64, x: &[f64], drives: &[JointCubic], inputs: &PlantInputs, dx: &mut [f64]) {
         self.implicit = None;
         let l = self.layout;
         self.load(tau, x, drives);
@@ -227,7 +227,14 @@ impl Plant {
 
     /// One semi-implicit step of `h` \[s\]: contact forces of its begin; motors, controllers, springs and dry friction of
     /// its end; then positions with the speeds of the end. First order.
-    pub fn implicit_step(&mut self, tau: f64, h: f64, x: &mut [f64], drives: &[Drive], inputs: &PlantInputs) {
+    pub fn implicit_step(
+        &mut self,
+        tau: f64,
+        h: f64,
+        x: &mut [f64],
+        drives: &[JointCubic],
+        inputs: &PlantInputs,
+    ) {
         let l = self.layout;
         self.implicit = Some(h);
         let reference = match self.joints {
@@ -260,7 +267,7 @@ impl Plant {
     }
 
     /// Forces and accelerations in a state, as sensors and logs need them.
-    pub fn snapshot(&mut self, tau: f64, x: &[f64], drives: &[Drive], inputs: &PlantInputs) -> Snapshot {
+    pub fn snapshot(&mut self, tau: f64, x: &[f64], drives: &[JointCubic], inputs: &PlantInputs) -> Snapshot {
         // By the same equations as the steps: implicit ones have no rate at an instant.
         match self.implicit {
             None => {
@@ -334,12 +341,12 @@ impl Plant {
     }
 
     /// Moves the objects of the environment to `time` \[s\], as far as nothing touches them; returns what happened.
-    pub fn advance(&mut self, time: f64) -> &[environment::Event] {
+    pub fn advance(&mut self, time: f64) -> &[environment::ObjectEvent] {
         self.ground.advance(time)
     }
 
     /// Worst end of the solver of the pads since the last call.
-    pub(crate) fn take_contact_report(&mut self) -> contact::Report {
+    pub(crate) fn take_contact_report(&mut self) -> contact::SolverReport {
         self.ground.feet.take_worst()
     }
 
@@ -379,7 +386,7 @@ impl Plant {
     }
 
     /// The acceleration that the next implicit step would find, and nothing moves.
-    fn try_acceleration(&mut self, tau: f64, h: f64, x: &[f64], drives: &[Drive], inputs: &PlantInputs) {
+    fn try_acceleration(&mut self, tau: f64, h: f64, x: &[f64], drives: &[JointCubic], inputs: &PlantInputs) {
         self.load(tau, x, drives);
         if let Joints::Driven(train) = &self.joints {
             self.scratch.steps.clear();
@@ -407,7 +414,7 @@ impl Plant {
         acceleration[6..].copy_from_slice(joint_acceleration);
     }
 
-    fn load(&mut self, tau: f64, x: &[f64], drives: &[Drive]) {
+    fn load(&mut self, tau: f64, x: &[f64], drives: &[JointCubic]) {
         let l = &self.layout;
         let Scratch { q, v, joint_acceleration, reference, .. } = &mut self.scratch;
         for (r, drive) in reference.iter_mut().zip(drives) {
@@ -425,12 +432,12 @@ impl Plant {
 }
 
 impl Scratch {
-    fn new(model: &Model, layout: &Layout) -> Self {
+    fn new(model: &Model, layout: &StateLayout) -> Self {
         Self {
             q: model.neutral(),
             v: vec![0.0; model.nv()],
             joint_acceleration: vec![0.0; model.n()],
-            reference: vec![Motion::default(); model.n()],
+            reference: vec![JointMotion::default(); model.n()],
             force: vec![0.0; model.nv()],
             acceleration: vec![0.0; model.nv()],
             bias: vec![0.0; model.nv()],
@@ -456,9 +463,9 @@ fn external_force(
 }
 
 fn train_inputs<'a>(
-    l: &Layout,
+    l: &StateLayout,
     x: &'a [f64],
-    reference: &'a [Motion],
+    reference: &'a [JointMotion],
     inputs: &PlantInputs,
 ) -> TrainInputs<'a> {
     TrainInputs {

@@ -12,7 +12,7 @@
 use std::f64::consts::TAU;
 
 use config::robot::{Drive, Joint};
-use drives::{FixedTable, Law, OutOfDomain, Resolution, Side, Transmission};
+use drives::{ControlLaw, FixedTable, GearSide, OutOfDomain, Resolution, Transmission};
 
 /// \[rad\] How far a table goes beyond the ranges of the joints: targets end there, and what follows them may overshoot.
 const MARGIN: f64 = 0.02;
@@ -54,8 +54,8 @@ impl Coarse {
         let linkage = !matches!(drive.transmission, Transmission::Harmonic { .. });
         let table = resolution.table_points.filter(|_| linkage).map(|n| table(drive, joints, n as usize));
         let link = match drive.control.law {
-            Law::Cascade(cascade) => cascade.feedback.position() == Side::Link,
-            Law::Voltage(_) => false,
+            ControlLaw::Cascade(cascade) => cascade.feedback.position() == GearSide::Link,
+            ControlLaw::Voltage(_) => false,
         };
         Ok(Some(Self {
             table: table.transpose()?,
@@ -72,8 +72,8 @@ impl Coarse {
         let by_linkage = |q: [f64; 3]| transmission.at(q, [0.0; 3]).map(|gear| (gear.angle, gear.ratio));
         let find = |q: [f64; 3]| self.table.as_ref().map_or_else(|| by_linkage(q), |t| t.at_angles(q));
         let wanted = find(at.reference)?;
-        let link = if self.link { find(at.measured[Side::Link as usize])?.0 } else { 0.0 };
-        let motor = by_linkage(at.measured[Side::Motor as usize])?.0;
+        let link = if self.link { find(at.measured[GearSide::Link as usize])?.0 } else { 0.0 };
+        let motor = by_linkage(at.measured[GearSide::Motor as usize])?.0;
         self.wanted = wanted;
         self.angle = [link, self.counted(motor)];
         Ok(())
@@ -91,7 +91,7 @@ impl Coarse {
 
     /// \[rad/s\] Speed of the motor from its counts of two samples, `cycle` \[s\] apart; 0 at the first one.
     pub(crate) fn speed(&mut self, cycle: f64) -> f64 {
-        let now = self.angle[Side::Motor as usize];
+        let now = self.angle[GearSide::Motor as usize];
         (now - self.last.replace(now).unwrap_or(now)) / cycle
     }
 

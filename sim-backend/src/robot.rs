@@ -8,7 +8,7 @@
 
 use std::error::Error;
 
-use config::bus_fault::{BusFault, Way};
+use config::bus_fault::{BusFault, FrameDirection};
 use config::{Robot, Scene};
 use fieldbus::Injector;
 use messages::command::{LowerCommand, PushCommand};
@@ -124,7 +124,7 @@ impl SimBackend {
     }
 
     /// Places of its numbers.
-    pub fn layout(&self) -> &crate::layout::Layout {
+    pub fn layout(&self) -> &crate::layout::StateLayout {
         self.body.plant().layout()
     }
 
@@ -187,10 +187,10 @@ impl SimBackend {
         if let Some(frames) = new.filter(|_| reset) {
             injector.reset(frames.header.tick);
         }
-        let passed = new.map(|frames| injector.pass(Way::ToDrives, frames));
+        let passed = new.map(|frames| injector.pass(FrameDirection::ToDrives, frames));
         self.advance(passed, powered);
         let answer = self.instruments.frames_mut();
-        *answer = *injector.pass(Way::FromDrives, answer);
+        *answer = *injector.pass(FrameDirection::FromDrives, answer);
         self.injector = Some(injector);
         (self.instruments.frames(), self.instruments.state())
     }

@@ -6,12 +6,12 @@
 use std::error::Error;
 use std::time::Duration;
 
-use codec::layout::Layout;
+use codec::layout::FrameLayout;
 use daemon::Daemon;
 use messages::BusFrames;
 use realtime::clock;
 use sercos::packing::{Interfaces, Packing, stations, sync_counter};
-use sercos::{Far, Phase, Slave};
+use sercos::{CommunicationPhase, Far, Slave};
 
 use crate::far_end::FarEnd;
 
@@ -23,7 +23,7 @@ const GRACE: u64 = clock::SECOND / 20;
 /// Slaves in a ring or a line.
 pub(crate) struct SercosEnd {
     far: Far,
-    layout: Layout,
+    layout: FrameLayout,
     commands: Packing,
     feedback: Packing,
     /// Commands of the cycle that is coming in.
@@ -76,7 +76,7 @@ impl SercosEnd {
     fn gather(&mut self) -> bool {
         self.far.pass();
         for (node, slave) in self.far.chain_mut().slaves_mut().iter_mut().enumerate() {
-            let operating = slave.phase() == Some(Phase::Cp4);
+            let operating = slave.phase() == Some(CommunicationPhase::Cp4);
             let Some(data) = slave.take_command().filter(|_| operating) else { continue };
             if std::mem::replace(&mut self.have[node], true) {
                 continue; // of the next cycle already: the robot was too slow for this one

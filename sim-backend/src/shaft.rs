@@ -1,10 +1,10 @@
 //! Shaft of one motor with its gear: which joints it moves, at which ratio, and what holds it.
 
 use config::robot::Drive as DriveData;
-use drives::{Elasticity, Gear, Side, Transmission};
+use drives::{Elasticity, Gear, GearSide, Transmission};
 use multibody::Data;
 
-use crate::drive::Motion;
+use crate::drive::JointMotion;
 use crate::inputs::DriveSwitches;
 
 /// Inputs of the drive trains: joints, rotors, currents of the state, references of the joints.
@@ -16,7 +16,7 @@ pub struct TrainInputs<'a> {
     /// \[A\]
     pub current: &'a [f64],
     /// References of the joints.
-    pub reference: &'a [Motion],
+    pub reference: &'a [JointMotion],
     /// Drives with and without torque.
     pub switches: DriveSwitches,
 }
@@ -62,8 +62,8 @@ impl Shaft {
     }
 
     /// Angle and speed of the i-th joint, or of the rotor that moves it, in units of the joint.
-    pub(crate) fn at(&self, side: Side, i: usize, inputs: &TrainInputs<'_>) -> (f64, f64) {
-        match self.elastic.as_ref().filter(|_| side == Side::Motor) {
+    pub(crate) fn at(&self, side: GearSide, i: usize, inputs: &TrainInputs<'_>) -> (f64, f64) {
+        match self.elastic.as_ref().filter(|_| side == GearSide::Motor) {
             Some((e, _)) => (inputs.rotor.0[*e], inputs.rotor.1[*e]),
             None => (inputs.joint.0[self.joints[i]], inputs.joint.1[self.joints[i]]),
         }

@@ -7,13 +7,13 @@
 
 use std::error::Error;
 
-use config::scene::Integrator;
+use config::method::Integrator;
 use config::{Robot, Scene};
 use environment::Environment;
 use faer::{Mat, Par, set_global_parallelism};
 use nalgebra::Complex;
 
-use crate::drive::Drive;
+use crate::drive::JointCubic;
 use crate::plant::{Plant, PlantInputs};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -101,7 +101,7 @@ pub fn step_limit(
         Integrator::SemiImplicit | Integrator::Bdf => return Ok(None),
     };
     let mut plant = Plant::new(robot, Environment::flat(), if depth > 3 { depth - 2 } else { depth }, pose)?;
-    let drives: Vec<Drive> = pose.iter().map(|&q| Drive::resting(q)).collect();
+    let drives: Vec<JointCubic> = pose.iter().map(|&q| JointCubic::resting(q)).collect();
     let (standing, hanging) = (plant.standing(pose), plant.hanging(pose, IN_THE_AIR));
     let l = *plant.layout();
     let moving = |mut x: Vec<f64>| {

@@ -25,7 +25,7 @@ pub type Rate<'a> = dyn FnMut(f64, &[f64], &mut [f64]) + 'a;
 
 /// Accuracy and cost of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct StiffLimits {
     /// Error of a step in each state, relative to it and absolute in its unit.
     pub tolerance: f64,
     /// Evaluations of f in one call of [`Stiff::advance`].
@@ -34,7 +34,7 @@ pub struct Limits {
     pub least_step: f64,
 }
 
-impl Limits {
+impl StiffLimits {
     /// For parts of a motion not longer than some milliseconds.
     pub fn of_tolerance(tolerance: f64) -> Self {
         Self { tolerance, most_calls: 20_000, least_step: 1e-13 }
@@ -60,14 +60,14 @@ pub struct GaveUp {
     /// Number of the state whose rate jumped to and fro most, or was NaN or infinite.
     pub state: usize,
     /// Why it gave up.
-    pub why: Why,
+    pub why: GiveUpReason,
     /// Cost until then.
     pub effort: Effort,
 }
 
 /// Why an adaptive method gives up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Why {
+pub enum GiveUpReason {
     /// As many evaluations as it was allowed.
     Calls,
     /// Even the smallest step was not accurate enough.
@@ -80,11 +80,13 @@ impl fmt::Display for GaveUp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { time, state, effort, why } = self;
         match why {
-            Why::NotFinite => write!(f, "rate of state {state} is no number at {time} s"),
-            Why::Calls => {
+            GiveUpReason::NotFinite => write!(f, "rate of state {state} is no number at {time} s"),
+            GiveUpReason::Calls => {
                 write!(f, "{} evaluations, and only at {time} s: state {state} chatters", effort.calls)
             }
-            Why::Step => write!(f, "no step is small enough at {time} s: state {state} chatters or jumps"),
+            GiveUpReason::Step => {
+                write!(f, "no step is small enough at {time} s: state {state} chatters or jumps")
+            }
         }?;
         write!(f, "; take integrator = \"semi_implicit\", or a larger tolerance")
     }
@@ -95,14 +97,14 @@ impl std::error::Error for GaveUp {}
 /// The method, with what it keeps from call to call.
 #[derive(Clone, Debug)]
 pub struct Stiff {
-    limits: Limits,
+    limits: StiffLimits,
     /// J by columns; empty while there is none.
     jacobian: Vec<f64>,
 }
 
 impl Stiff {
     /// For states of any length.
-    pub fn new(limits: Limits) -> Self {
+    pub fn new(limits: StiffLimits) -> Self {
         Self { limits, jacobian: Vec::new() }
     }
 
@@ -117,7 +119,7 @@ impl Stiff {
         let kept = std::mem::take(&mut self.jacobian);
         let watch = RefCell::new(RateGuard::new(n, self.limits.most_calls, rate, kept));
         let start = x.to_vec();
-        let Limits { tolerance, least_step, .. } = self.limits;
+        let StiffLimits { tolerance, least_step, .. } = self.limits;
         let problem = OdeBuilder::<Matrix>::new()
             .t0(t)
             .rtol(tolerance)
@@ -288,12 +290,12 @@ impl<'a, 'b> RateGuard<'a, 'b> {
         (self.near, self.moved) = (near, moved);
     }
 
-    fn verdict(&self) -> (usize, Why) {
+    fn verdict(&self) -> (usize, GiveUpReason) {
         if let Some(state) = self.not_finite {
-            return (state, Why::NotFinite);
+            return (state, GiveUpReason::NotFinite);
         }
         let by_size = |a: &usize, b: &usize| self.to_and_fro[*a].total_cmp(&self.to_and_fro[*b]);
         let state = (0..self.to_and_fro.len()).max_by(by_size).unwrap_or(0);
-        (state, if self.calls >= self.most_calls { Why::Calls } else { Why::Step })
+        (state, if self.calls >= self.most_calls { GiveUpReason::Calls } else { GiveUpReason::Step })
     }
 }

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use config::Scene;
-use config::terrain::{Shape, TerrainObject, TerrainPose};
+use config::terrain::{ObjectShape, TerrainObject, TerrainPose};
 use environment::{Environment, Mesh, Object, Pose, Schedule};
 
 /// Flat ground, tilted if the scene says so, with the objects of a scene.
@@ -12,13 +12,13 @@ use environment::{Environment, Mesh, Object, Pose, Schedule};
 /// A mesh cannot be read.
 pub fn environment(scene: &Scene) -> Result<Environment, Box<dyn Error>> {
     let objects = scene.objects.iter().map(object).collect::<Result<Vec<_>, _>>()?;
-    Ok(Environment::new(objects).tilted(scene.unknown.ground_tilt))
+    Ok(Environment::new(objects).tilted(scene.plant_mismatch.ground_tilt))
 }
 
 fn object(o: &TerrainObject) -> Result<Object, Box<dyn Error>> {
     let mesh = match &o.shape {
-        Shape::Box(size) => Mesh::cuboid(*size)?,
-        Shape::Mesh { file, bytes, scale } => Mesh::parse(file, bytes, *scale)?,
+        ObjectShape::Box(size) => Mesh::cuboid(*size)?,
+        ObjectShape::Mesh { file, bytes, scale } => Mesh::parse(file, bytes, *scale)?,
     };
     let later: Vec<(f64, Pose)> = o.poses.iter().map(|(time, p)| (*time, pose(p))).collect();
     let schedule = Schedule::new(o.appears, o.vanishes, pose(&o.pose), &later);

@@ -16,12 +16,12 @@ use std::error::Error;
 
 use config::Robot;
 use config::robot::Drive as DriveData;
-use drives::{Law, NoLoadTorque, OutOfDomain, Sampling};
+use drives::{ControlLaw, NoLoadTorque, OutOfDomain, Sampling};
 use multibody::{Damper, Data, Model, Rotor};
 
 use crate::depth::GearModel;
 use crate::implicit::ShaftStep;
-use crate::local_control::LocalController;
+use crate::local_control::MotorController;
 use crate::shaft::{Shaft, TrainInputs};
 
 /// \[rad/s\] Speed of a rotor over which explicit methods see dry friction change its sign.
@@ -41,7 +41,7 @@ pub struct Train {
 #[derive(Clone)]
 pub(crate) struct DriveTrain {
     pub(crate) shaft: Shaft,
-    pub(crate) controller: LocalController,
+    pub(crate) controller: MotorController,
     /// Scratch of an implicit step.
     pub(crate) step: ShaftStep,
 }
@@ -80,7 +80,7 @@ impl Train {
     ) -> Result<Self, Box<dyn Error>> {
         let mut elastic = 0;
         let mut drive = |(k, data): (usize, &DriveData)| {
-            let controller = LocalController::new(data, &robot.joints)?;
+            let controller = MotorController::new(data, &robot.joints)?;
             let spring = data.elasticity.filter(|_| gears == GearModel::Elastic);
             let shaft = Shaft::new(data, k, spring.map(|spring| (elastic, spring)));
             elastic += usize::from(spring.is_some());
@@ -275,7 +275,7 @@ fn tune(drives: &mut [DriveTrain], model: &Model, hanging: &[f64]) {
         if shaft.elastic.is_some() {
             shaft.inertia += shaft.drive.rotor_inertia; // not in the mass matrix
         }
-        if let Law::Cascade(cascade) = shaft.drive.control.law {
+        if let ControlLaw::Cascade(cascade) = shaft.drive.control.law {
             controller.speed_gain =
                 cascade.speed_bandwidth * shaft.inertia / shaft.drive.motor.torque_constant;
         }

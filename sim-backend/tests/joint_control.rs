@@ -3,13 +3,14 @@
 mod rig;
 
 use config::Robot;
-use config::scene::Integrator;
+use config::method::Integrator;
 use drives::{
-    Cascade, Elasticity, Feedback, Friction, JointControl, Law, Resolution, Sampled, Sampling, VoltageLaw,
+    Cascade, ControlLaw, Elasticity, Feedback, Friction, JointControl, Resolution, Sampled, Sampling,
+    VoltageLaw,
 };
 use environment::Environment;
 use rig::{Rig, lola};
-use sim_backend::drive::Drive;
+use sim_backend::drive::JointCubic;
 
 const CASCADE: Cascade = Cascade {
     feedback: Feedback::Motor,
@@ -19,7 +20,7 @@ const CASCADE: Cascade = Cascade {
 };
 
 /// Lola without dry friction and limits, controlled like this.
-fn controlled(law: Law, sampling: Sampling) -> Robot {
+fn controlled(law: ControlLaw, sampling: Sampling) -> Robot {
     let mut robot = lola();
     for d in &mut robot.drives {
         d.friction = Friction::Free;
@@ -31,7 +32,7 @@ fn controlled(law: Law, sampling: Sampling) -> Robot {
 }
 
 fn fed_back(feedback: Feedback) -> Robot {
-    controlled(Law::Cascade(Cascade { feedback, ..CASCADE }), Sampling::Continuous)
+    controlled(ControlLaw::Cascade(Cascade { feedback, ..CASCADE }), Sampling::Continuous)
 }
 
 fn flying(robot: Robot, depth: u8) -> Rig {
@@ -80,9 +81,10 @@ fn implicit_and_explicit_steps_know_the_same_laws() {
 fn voltage_law() {
     let law = VoltageLaw { position: 5.0, speed: 0.1 };
     let sampled = Sampled { delay: false, difference: false };
-    let mut rig = Rig::of(controlled(Law::Voltage(law), Sampling::Cycle(sampled)), 3, Environment::flat());
+    let mut rig =
+        Rig::of(controlled(ControlLaw::Voltage(law), Sampling::Cycle(sampled)), 3, Environment::flat());
     let step = 1e-3;
-    rig.drives = rig.pose.iter().map(|q| Drive::resting(q + step)).collect();
+    rig.drives = rig.pose.iter().map(|q| JointCubic::resting(q + step)).collect();
     rig.plant.sample(1e-3, &rig.x, &rig.drives, &rig.inputs);
     let x = rig.x.clone();
     let rates = rig.rate(0.0, &x);
@@ -106,8 +108,8 @@ fn voltage_law() {
 fn a_sampled_law_holds_and_waits() {
     let currents = |delay: bool, samples: usize| {
         let sampling = Sampling::Cycle(Sampled { delay, difference: true });
-        let mut rig = flying(controlled(Law::Cascade(CASCADE), sampling), 2);
-        rig.drives = rig.pose.iter().map(|q| Drive::resting(q + 1e-3)).collect();
+        let mut rig = flying(controlled(ControlLaw::Cascade(CASCADE), sampling), 2);
+        rig.drives = rig.pose.iter().map(|q| JointCubic::resting(q + 1e-3)).collect();
         for _ in 0..samples {
             rig.plant.sample(1e-3, &rig.x, &rig.drives, &rig.inputs);
         }

@@ -4,7 +4,7 @@
 mod rig;
 
 use config::Robot;
-use config::scene::Integrator;
+use config::method::Integrator;
 use drives::{Elasticity, Friction};
 use environment::Environment;
 use rig::{Rig, lola};
@@ -152,8 +152,9 @@ fn sliding_gears_are_the_same_implicit_and_explicit() {
         for j in 0..l.joints {
             let speed = if j % 2 == 0 { 0.8 } else { -0.8 };
             rig.x[l.speed().start + 6 + j] = speed;
-            let from = sim_backend::drive::Motion { angle: rig.pose[j], speed, acceleration: 0.0 };
-            rig.drives[j] = sim_backend::drive::Drive::follow(from, rig.pose[j] + 0.01 * speed, speed, 0.01);
+            let from = sim_backend::drive::JointMotion { angle: rig.pose[j], speed, acceleration: 0.0 };
+            rig.drives[j] =
+                sim_backend::drive::JointCubic::follow(from, rig.pose[j] + 0.01 * speed, speed, 0.01);
         }
         rig.run(integrator, 0.0, 0.01, steps);
         let speeds = rig.x[l.speed()][6..].iter().enumerate();

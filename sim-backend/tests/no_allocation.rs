@@ -3,7 +3,7 @@
 mod rig;
 
 use codec::frames::{DriveCommand, encode_targets};
-use config::scene::Integrator;
+use config::method::Integrator;
 use config::{Setup, root};
 use drives::Resolution;
 use environment::Environment;

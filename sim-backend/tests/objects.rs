@@ -2,8 +2,8 @@
 
 mod rig;
 
-use config::scene::Integrator;
-use environment::{Environment, Event, Mesh, Object, Pose, Schedule};
+use config::method::Integrator;
+use environment::{Environment, Mesh, Object, ObjectEvent, Pose, Schedule};
 use rig::{Rig, lola};
 
 /// A board of 5 mm under both feet or under the right one, which stands on it.
@@ -74,14 +74,14 @@ fn what_is_stood_on_does_not_vanish() {
         let mut rig = on_board(depth, true, None, 0.01);
         let x = rig.x.clone();
         rig.rate(0.0, &x);
-        assert_eq!(rig.plant.advance(0.02), [Event::Refused(0)], "type {depth}");
+        assert_eq!(rig.plant.advance(0.02), [ObjectEvent::Refused(0)], "type {depth}");
         rig.rate(0.0, &x);
         assert_eq!(rig.plant.advance(0.03), [], "type {depth}: said once");
         let mut lifted = x;
         lifted[2] += 0.1;
         rig.rate(0.0, &lifted);
         let events = rig.plant.advance(0.05).to_vec();
-        assert!(events.contains(&Event::Vanished(0)), "type {depth}: {events:?}");
+        assert!(events.contains(&ObjectEvent::Vanished(0)), "type {depth}: {events:?}");
     }
 }
 

@@ -7,7 +7,7 @@ mod rig;
 
 use config::Robot;
 use config::brake::Brake;
-use config::scene::Integrator;
+use config::method::Integrator;
 use environment::Environment;
 use nalgebra::Vector3;
 use rig::{Rig, lola};

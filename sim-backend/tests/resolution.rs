@@ -3,11 +3,13 @@
 mod rig;
 
 use config::Robot;
-use drives::lookup::Table;
-use drives::{JointControl, Law, OutOfDomain, Resolution, Sampled, Sampling, Transmission, VoltageLaw};
+use drives::lookup::LookupTable;
+use drives::{
+    ControlLaw, JointControl, OutOfDomain, Resolution, Sampled, Sampling, Transmission, VoltageLaw,
+};
 use environment::Environment;
 use rig::{Rig, lola};
-use sim_backend::drive::{Drive, Motion};
+use sim_backend::drive::{JointCubic, JointMotion};
 use sim_backend::plant::Plant;
 use sim_backend::train::FaultCause;
 use std::f64::consts::TAU;
@@ -27,7 +29,7 @@ fn controlled(table_points: Option<u32>, encoder_counts: Option<u32>) -> Robot {
     for d in &mut robot.drives {
         d.voltage_limit = 1e9;
         d.control = JointControl {
-            law: Law::Voltage(VoltageLaw { position: GAIN, speed: 0.0 }),
+            law: ControlLaw::Voltage(VoltageLaw { position: GAIN, speed: 0.0 }),
             sampling: Sampling::Cycle(Sampled { delay: false, difference: false }),
             resolution: Resolution { table_points, encoder_counts },
         };
@@ -37,12 +39,12 @@ fn controlled(table_points: Option<u32>, encoder_counts: Option<u32>) -> Robot {
 
 /// A robot at rest in its pose, told to be a step from it; errors of its drives \[rad\].
 fn errors(robot: Robot) -> (Rig, Vec<f64>) {
-    let (rig, voltages) = voltages(robot, |q| Drive::resting(q + STEP));
+    let (rig, voltages) = voltages(robot, |q| JointCubic::resting(q + STEP));
     (rig, voltages.into_iter().map(|u| u / GAIN).collect())
 }
 
 /// A robot at rest in its pose, told to move like this; what its controllers set \[V\], by the rates of the currents.
-fn voltages(robot: Robot, told: impl Fn(f64) -> Drive) -> (Rig, Vec<f64>) {
+fn voltages(robot: Robot, told: impl Fn(f64) -> JointCubic) -> (Rig, Vec<f64>) {
     let mut rig = Rig::of(robot, 3, Environment::flat());
     rig.drives = rig.pose.iter().map(|q| told(*q)).collect();
     rig.plant.sample(1e-3, &rig.x, &rig.drives, &rig.inputs);
@@ -61,14 +63,14 @@ fn joints(rig: &Rig, drive: usize, moved: f64) -> [f64; 3] {
 }
 
 /// The table of a drive's linkage in floating point.
-fn table(rig: &Rig, drive: usize) -> Table {
+fn table(rig: &Rig, drive: usize) -> LookupTable {
     let d = &rig.robot.drives[drive];
     let range = |i: usize| {
         let [lo, hi] = rig.robot.joints[d.joints[i]].range;
         [lo - MARGIN, hi + MARGIN]
     };
     let ranges = if d.joints.len() == 3 { [range(1), range(2)] } else { [range(0); 2] };
-    Table::new(&d.transmission, ranges, [POINTS; 2]).unwrap()
+    LookupTable::new(&d.transmission, ranges, [POINTS; 2]).unwrap()
 }
 
 /// Motor angle of a drive by its linkage or gear itself \[rad\].
@@ -99,8 +101,8 @@ fn the_motor_is_to_be_where_the_table_says() {
 fn the_motor_is_to_turn_as_the_table_says() {
     let (speed, cycle) = (1.0, 1e-3);
     let moving = |q| {
-        let from = Motion { angle: q, speed, ..Motion::default() };
-        Drive::follow(from, q + speed * cycle, speed, cycle)
+        let from = JointMotion { angle: q, speed, ..JointMotion::default() };
+        JointCubic::follow(from, q + speed * cycle, speed, cycle)
     };
     let (rig, found) = voltages(controlled(Some(POINTS as u32), None), moving);
     let mut missed = 0.0_f64;
@@ -149,7 +151,7 @@ fn a_target_beyond_the_table() {
     rig.plant.sample(1e-3, &x, &rig.drives, &rig.inputs);
     let before = rig.rate(0.0, &x)[current];
     assert_eq!(rig.plant.take_fault(), None);
-    rig.drives[knee] = Drive::resting(beyond);
+    rig.drives[knee] = JointCubic::resting(beyond);
     rig.plant.sample(1e-3, &x, &rig.drives, &rig.inputs);
     assert_eq!(rig.rate(0.0, &x)[current], before);
     let fault = rig.plant.take_fault().unwrap();

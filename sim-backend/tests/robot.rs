@@ -84,13 +84,13 @@ fn a_robot_with_a_wrong_link_name_is_refused() {
     assert!(error.contains("right_foott"), "{error}");
 }
 
-/// Ground, soles and calibration that the software does not know of (`[unknown]`), each against its closed form.
+/// Ground, soles and calibration that the software does not know of (`[plant_mismatch]`), each against its closed form.
 #[test]
 fn on_tilted_ground_the_robot_stands_by_friction_and_slides_beyond_it() {
     let mut setup = setup();
     setup.robot.contact.friction = 0.1;
     for (tilt, slides) in [(0.03_f64, false), (0.15, true)] {
-        setup.scene.unknown.ground_tilt = [0.0, tilt];
+        setup.scene.plant_mismatch.ground_tilt = [0.0, tilt];
         let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
         let (truth, _) = hold(&mut sim, &setup, if slides { 1000 } else { 8000 }, u64::MAX);
         let sum = |k: usize| truth.foot_wrench.iter().map(|w| w.force[k]).sum::<f64>();
@@ -112,7 +112,7 @@ fn on_tilted_ground_the_robot_stands_by_friction_and_slides_beyond_it() {
 fn softer_soles_are_pressed_in_as_much_more() {
     let mut setup = setup();
     let mut height = |factor: f64| {
-        setup.scene.unknown.contact_stiffness = factor;
+        setup.scene.plant_mismatch.contact_stiffness = factor;
         hold(&mut SimBackend::new(&setup.robot, &setup.scene).unwrap(), &setup, 2000, u64::MAX).0.feet[0][2]
     };
     let (nominal, soft) = (height(1.0), height(0.5));
@@ -125,7 +125,7 @@ fn a_joint_with_a_wrong_zero_stands_beside_where_its_encoder_says() {
     let mut setup = setup();
     let joint = setup.robot.joint("right_knee_flexion").unwrap();
     let own = vec![("right_knee_flexion".to_string(), 0.01)];
-    setup.scene.unknown.joint_offset = config::sensors::PerJoint { all: None, own };
+    setup.scene.plant_mismatch.joint_offset = config::sensors::PerJoint { all: None, own };
     let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
     let (truth, sensors) = hold(&mut sim, &setup, 500, u64::MAX);
     let wanted = setup.robot.poses["stand"][joint];

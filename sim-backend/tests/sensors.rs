@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use config::Robot;
-use config::sensors::{Encoder, ForceTorque, Imu, PerJoint, Side, Signal};
+use config::sensors::{EncoderErrors, EncoderSide, ForceTorqueErrors, ImuErrors, PerJoint, SignalErrors};
 use messages::{Sensors, Wrench};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use sim_backend::sensors::{ReadingFaults, SensorSet, Truth};
@@ -14,7 +14,7 @@ const HANGING: [Wrench; 2] = [
     Wrench { force: [0.0; 3], moment: [0.0; 3] },
 ];
 
-fn set(errors: &config::Sensors) -> SensorSet {
+fn set(errors: &config::SensorErrors) -> SensorSet {
     let robot = Robot::load(&config::root(None).join("robots/lola")).unwrap();
     SensorSet::new(errors, &robot, &HANGING, 7, CYCLE)
 }
@@ -47,7 +47,7 @@ fn measure(set: &mut SensorSet, truth: &Truth) -> (Sensors, ReadingFaults) {
 }
 
 /// One reading of fresh sensors.
-fn once(errors: &config::Sensors, truth: &Truth) -> Sensors {
+fn once(errors: &config::SensorErrors, truth: &Truth) -> Sensors {
     measure(&mut set(errors), truth).0
 }
 
@@ -56,7 +56,7 @@ fn close(a: f64, b: f64, tolerance: f64) {
 }
 
 /// Mean and standard deviation of a signal over `n` cycles of a truth that stands still.
-fn statistics(errors: &config::Sensors, n: usize, signal: impl Fn(&Sensors) -> f64) -> (f64, f64) {
+fn statistics(errors: &config::SensorErrors, n: usize, signal: impl Fn(&Sensors) -> f64) -> (f64, f64) {
     let (mut set, truth) = (set(errors), truth());
     let x: Vec<f64> = (0..n).map(|_| signal(&measure(&mut set, &truth).0)).collect();
     let mean = x.iter().sum::<f64>() / n as f64;
@@ -67,22 +67,22 @@ fn all(x: f64) -> PerJoint {
     PerJoint { all: Some(x), own: Vec::new() }
 }
 
-fn encoder(encoder: Encoder) -> config::Sensors {
-    config::Sensors { encoder, ..Default::default() }
+fn encoder(encoder: EncoderErrors) -> config::SensorErrors {
+    config::SensorErrors { encoder, ..Default::default() }
 }
 
-fn feet(force_torque: ForceTorque) -> config::Sensors {
-    config::Sensors { force_torque, ..Default::default() }
+fn feet(force_torque: ForceTorqueErrors) -> config::SensorErrors {
+    config::SensorErrors { force_torque, ..Default::default() }
 }
 
-fn imu(imu: Imu) -> config::Sensors {
-    config::Sensors { imu, ..Default::default() }
+fn imu(imu: ImuErrors) -> config::SensorErrors {
+    config::SensorErrors { imu, ..Default::default() }
 }
 
 #[test]
 fn nothing_named_is_the_truth_bit_for_bit() {
     let truth = truth();
-    let (out, report) = measure(&mut set(&config::Sensors::default()), &truth);
+    let (out, report) = measure(&mut set(&config::SensorErrors::default()), &truth);
     let pairs = [
         (out.joint_angle, truth.joint_angle),
         (out.joint_speed, truth.joint_speed),
@@ -107,16 +107,16 @@ fn nothing_named_is_the_truth_bit_for_bit() {
 #[test]
 fn an_error_leaves_the_other_signals_alone() {
     let truth = truth();
-    let ideal = once(&config::Sensors::default(), &truth);
-    let wrong = once(&encoder(Encoder { counts: all(65536.0), ..Default::default() }), &truth);
+    let ideal = once(&config::SensorErrors::default(), &truth);
+    let wrong = once(&encoder(EncoderErrors { counts: all(65536.0), ..Default::default() }), &truth);
     let same = Sensors { joint_angle: ideal.joint_angle, ..wrong };
     assert!(same == ideal && wrong != ideal);
-    let rate = Signal { noise: 0.1, ..Default::default() };
-    let wrong = once(&imu(Imu { rate, ..Default::default() }), &truth);
+    let rate = SignalErrors { noise: 0.1, ..Default::default() };
+    let wrong = once(&imu(ImuErrors { rate, ..Default::default() }), &truth);
     let mut same = wrong;
     same.imu.angular_velocity = ideal.imu.angular_velocity;
     assert!(same == ideal && wrong != ideal);
-    let wrong = once(&feet(ForceTorque { noise: [0.0, 1.0], ..Default::default() }), &truth);
+    let wrong = once(&feet(ForceTorqueErrors { noise: [0.0, 1.0], ..Default::default() }), &truth);
     for i in 0..2 {
         assert_eq!(wrong.foot_wrench[i].force, ideal.foot_wrench[i].force);
         assert_ne!(wrong.foot_wrench[i].moment, ideal.foot_wrench[i].moment);
@@ -126,7 +126,7 @@ fn an_error_leaves_the_other_signals_alone() {
 /// Errata 1, V15: 2^16 counts, each 9.58737992429e-5 rad; the reading is the count below.
 #[test]
 fn encoders_count_downwards() {
-    let errors = encoder(Encoder { counts: all(65536.0), ..Default::default() });
+    let errors = encoder(EncoderErrors { counts: all(65536.0), ..Default::default() });
     let mut truth = truth();
     for (j, q) in [0.0, 9.58737992429e-5 * 7.001, 9.58737992429e-5 * 7.999, -1e-9].into_iter().enumerate() {
         truth.joint_angle[j] = q;
@@ -147,7 +147,7 @@ fn bias_of_one_joint() {
     let robot = Robot::load(&config::root(None).join("robots/lola")).unwrap();
     let bias = PerJoint { all: None, own: vec![("right_ankle_flexion".to_owned(), -0.05)] };
     let (truth, ankle) = (truth(), robot.joint("right_ankle_flexion").unwrap());
-    let out = once(&encoder(Encoder { bias, speed_by_difference: true, ..Default::default() }), &truth);
+    let out = once(&encoder(EncoderErrors { bias, speed_by_difference: true, ..Default::default() }), &truth);
     for j in 0..24 {
         let expected = truth.joint_angle[j] - if j == ankle { 0.05 } else { 0.0 };
         assert_eq!(out.joint_angle[j], expected);
@@ -159,7 +159,7 @@ fn bias_of_one_joint() {
 /// delta/(T sqrt 6) = 0.0391 rad/s and comes close to delta/T, the thesis' 0.1 rad/s.
 #[test]
 fn speed_by_difference_has_the_noise_floor_of_its_counts() {
-    let errors = Encoder { counts: all(65536.0), speed_by_difference: true, ..Default::default() };
+    let errors = EncoderErrors { counts: all(65536.0), speed_by_difference: true, ..Default::default() };
     let (mut set, mut truth) = (set(&encoder(errors)), truth());
     let step = 0.095_873_799_242_9;
     let (mut square, mut most, n) = (0.0, 0.0_f64, 20_000);
@@ -181,12 +181,12 @@ fn speed_by_difference_has_the_noise_floor_of_its_counts() {
 /// Motor encoders resolve a joint as much finer as the gear is slow; a robot without absolute encoders has only these.
 #[test]
 fn motor_side() {
-    let motor_encoder = Encoder { counts: all(2000.0 * 100.0), ..Default::default() };
-    let mut errors = config::Sensors { motor_encoder, ..Default::default() };
+    let motor_encoder = EncoderErrors { counts: all(2000.0 * 100.0), ..Default::default() };
+    let mut errors = config::SensorErrors { motor_encoder, ..Default::default() };
     let truth = truth();
     let link = once(&errors, &truth);
     assert_eq!(link.joint_angle, truth.joint_angle);
-    errors.side = Side::Motor;
+    errors.side = EncoderSide::Motor;
     let motor = once(&errors, &truth);
     assert_eq!((motor.joint_angle, motor.motor_angle), (link.motor_angle, link.motor_angle));
     assert_eq!(motor.joint_speed, truth.motor_speed);
@@ -201,8 +201,8 @@ fn motor_side() {
 /// m g (1 - cos phi) and m g sin phi too much.
 #[test]
 fn weight_below_the_sensor() {
-    let compensated = ForceTorque { inertia: true, bias_compensation: true, ..Default::default() };
-    let raw = ForceTorque { inertia: true, ..Default::default() };
+    let compensated = ForceTorqueErrors { inertia: true, bias_compensation: true, ..Default::default() };
+    let raw = ForceTorqueErrors { inertia: true, ..Default::default() };
     let mut truth = truth();
     truth.inertial = HANGING;
     let out = once(&feet(compensated), &truth).foot_wrench;
@@ -217,21 +217,21 @@ fn weight_below_the_sensor() {
     let out = once(&feet(compensated), &truth).foot_wrench[0].force;
     close(out[0], -24.0 * phi.sin(), 1e-12);
     close(out[2], 24.0 * (1.0 - phi.cos()), 1e-12);
-    let out = once(&feet(ForceTorque::default()), &truth).foot_wrench[0].force;
+    let out = once(&feet(ForceTorqueErrors::default()), &truth).foot_wrench[0].force;
     assert_eq!(out, [0.0; 3]);
 }
 
 #[test]
 fn only_inertia_asks_for_inertia() {
-    assert!(!set(&feet(ForceTorque { noise: [1.0, 1.0], ..Default::default() })).needs_inertia());
-    assert!(set(&feet(ForceTorque { inertia: true, ..Default::default() })).needs_inertia());
+    assert!(!set(&feet(ForceTorqueErrors { noise: [1.0, 1.0], ..Default::default() })).needs_inertia());
+    assert!(set(&feet(ForceTorqueErrors { inertia: true, ..Default::default() })).needs_inertia());
 }
 
 /// A force that jumps, through the anti-aliasing filter: exact for the rise within one cycle.
 #[test]
 fn filter_of_the_force_sensor() {
     let time = 0.004_f64;
-    let mut set = set(&feet(ForceTorque { filter_time: time, ..Default::default() }));
+    let mut set = set(&feet(ForceTorqueErrors { filter_time: time, ..Default::default() }));
     let mut truth = Truth::default();
     truth.imu.orientation[3] = 1.0;
     measure(&mut set, &truth);
@@ -246,7 +246,7 @@ fn filter_of_the_force_sensor() {
 /// Noise of 10 000 readings: mean and deviation within four standard errors.
 #[test]
 fn noise_of_the_force_sensor() {
-    let errors = feet(ForceTorque { noise: [1.0, 0.1], ..Default::default() });
+    let errors = feet(ForceTorqueErrors { noise: [1.0, 0.1], ..Default::default() });
     let (n, truth) = (10_000, truth());
     let root = (n as f64).sqrt();
     let (mean, deviation) = statistics(&errors, n, |s| s.foot_wrench[0].force[2]);
@@ -259,7 +259,8 @@ fn noise_of_the_force_sensor() {
 
 #[test]
 fn steps_and_range_of_the_force_sensor() {
-    let errors = ForceTorque { step: [1.0, 0.1], force_range: [700.0, 700.0, 250.0], ..Default::default() };
+    let errors =
+        ForceTorqueErrors { step: [1.0, 0.1], force_range: [700.0, 700.0, 250.0], ..Default::default() };
     let mut truth = truth();
     truth.contact[1].force = [12.49, -12.51, -900.0];
     truth.contact[1].moment = [0.26, -0.24, 0.0];
@@ -280,7 +281,7 @@ fn orientation(s: &Sensors) -> UnitQuaternion<f64> {
 /// have none.
 #[test]
 fn bias_of_the_imu() {
-    let errors = imu(Imu { bias: [5e-3, 0.0, 0.0], ..Default::default() });
+    let errors = imu(ImuErrors { bias: [5e-3, 0.0, 0.0], ..Default::default() });
     let mut truth = truth();
     for heading in [0.0, 1.5, 3.1] {
         truth.imu.orientation = UnitQuaternion::from_euler_angles(0.0, 0.0, heading).coords.into();
@@ -297,7 +298,7 @@ fn bias_of_the_imu() {
 /// A torso that turns at a constant rate is seen late by the time constant 1/(2 pi f): 3.18 ms at 50 Hz.
 #[test]
 fn bandwidth_of_the_imu() {
-    let mut set = set(&imu(Imu { bandwidth: 50.0, ..Default::default() }));
+    let mut set = set(&imu(ImuErrors { bandwidth: 50.0, ..Default::default() }));
     let omega = Vector3::new(0.4, -0.3, 0.5);
     let mut truth = truth();
     truth.imu.angular_velocity = omega.into();
@@ -314,15 +315,15 @@ fn bandwidth_of_the_imu() {
 
 #[test]
 fn noise_of_the_imu() {
-    let signal = |noise| Signal { noise, ..Default::default() };
-    let errors = imu(Imu {
+    let signal = |noise| SignalErrors { noise, ..Default::default() };
+    let errors = imu(ImuErrors {
         orientation: signal(2e-4),
         rate: signal(1e-3),
         acceleration: signal(0.02),
         ..Default::default()
     });
     let (n, truth) = (10_000, truth());
-    let true_orientation = orientation(&once(&config::Sensors::default(), &truth));
+    let true_orientation = orientation(&once(&config::SensorErrors::default(), &truth));
     let error = |s: &Sensors| (true_orientation.inverse() * orientation(s)).scaled_axis().y;
     let of = |signal: &dyn Fn(&Sensors) -> f64, expected: f64, sigma: f64| {
         let (mean, deviation) = statistics(&errors, n, signal);
@@ -338,10 +339,10 @@ fn noise_of_the_imu() {
 #[test]
 fn steps_and_range_of_the_imu() {
     let step = 1e-3;
-    let errors = imu(Imu {
-        orientation: Signal { step, ..Default::default() },
-        rate: Signal { step: 0.01, range: 3.5, ..Default::default() },
-        acceleration: Signal { step: 0.05, range: 19.62, ..Default::default() },
+    let errors = imu(ImuErrors {
+        orientation: SignalErrors { step, ..Default::default() },
+        rate: SignalErrors { step: 0.01, range: 3.5, ..Default::default() },
+        acceleration: SignalErrors { step: 0.05, range: 19.62, ..Default::default() },
         ..Default::default()
     });
     let mut truth = truth();
@@ -371,10 +372,10 @@ fn steps_and_range_of_the_imu() {
 
 #[test]
 fn dead_time_and_period() {
-    let mut set = set(&config::Sensors {
-        encoder: Encoder { delay: 0.002, ..Default::default() },
-        force_torque: ForceTorque { delay: 0.001, ..Default::default() },
-        imu: Imu { period: 0.005, ..Default::default() },
+    let mut set = set(&config::SensorErrors {
+        encoder: EncoderErrors { delay: 0.002, ..Default::default() },
+        force_torque: ForceTorqueErrors { delay: 0.001, ..Default::default() },
+        imu: ImuErrors { period: 0.005, ..Default::default() },
         ..Default::default()
     });
     let mut truth = truth();
@@ -388,10 +389,10 @@ fn dead_time_and_period() {
     }
 }
 
-fn noisy() -> config::Sensors {
-    config::Sensors {
-        force_torque: ForceTorque { noise: [1.0, 0.1], ..Default::default() },
-        imu: Imu { rate: Signal { noise: 1e-3, ..Default::default() }, ..Default::default() },
+fn noisy() -> config::SensorErrors {
+    config::SensorErrors {
+        force_torque: ForceTorqueErrors { noise: [1.0, 0.1], ..Default::default() },
+        imu: ImuErrors { rate: SignalErrors { noise: 1e-3, ..Default::default() }, ..Default::default() },
         ..Default::default()
     }
 }
@@ -401,7 +402,7 @@ fn noisy() -> config::Sensors {
 fn noise_is_repeatable_and_each_has_its_own() {
     let robot = Robot::load(&config::root(None).join("robots/lola")).unwrap();
     let truth = truth();
-    let run = |errors: &config::Sensors, seed| {
+    let run = |errors: &config::SensorErrors, seed| {
         let mut set = SensorSet::new(errors, &robot, &HANGING, seed, CYCLE);
         (0..50).map(|_| measure(&mut set, &truth).0).collect::<Vec<_>>()
     };
@@ -434,10 +435,10 @@ fn noise_is_repeatable_and_each_has_its_own() {
 #[test]
 fn what_is_not_finite_is_reported() {
     let mut spoilt = noisy();
-    spoilt.encoder = Encoder { counts: all(65536.0), speed_by_difference: true, ..Default::default() };
+    spoilt.encoder = EncoderErrors { counts: all(65536.0), speed_by_difference: true, ..Default::default() };
     spoilt.force_torque.filter_time = 0.01;
     spoilt.imu.bandwidth = 50.0;
-    for errors in [config::Sensors::default(), spoilt] {
+    for errors in [config::SensorErrors::default(), spoilt] {
         let mut set = set(&errors);
         let (good, mut bad) = (truth(), truth());
         bad.joint_angle[5] = f64::NAN;
@@ -458,6 +459,6 @@ fn what_is_not_finite_is_reported() {
     }
     let mut nothing = truth();
     nothing.imu.orientation = [0.0; 4]; // no orientation at all
-    let (out, report) = measure(&mut set(&imu(Imu { bias: [0.1; 3], ..Default::default() })), &nothing);
+    let (out, report) = measure(&mut set(&imu(ImuErrors { bias: [0.1; 3], ..Default::default() })), &nothing);
     assert!(report.invalid == 4 && out.imu.orientation.iter().all(|x| x.is_nan()));
 }

@@ -1,6 +1,6 @@
 //! Longest stable steps of explicit methods: predicted when a scene is loaded, and what happens beyond.
 
-use config::scene::Integrator;
+use config::method::Integrator;
 use config::{Robot, Setup, root};
 use sim_backend::SimBackend;
 use sim_backend::step_limit::{StepLimit, step_limit};

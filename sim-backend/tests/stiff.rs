@@ -3,11 +3,11 @@
 
 use std::f64::consts::TAU;
 
-use sim_backend::stiff::{Effort, GaveUp, Limits, Stiff, Why};
+use sim_backend::stiff::{Effort, GaveUp, GiveUpReason, Stiff, StiffLimits};
 
 /// Advances in one call, with as many evaluations as it takes.
 fn advance(
-    limits: Limits,
+    limits: StiffLimits,
     end: f64,
     x: &mut [f64],
     mut rate: impl FnMut(f64, &[f64], &mut [f64]),
@@ -19,7 +19,7 @@ fn advance(
 #[test]
 fn robertson() {
     let mut y = [1.0, 0.0, 0.0];
-    let limits = Limits { tolerance: 1e-9, ..Limits::of_tolerance(1e-9) };
+    let limits = StiffLimits { tolerance: 1e-9, ..StiffLimits::of_tolerance(1e-9) };
     let effort = advance(limits, 40.0, &mut y, |_, y, dy| {
         let (a, b, c) = (0.04 * y[0], 1e4 * y[1] * y[2], 3e7 * y[1] * y[1]);
         (dy[0], dy[1], dy[2]) = (b - a, a - b - c, c);
@@ -35,7 +35,7 @@ fn steps_do_not_follow_a_fast_mode_that_has_decayed() {
     let rate = |k: f64| move |t: f64, x: &[f64], dx: &mut [f64]| dx[0] = -k * (x[0] - t.cos()) - t.sin();
     let steps = [1e3, 1e6].map(|k| {
         let mut x = [1.0];
-        let effort = advance(Limits::of_tolerance(1e-6), 1.0, &mut x, rate(k)).unwrap();
+        let effort = advance(StiffLimits::of_tolerance(1e-6), 1.0, &mut x, rate(k)).unwrap();
         assert!((x[0] - 1f64.cos()).abs() < 1e-5, "{x:?}");
         effort.steps
     });
@@ -47,7 +47,7 @@ fn errors_follow_the_tolerance() {
     for tolerance in [1e-4, 1e-6, 1e-8] {
         let mut x = [1.0, 0.0];
         let oscillate = |_: f64, x: &[f64], dx: &mut [f64]| (dx[0], dx[1]) = (x[1], -x[0]);
-        advance(Limits::of_tolerance(tolerance), TAU, &mut x, oscillate).unwrap();
+        advance(StiffLimits::of_tolerance(tolerance), TAU, &mut x, oscillate).unwrap();
         let error = (x[0] - 1.0).hypot(x[1]);
         assert!((0.1 * tolerance..100.0 * tolerance).contains(&error), "{tolerance:e}: {error:e}");
     }
@@ -56,7 +56,7 @@ fn errors_follow_the_tolerance() {
 /// J of one call serves the next: after the first of a hundred cycles none needs one of its own.
 #[test]
 fn the_jacobian_is_kept_from_call_to_call() {
-    let (mut stiff, mut x, n) = (Stiff::new(Limits::of_tolerance(1e-6)), vec![1.0; 40], 40);
+    let (mut stiff, mut x, n) = (Stiff::new(StiffLimits::of_tolerance(1e-6)), vec![1.0; 40], 40);
     let mut rate = |t: f64, x: &[f64], dx: &mut [f64]| {
         for i in 0..n {
             dx[i] = -(1.0 + 100.0 * i as f64) * (x[i] - t.sin());
@@ -82,11 +82,11 @@ fn sign(w: f64) -> f64 {
 
 #[test]
 fn the_guard_stops_chatter_and_names_the_speed() {
-    let limits = |tolerance| Limits { most_calls: 20_000, ..Limits::of_tolerance(tolerance) };
+    let limits = |tolerance| StiffLimits { most_calls: 20_000, ..StiffLimits::of_tolerance(tolerance) };
     let mut x = [0.0, 0.0];
     let gave_up = advance(limits(1e-6), 2.0, &mut x, joint(sign)).unwrap_err();
     assert_eq!((gave_up.state, gave_up.effort.calls), (1, 20_000), "{gave_up}");
-    assert_eq!(gave_up.why, Why::Calls);
+    assert_eq!(gave_up.why, GiveUpReason::Calls);
     assert!(x.iter().all(|x| x.is_finite()) && gave_up.time < 2.0);
     // A smooth law gets through.
     let mut x = [0.0, 0.0];
@@ -104,7 +104,7 @@ fn touchdown_costs_small_steps_and_nothing_else() {
         (dx[0], dx[1]) = (x[1], force / 60.0 - 9.81);
     };
     let mut x = [0.01, 0.0];
-    let effort = advance(Limits::of_tolerance(1e-8), 0.5, &mut x, rate).unwrap();
+    let effort = advance(StiffLimits::of_tolerance(1e-8), 0.5, &mut x, rate).unwrap();
     // LSODA: 503 calls, smallest step 4.5e-10 s, error 5.6e-9 m.
     assert!((x[0] + 0.002_941_534_701_743).abs() < 5e-8, "{x:?}");
     assert!(effort.calls < 5000 && effort.smallest < 1e-6, "{effort:?}");
@@ -114,8 +114,8 @@ fn touchdown_costs_small_steps_and_nothing_else() {
 fn a_rate_that_is_no_number_is_named() {
     let mut x = [0.0, 1.0];
     let broken = |t: f64, _: &[f64], dx: &mut [f64]| (dx[0], dx[1]) = (1.0, (0.3 - t).sqrt());
-    let gave_up = advance(Limits::of_tolerance(1e-6), 1.0, &mut x, broken).unwrap_err();
-    assert_eq!((gave_up.state, gave_up.why), (1, Why::NotFinite));
+    let gave_up = advance(StiffLimits::of_tolerance(1e-6), 1.0, &mut x, broken).unwrap_err();
+    assert_eq!((gave_up.state, gave_up.why), (1, GiveUpReason::NotFinite));
     assert!(gave_up.time <= 0.3 && x.iter().all(|x| x.is_finite()));
 }
 
@@ -124,7 +124,7 @@ fn a_rate_that_is_no_number_is_named() {
 #[test]
 fn a_jump_does_not_pass_for_a_slope() {
     for tolerance in [1e-2, 1e-3] {
-        let limits = Limits { most_calls: 1_000_000, ..Limits::of_tolerance(tolerance) };
+        let limits = StiffLimits { most_calls: 1_000_000, ..StiffLimits::of_tolerance(tolerance) };
         let (mut stiff, mut x) = (Stiff::new(limits), [0.0, 0.0]);
         for k in 0..200 {
             let arrived = stiff.advance(f64::from(k) * 0.01, 0.01, &mut x, &mut joint(sign));

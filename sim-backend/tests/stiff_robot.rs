@@ -1,9 +1,9 @@
 //! The adaptive stiff method on a whole robot: Lola standing on type 3, one hip told to move.
 
-use config::scene::Integrator;
+use config::method::Integrator;
 use config::{Setup, root};
 use environment::Environment;
-use sim_backend::drive::Drive;
+use sim_backend::drive::JointCubic;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs};
 
@@ -14,8 +14,8 @@ fn moved(setup: &Setup, mut stepper: impl FnMut(usize) -> Stepper, steps: u32) -
     let pose = &setup.robot.poses[&setup.scene.start_pose];
     let mut plant = Plant::new(&setup.robot, Environment::flat(), 3, pose).unwrap();
     let mut x = plant.standing(pose);
-    let mut drives: Vec<Drive> = pose.iter().map(|q| Drive::resting(*q)).collect();
-    drives[2] = Drive::resting(pose[2] + 1e-3);
+    let mut drives: Vec<JointCubic> = pose.iter().map(|q| JointCubic::resting(*q)).collect();
+    drives[2] = JointCubic::resting(pose[2] + 1e-3);
     let inputs = PlantInputs::POWERED;
     let mut stepper = stepper(x.len());
     let h = CYCLE / f64::from(steps);

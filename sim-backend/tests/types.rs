@@ -3,7 +3,7 @@
 
 use codec::frames::{DriveCommand, encode_targets};
 use config::brake::Brake;
-use config::scene::Integrator;
+use config::method::Integrator;
 use config::{Setup, root};
 use messages::command::PushCommand;
 use messages::{BusFrames, EventCode, JointMode, JointTargets, MAX_JOINTS, Power, SimState};

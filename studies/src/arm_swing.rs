@@ -40,7 +40,7 @@ const COLUMNS: &[Column] = &[
 
 /// The study's arguments.
 #[derive(clap::Args, Clone, Debug)]
-pub struct ArmSwing {
+pub struct ArmSwingStudy {
     /// Type of the model: 1, reduced; 2, with motors; 3, with elastic gears.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
     pub depth: u8,
@@ -49,7 +49,7 @@ pub struct ArmSwing {
     pub out: PathBuf,
 }
 
-impl Study for ArmSwing {
+impl Study for ArmSwingStudy {
     fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
         sheet::make(&self.out)?;
         let mut sheet =
@@ -64,7 +64,7 @@ impl Study for ArmSwing {
                 setup.gait.arm_swing = (swing > 0.0).then_some(swing);
                 walk(&setup, speed, swing)
             };
-            let walks = SWINGS.into_iter().map(&mut of_swing).collect::<Result<Vec<Walk>, _>>()?;
+            let walks = SWINGS.into_iter().map(&mut of_swing).collect::<Result<Vec<SwingWalk>, _>>()?;
             figures.push((format!("arm_swing_{scene}.png"), draw(&setup, &walks)));
             all.extend(walks);
         }
@@ -78,7 +78,7 @@ impl Study for ArmSwing {
 
 /// One walk.
 #[derive(Clone, Debug, Serialize)]
-struct Walk {
+struct SwingWalk {
     /// Name of the scene.
     scene: String,
     /// \[km/h\]
@@ -107,9 +107,9 @@ fn moment(sim: &SimState, foot: usize) -> f64 {
     mz - (px * fy - py * fx)
 }
 
-fn walk(setup: &Setup, speed_kmh: f64, swing: f64) -> Result<Walk, Error> {
+fn walk(setup: &Setup, speed_kmh: f64, swing: f64) -> Result<SwingWalk, Error> {
     let mut chain = Chain::new(setup)?;
-    let mut walk = Walk {
+    let mut walk = SwingWalk {
         scene: setup.scene.name.clone(),
         speed_kmh,
         swing,
@@ -155,7 +155,7 @@ fn walk(setup: &Setup, speed_kmh: f64, swing: f64) -> Result<Walk, Error> {
     Ok(walk)
 }
 
-fn draw(setup: &Setup, walks: &[Walk]) -> Figure {
+fn draw(setup: &Setup, walks: &[SwingWalk]) -> Figure {
     let end = TIMES.0 + TIMES.1;
     let about = format!("{}, scene {}, model type {}", setup.robot.name, setup.scene.name, setup.scene.depth);
     let mut chart =

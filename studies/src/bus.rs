@@ -5,9 +5,9 @@ use std::hint::black_box;
 use std::path::Path;
 
 use codec::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
-use codec::layout::{Carries, Layout};
-use config::scene::Integrator;
-use config::tolerance::Method;
+use codec::layout::{Carries, FrameLayout};
+use config::method::Integrator;
+use config::method::Method;
 use config::{Robot, Setup};
 use fieldbus::load::{BIT_RATE, DATA_BIT_RATE, Rates, cycle_time};
 use messages::{BusFrames, Sensors};
@@ -111,7 +111,7 @@ fn one_walk(root: &Path, scene: &str, cycle: f64, classic: bool) -> Result<Value
     }))
 }
 
-fn bus(robot: &Robot, kind: &str, layout: &Layout, rates: Rates, cycle: f64) -> Value {
+fn bus(robot: &Robot, kind: &str, layout: &FrameLayout, rates: Rates, cycle: f64) -> Value {
     let times = cycle_time(layout, rates);
     let (line, time) =
         times.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).expect("a robot has a node");
@@ -135,7 +135,7 @@ fn bus(robot: &Robot, kind: &str, layout: &Layout, rates: Rates, cycle: f64) -> 
 }
 
 /// Median times \[us\] of one cycle at lowlevel and at the far end.
-fn costs(layout: &Layout) -> (f64, f64) {
+fn costs(layout: &FrameLayout) -> (f64, f64) {
     let (mut command, mut sensors) = (DriveCommand::default(), Sensors::default());
     let (mut tx, mut rx) = (BusFrames::default(), BusFrames::default());
     for j in 0..messages::MAX_JOINTS {

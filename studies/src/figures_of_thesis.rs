@@ -12,7 +12,7 @@
 use std::path::{Path, PathBuf};
 
 use config::Setup;
-use config::scene::Integrator;
+use config::method::Integrator;
 use drawing::color::{BLACK, GREY, VERMILION};
 use drawing::{Chart, Figure};
 use messages::Command;
@@ -41,7 +41,7 @@ const TORUS: (f64, f64) = (10.0, 0.25);
 type Change = fn(&mut Setup) -> Result<(), Error>;
 
 /// One figure: what is walked, and what is compared.
-struct Case {
+struct ThesisCase {
     figure: &'static str,
     title: &'static str,
     scene: &'static str,
@@ -50,14 +50,14 @@ struct Case {
     names: [&'static str; 2],
     changes: [Change; 2],
     /// Which figure of both walks is compared.
-    judged: fn(&Walk) -> f64,
+    judged: fn(&ThesisWalk) -> f64,
     judged_name: &'static str,
     /// Least reduction that the text promises.
     promised: f64,
 }
 
-const CASES: [Case; 3] = [
-    Case {
+const CASES: [ThesisCase; 3] = [
+    ThesisCase {
         figure: "5.2",
         title: "Figure 5.2: normal forces for upper body stabilization",
         scene: "walk_2kmh",
@@ -68,7 +68,7 @@ const CASES: [Case; 3] = [
         judged_name: "peak error",
         promised: 0.5,
     },
-    Case {
+    ThesisCase {
         figure: "4.17",
         title: "Figure 4.17: three masses or one in planning",
         scene: "johnnie_25kmh",
@@ -79,7 +79,7 @@ const CASES: [Case; 3] = [
         judged_name: "sway of φ_x",
         promised: 0.45,
     },
-    Case {
+    ThesisCase {
         figure: "9.1",
         title: "Figure 9.1: more inertia of the upper body",
         scene: "walk_2kmh",
@@ -118,7 +118,7 @@ pub struct Thesis {
 impl Study for Thesis {
     fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
         let only = self.figure.as_deref();
-        let chosen: Vec<&Case> =
+        let chosen: Vec<&ThesisCase> =
             CASES.iter().filter(|case| only.is_none_or(|figure| figure == case.figure)).collect();
         if chosen.is_empty() {
             let known = CASES.map(|case| case.figure).join(", ");
@@ -137,7 +137,7 @@ impl Study for Thesis {
 
 /// One walk. Pairs are (φ_x, φ_y): forwards and backwards, to the sides; nothing but `fell` is known of one that fell.
 #[derive(Clone, Debug, serde::Serialize)]
-struct Walk {
+struct ThesisWalk {
     /// Which one.
     name: String,
     /// Whether the robot fell.
@@ -154,9 +154,9 @@ struct Walk {
 }
 
 /// One figure, onto the sheet and as an object. There is no reduction if the robot falls in either walk.
-fn compare(root: &Path, case: &Case, order: &Thesis, sheet: &mut Sheet) -> Result<Value, Error> {
+fn compare(root: &Path, case: &ThesisCase, order: &Thesis, sheet: &mut Sheet) -> Result<Value, Error> {
     let setup = periodic(root, case, order.depth)?;
-    let walk = |k: usize| -> Result<Walk, Error> {
+    let walk = |k: usize| -> Result<ThesisWalk, Error> {
         let mut setup = setup.clone();
         case.changes[k](&mut setup)?;
         walk(&setup, case.names[k])
@@ -199,7 +199,7 @@ pub(crate) fn deepen(setup: &mut Setup, depth: u8) {
 }
 
 /// The scene of a case, without an end before all has been seen. Motors take shorter and semi-implicit steps.
-fn periodic(root: &Path, case: &Case, depth: u8) -> Result<Setup, Error> {
+fn periodic(root: &Path, case: &ThesisCase, depth: u8) -> Result<Setup, Error> {
     let mut setup = Setup::load(root, case.scene)?;
     deepen(&mut setup, depth);
     setup.scene.duration = SETTLED + SPAN;
@@ -212,9 +212,9 @@ fn periodic(root: &Path, case: &Case, depth: u8) -> Result<Setup, Error> {
     Ok(setup)
 }
 
-fn walk(setup: &Setup, name: &str) -> Result<Walk, Error> {
+fn walk(setup: &Setup, name: &str) -> Result<ThesisWalk, Error> {
     let mut chain = Chain::new(setup)?;
-    let mut walk = Walk {
+    let mut walk = ThesisWalk {
         name: name.into(),
         fell: false,
         peak_rad: [f64::NAN; 2],
@@ -296,7 +296,7 @@ fn height(model: &Model, setup: &Setup) -> f64 {
     model.cog(&mut data).z
 }
 
-fn draw(case: &Case, about: &str, walks: &[Walk; 2]) -> Figure {
+fn draw(case: &ThesisCase, about: &str, walks: &[ThesisWalk; 2]) -> Figure {
     let mut figure = Figure::new(case.title, &format!("{about}  ·  inclination error, desired − measured"));
     for (axis, name) in ["φ_x, forwards and backwards", "φ_y, to the sides"].into_iter().enumerate() {
         let mut chart = Chart::new(name, "time [s]", "error [rad]").height(330.0).at_least(0.002);
@@ -317,7 +317,7 @@ fn draw(case: &Case, about: &str, walks: &[Walk; 2]) -> Figure {
 mod tests {
     use super::*;
 
-    fn case(figure: &str) -> &'static Case {
+    fn case(figure: &str) -> &'static ThesisCase {
         CASES.iter().find(|case| case.figure == figure).unwrap()
     }
 

@@ -1,10 +1,10 @@
 //! Speed against accuracy, and where methods fail: `gangwerk study ...`.
 //!
-//! The table of studies is [`Task`]; beside it stand the [`scorecard`], which walks everything that is to walk, and
+//! The table of studies is [`SimulatedStudy`]; beside it stand the [`scorecard`], which walks everything that is to walk, and
 //! [`stability::log`], which judges a log.
 //!
 //! They work on [`chain`], a whole robot in one process; [`second`] replays a part of it. A study is a struct of its arguments
-//! that implements [`Study`], and a row in [`Task`]; what it finds is a [`Sheet`].
+//! that implements [`Study`], and a row in [`SimulatedStudy`]; what it finds is a [`Sheet`].
 
 pub mod accuracy;
 pub mod arm_swing;
@@ -54,11 +54,11 @@ macro_rules! studies {
     ($($(#[$about:meta])* $name:ident: $study:ty,)*) => {
         /// All studies.
         #[derive(clap::Subcommand, Debug)]
-        pub enum Task {
+        pub enum SimulatedStudy {
             $($(#[$about])* $name($study),)*
         }
 
-        impl Study for Task {
+        impl Study for SimulatedStudy {
             fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
                 match self {
                     $(Self::$name(study) => study.run(given),)*
@@ -80,13 +80,13 @@ studies! {
     /// How fast simulation, planner and stabilizer are, and how accurate at that speed.
     Speed: speed::Speed,
     /// Where methods fail: predicted and measured limits, and how each failure is reported.
-    Limits: limits::Limits,
+    Limits: limits::LimitsStudy,
     /// Look-up tables of the local controllers: error over size, time, and what a walk loses by them.
     Tables: tables::Tables,
     /// Figures of the thesis that compare two walks: 5.2, 4.17, 9.1.
     Thesis: figures_of_thesis::Thesis,
     /// Vertical moments of the soles and how far they turn, with arms that swing and with arms that do not.
-    ArmSwing: arm_swing::ArmSwing,
+    ArmSwing: arm_swing::ArmSwingStudy,
     /// What the field bus costs: load of its lines, time of its frames, accuracy of the walk.
     Bus: bus::BusCost,
     /// How punctual a bus cycle over CAN lines is, beside cyclictest in the same run: both ends on this machine.

@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use codec::frames::{DriveCommand, decode_sensors, encode_sensors, encode_targets};
-use codec::layout::Layout;
+use codec::layout::FrameLayout;
 use config::{BusAddress, Robot};
-use fieldbus::{End, Lines};
+use fieldbus::{BusEnd, BusLines};
 use messages::{BusFrames, Frame, MAX_FRAMES, Sensors};
-use realtime::{Histogram, Period, Schedule, allocations, clock, prepare_thread};
+use realtime::{Histogram, Period, ThreadSchedule, allocations, clock, prepare_thread};
 use serde::Serialize;
 use serde_json::json;
 
@@ -57,7 +57,7 @@ pub struct Punctuality {
 
 /// What was found.
 #[derive(Clone, Debug, Serialize)]
-struct Found {
+struct LineFindings {
     /// Whose frames.
     robot: String,
     /// \[s\] Bus cycle.
@@ -96,15 +96,15 @@ impl Study for Punctuality {
         }
         let robot = Robot::load(&given.config.join("robots").join(&self.robot))?;
         let layout = if *fd { robot.layout } else { robot.classic? };
-        let open = |end| Lines::open(interfaces, &layout, *fd, end);
-        let (near, far) = (open(End::Near)?, open(End::Far)?);
+        let open = |end| BusLines::open(interfaces, &layout, *fd, end);
+        let (near, far) = (open(BusEnd::Near)?, open(BusEnd::Far)?);
         Ok(sheet(&self.measure(near, far, &layout)?))
     }
 }
 
 impl Punctuality {
     /// Runs `cyclictest` alone, then both ends of the lines beside it.
-    fn measure(&self, near: Lines, far: Lines, layout: &Layout) -> Result<Found, Error> {
+    fn measure(&self, near: BusLines, far: BusLines, layout: &FrameLayout) -> Result<LineFindings, Error> {
         let beside = || cyclictest(None, PRIORITY[0], self.seconds);
         let alone = beside();
         let stop = AtomicBool::new(false);
@@ -125,7 +125,7 @@ impl Punctuality {
     }
 }
 
-fn sheet(f: &Found) -> Sheet {
+fn sheet(f: &LineFindings) -> Sheet {
     let mut sheet = Sheet::titled(format!(
         "{}, cycle {} ms: {} cycles, {} skipped; {} with late answers; {} of {} frames lost, {} and {} unsent",
         f.robot,
@@ -160,8 +160,8 @@ fn sheet(f: &Found) -> Sheet {
 }
 
 /// The near end: one cycle after the other.
-fn drive(mut lines: Lines, layout: &Layout, order: &Punctuality) -> Found {
-    let granted = prepare_thread(&Schedule { priority: PRIORITY[0], core: None });
+fn drive(mut lines: BusLines, layout: &FrameLayout, order: &Punctuality) -> LineFindings {
+    let granted = prepare_thread(&ThreadSchedule { priority: PRIORITY[0], core: None });
     let answers = layout.sent(false).count().min(MAX_FRAMES);
     let cycle_ns = (order.cycle * 1e-3 * 1e9) as u64;
     let [mut lateness, mut sent, mut answered] = [(); 3].map(|()| Histogram::new());
@@ -204,7 +204,7 @@ fn drive(mut lines: Lines, layout: &Layout, order: &Punctuality) -> Found {
     allocations::disarm();
     let cycles = tick - WARM_UP;
     let us = |histogram: &Histogram| histogram.percentiles().map(|ns| ns as f64 * 1e-3);
-    Found {
+    LineFindings {
         robot: order.robot.clone(),
         cycle: order.cycle * 1e-3,
         cycles,
@@ -222,7 +222,7 @@ fn drive(mut lines: Lines, layout: &Layout, order: &Punctuality) -> Found {
 }
 
 /// Reads until all answers are there; `false`: it is too late for that.
-fn collect(lines: &mut Lines, rx: &mut BusFrames, answers: usize, until_ns: u64) -> bool {
+fn collect(lines: &mut BusLines, rx: &mut BusFrames, answers: usize, until_ns: u64) -> bool {
     while rx.as_slice().len() < answers {
         let left = until_ns.saturating_sub(clock::now());
         if left == 0 {
@@ -238,8 +238,8 @@ fn collect(lines: &mut Lines, rx: &mut BusFrames, answers: usize, until_ns: u64)
 
 /// The far end: every SYNC is answered with all frames of its line. Returns allocations and frees, and what could not be
 /// sent.
-fn answer(mut lines: Lines, layout: &Layout, stop: &AtomicBool) -> ([u64; 2], u32) {
-    prepare_thread(&Schedule { priority: PRIORITY[1], core: None });
+fn answer(mut lines: BusLines, layout: &FrameLayout, stop: &AtomicBool) -> ([u64; 2], u32) {
+    prepare_thread(&ThreadSchedule { priority: PRIORITY[1], core: None });
     let (mut rx, mut tx, mut sensors) = (BusFrames::default(), BusFrames::default(), Sensors::default());
     let mut cycles = 0;
     while !stop.load(Ordering::Relaxed) {
@@ -265,7 +265,7 @@ fn answer(mut lines: Lines, layout: &Layout, stop: &AtomicBool) -> ([u64; 2], u3
 }
 
 /// The counter of a SYNC; none if it is another frame.
-fn sync(layout: &Layout, frame: &Frame) -> Option<u64> {
+fn sync(layout: &FrameLayout, frame: &Frame) -> Option<u64> {
     let message = layout.find(frame.line, frame.id).map(|i| &layout.messages[i])?;
     let counter = message.counter().filter(|_| message.is_sync() && message.len == frame.len)?;
     Some(counter.get(&frame.data) as u64)

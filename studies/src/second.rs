@@ -5,7 +5,7 @@ use std::error::Error;
 
 use config::Setup;
 use messages::JointTargets;
-use sim_backend::drive::{Drive, Motion};
+use sim_backend::drive::{JointCubic, JointMotion};
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs};
 
@@ -53,11 +53,11 @@ impl Second {
     }
 
     /// How the joints are to move in a cycle.
-    pub fn drives(&self, cycle: usize) -> impl Iterator<Item = Drive> + '_ {
+    pub fn drives(&self, cycle: usize) -> impl Iterator<Item = JointCubic> + '_ {
         let [from, to] = [&self.targets[cycle], &self.targets[cycle + 1]];
         (0..self.joints).map(move |j| {
-            let before = Motion { angle: from.angle[j], speed: from.speed[j], acceleration: 0.0 };
-            Drive::follow(before, to.angle[j], to.speed[j], self.cycle)
+            let before = JointMotion { angle: from.angle[j], speed: from.speed[j], acceleration: 0.0 };
+            JointCubic::follow(before, to.angle[j], to.speed[j], self.cycle)
         })
     }
 
@@ -67,7 +67,7 @@ impl Second {
         plant: &mut Plant,
         stepper: &mut Stepper,
         steps: u32,
-        drives: &[Drive],
+        drives: &[JointCubic],
         x: &mut [f64],
     ) {
         let h = self.cycle / f64::from(steps);

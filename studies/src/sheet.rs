@@ -11,12 +11,12 @@ use serde_json::{Map, Value};
 #[derive(Clone, Debug, Default)]
 pub struct Sheet {
     facts: Map<String, Value>,
-    parts: Vec<Part>,
+    parts: Vec<SheetPart>,
 }
 
 /// What people read, from top to bottom.
 #[derive(Clone, Debug)]
-enum Part {
+enum SheetPart {
     Line(String),
     Table(&'static [Column], Vec<Value>),
 }
@@ -106,7 +106,7 @@ impl Column {
 impl Sheet {
     /// A sheet with one line above everything.
     pub(crate) fn titled(title: impl Into<String>) -> Self {
-        Self { parts: vec![Part::Line(title.into())], ..Self::default() }
+        Self { parts: vec![SheetPart::Line(title.into())], ..Self::default() }
     }
 
     /// A fact for other programs, under its key.
@@ -123,12 +123,12 @@ impl Sheet {
 
     /// A line for people.
     pub fn line(&mut self, text: impl Into<String>) {
-        self.parts.push(Part::Line(text.into()));
+        self.parts.push(SheetPart::Line(text.into()));
     }
 
     /// A table for people.
     pub fn table<R: Serialize>(&mut self, columns: &'static [Column], rows: &[R]) {
-        self.parts.push(Part::Table(columns, rows.iter().map(of).collect()));
+        self.parts.push(SheetPart::Table(columns, rows.iter().map(of).collect()));
     }
 
     /// A table for people, whose rows other programs find under its key.
@@ -174,9 +174,9 @@ impl Sheet {
     }
 
     fn written(&self, table: impl Fn(&[Column], &[Value]) -> String) -> String {
-        let one = |part: &Part| match part {
-            Part::Line(text) => format!("{text}\n"),
-            Part::Table(columns, rows) => table(columns, rows),
+        let one = |part: &SheetPart| match part {
+            SheetPart::Line(text) => format!("{text}\n"),
+            SheetPart::Table(columns, rows) => table(columns, rows),
         };
         self.parts.iter().map(one).collect::<String>().trim_end().to_owned()
     }

@@ -4,12 +4,12 @@
 use std::error::Error;
 
 use config::Setup;
-use config::scene::Integrator;
+use config::method::Integrator;
 use environment::Environment;
 use messages::RIGHT;
 use realtime::clock::processor_time;
 use serde_json::{Value, json};
-use sim_backend::drive::Drive;
+use sim_backend::drive::JointCubic;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, orientation};
 
@@ -77,7 +77,7 @@ pub fn run(stand: &Setup, walk: &Setup) -> Result<Vec<Value>, Box<dyn Error>> {
 }
 
 /// What a simulation found at the end of a cycle.
-struct Instant {
+struct CycleResult {
     pose: [f64; 7],
     /// \[N\] Normal forces, right and left.
     force: [f64; 2],
@@ -85,10 +85,10 @@ struct Instant {
     took: f64,
 }
 
-fn simulate(second: &Second, plant: &mut Plant, method: Integrator, steps: u32) -> Vec<Instant> {
+fn simulate(second: &Second, plant: &mut Plant, method: Integrator, steps: u32) -> Vec<CycleResult> {
     let mut x = second.state.clone();
     let mut stepper = Stepper::new(method, x.len());
-    let mut drives: Vec<Drive> = second.drives(0).collect();
+    let mut drives: Vec<JointCubic> = second.drives(0).collect();
     let mut instants = Vec::with_capacity(second.cycles());
     let mut last = processor_time();
     for cycle in 0..second.cycles() {
@@ -100,7 +100,7 @@ fn simulate(second: &Second, plant: &mut Plant, method: Integrator, steps: u32) 
         pose.copy_from_slice(&x[..7]);
         let now = processor_time();
         let took = (now - last) as f64 * 1e-9;
-        instants.push(Instant { pose, force: seen.foot_wrench.map(|w| w.force[2]), took });
+        instants.push(CycleResult { pose, force: seen.foot_wrench.map(|w| w.force[2]), took });
         last = now;
     }
     instants
@@ -111,7 +111,7 @@ fn row(
     motion: &str,
     (second, plant): (&Second, &mut Plant),
     (method, steps): Method,
-    reference: &[Instant],
+    reference: &[CycleResult],
 ) -> Value {
     let mut best = simulate(second, plant, method, steps);
     let repeats = if duration(&best) > 1.0 { 1 } else { REPEATS };
@@ -142,7 +142,7 @@ fn row(
 }
 
 /// \[s\] Processor time.
-fn duration(instants: &[Instant]) -> f64 {
+fn duration(instants: &[CycleResult]) -> f64 {
     instants.iter().map(|i| i.took).sum()
 }
 

@@ -220,7 +220,7 @@ fn zmp_error(plan: &Plan, gait: &Gait) -> f64 {
     const INSTANT: f64 = 1e-3;
     let (leg, height) = (gait.model.leg_mass, gait.model.leg_height);
     let body = 1.0 - 2.0 * leg;
-    let g = -multibody::GRAVITY.z;
+    let g = multibody::GRAVITY_ACCELERATION;
     let at = |t: f64| {
         let com = plan.com.sample(t);
         let feet = [plan.feet[0].sample(t), plan.feet[1].sample(t)];

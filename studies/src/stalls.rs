@@ -73,7 +73,7 @@ pub struct Peaks {
 
 /// What came of one stop.
 #[derive(Clone, Debug, Serialize)]
-pub struct Trial {
+pub struct StallTrial {
     /// Who was stopped.
     pub process: &'static str,
     /// \[1\] Cycles for which.
@@ -122,7 +122,7 @@ pub fn run(
     millis: &[f64],
     instants: usize,
     seed: u64,
-) -> Result<Vec<Trial>, Error> {
+) -> Result<Vec<StallTrial>, Error> {
     let mut setup = Setup::load(config, scene)?;
     // The walk goes on to the end of the last trial.
     setup.scene.commands.retain(|(at, _)| *at < WALKS);
@@ -161,7 +161,7 @@ pub fn run(
             trial(starts[i].clone(), process, cycles, &undisturbed)
         }));
     }
-    let place = |t: &Trial| (PROCESSES.iter().position(|p| p.name() == t.process), t.cycles);
+    let place = |t: &StallTrial| (PROCESSES.iter().position(|p| p.name() == t.process), t.cycles);
     trials.sort_by_key(place);
     Ok(trials)
 }
@@ -193,7 +193,7 @@ fn peaks(chain: &mut Chain, cycles: u64) -> Peaks {
 }
 
 /// Stops `process` for some cycles from here on, and lets it go on.
-fn trial(mut chain: Chain, process: Process, cycles: u64, undisturbed: &Peaks) -> Trial {
+fn trial(mut chain: Chain, process: Process, cycles: u64, undisturbed: &Peaks) -> StallTrial {
     let at = chain.tick() as f64 * chain.cycle();
     let after = (AFTERMATH / chain.cycle()) as u64;
     let mut before = *chain.robot().state();
@@ -215,7 +215,7 @@ fn trial(mut chain: Chain, process: Process, cycles: u64, undisturbed: &Peaks) -
         found.add(&before, now);
         before = *now;
     }
-    Trial {
+    StallTrial {
         process: process.name(),
         cycles,
         at,
@@ -229,11 +229,11 @@ fn trial(mut chain: Chain, process: Process, cycles: u64, undisturbed: &Peaks) -
 }
 
 /// All trials; for people a row per process and duration.
-pub fn sheet(trials: &[Trial]) -> Sheet {
-    let same = |a: &Trial, b: &Trial| (a.process, a.cycles) == (b.process, b.cycles);
-    let row = |group: &[Trial]| {
-        let count = |f: fn(&Trial) -> bool| group.iter().filter(|t| f(t)).count();
-        let most = |f: fn(&Trial) -> f64| group.iter().map(f).fold(0.0, f64::max);
+pub fn sheet(trials: &[StallTrial]) -> Sheet {
+    let same = |a: &StallTrial, b: &StallTrial| (a.process, a.cycles) == (b.process, b.cycles);
+    let row = |group: &[StallTrial]| {
+        let count = |f: fn(&StallTrial) -> bool| group.iter().filter(|t| f(t)).count();
+        let most = |f: fn(&StallTrial) -> f64| group.iter().map(f).fold(0.0, f64::max);
         // Each event with the number of trials that reported it.
         let mut reported: Vec<(String, usize)> = Vec::new();
         for (process, code) in group.iter().flat_map(|t| &t.events) {

@@ -4,7 +4,7 @@ use chain::Chain;
 use config::Setup;
 use config::bus_fault::{BusFault, FaultKind};
 use messages::{Command, EventCode};
-use studies::bus_faults::{self, End};
+use studies::bus_faults::{self, TrialEnd};
 
 /// Two instants of a stride: the page is made with more, `gangwerk study bus-faults`.
 const INSTANTS: usize = 2;
@@ -21,7 +21,7 @@ fn faults_are_named_and_answered_in_time() {
     let missing: Vec<_> =
         report.rows.iter().map(|row| &row.fault).filter(|fault| !page.contains(*fault)).collect();
     assert!(missing.is_empty(), "docs/bus_faults.md lacks {missing:?}; make its table anew");
-    assert!(report.rows.iter().all(|row| row.end != End::Fell), "no joint moves when the robot falls");
+    assert!(report.rows.iter().all(|row| row.end != TrialEnd::Fell), "no joint moves when the robot falls");
     for burst in report.bursts.iter().filter(|burst| burst.cycles <= 10) {
         assert_eq!(burst.walked_on, [INSTANTS; 2], "walks on through {} cycles", burst.cycles);
     }

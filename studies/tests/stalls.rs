@@ -3,7 +3,7 @@
 use chain::Chain;
 use config::{Setup, root};
 use messages::{Command, EventCode, GaitState, Process};
-use studies::stalls::{self, Trial};
+use studies::stalls::{self, StallTrial};
 
 /// Random instants for each process and duration; `gangwerk study stalls` takes more.
 const INSTANTS: usize = 3;
@@ -23,7 +23,7 @@ fn bridged(process: &str) -> u64 {
 }
 
 /// What may be reported of a stop, beside what a walk reports anyway: its true cause, and what a robot without control does.
-fn deserved(trial: &Trial, code: EventCode) -> bool {
+fn deserved(trial: &StallTrial, code: EventCode) -> bool {
     use EventCode::*;
     let lost = trial.cycles > bridged(trial.process);
     let cause: &[EventCode] = match (trial.process, lost) {

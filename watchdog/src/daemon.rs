@@ -11,7 +11,7 @@ use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, StopLine, Writer};
 use messages::topics::{POWER, WATCHDOG_RESET};
 use messages::{Command, Detail, EventCode, Header, Live, Power, Process, WatchdogReset};
-use realtime::{Period, Schedule, clock};
+use realtime::{Period, ThreadSchedule, clock};
 use std::error::Error;
 use std::path::Path;
 
@@ -55,8 +55,8 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
 fn listen(d: &Daemon) -> Result<EmergencyStop, Box<dyn Error>> {
     let row = d.setup.system.emergency_stop;
     let schedule = match d.mode {
-        Mode::RealTime => Schedule { priority: row.priority, core: row.core },
-        Mode::Lockstep => Schedule::ORDINARY,
+        Mode::RealTime => ThreadSchedule { priority: row.priority, core: row.core },
+        Mode::Lockstep => ThreadSchedule::ORDINARY,
     };
     let (stop, granted) = EmergencyStop::listen(StopLine::bind(d.space.dir())?, schedule)?;
     for missing in &granted.missing {

@@ -9,7 +9,7 @@
 
 use ipc::{Asker, Datagram, StopAnswer, StopLine};
 use messages::Power;
-use realtime::{Granted, Schedule, clock, prepare_side_thread};
+use realtime::{Granted, ThreadSchedule, clock, prepare_side_thread};
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
@@ -53,7 +53,7 @@ impl EmergencyStop {
     ///
     /// # Errors
     /// The thread cannot be started.
-    pub fn listen(line: StopLine, schedule: Schedule) -> io::Result<(Self, Granted)> {
+    pub fn listen(line: StopLine, schedule: ThreadSchedule) -> io::Result<(Self, Granted)> {
         let shared = Arc::new(Shared::default());
         let (far, (told, granted)) = (shared.clone(), mpsc::channel());
         let work = move || {
@@ -133,7 +133,7 @@ mod tests {
     fn rig(name: &str) -> (EmergencyStop, StopButton) {
         let dir = std::env::temp_dir().join(format!("gangwerk-estop-{}-{name}", std::process::id()));
         let line = StopLine::bind(&dir).unwrap();
-        let (stop, granted) = EmergencyStop::listen(line, Schedule::ORDINARY).unwrap();
+        let (stop, granted) = EmergencyStop::listen(line, ThreadSchedule::ORDINARY).unwrap();
         assert!(!granted.degraded());
         (stop, StopButton::new(&StopName::own(&dir)).unwrap())
     }

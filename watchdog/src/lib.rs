@@ -7,4 +7,4 @@ pub mod daemon;
 pub mod estop;
 mod supply;
 
-pub use supply::{Inputs, PAUSE, State, Supply, Watchdog, supply_event, verdict};
+pub use supply::{Inputs, PAUSE, Supply, SupplyState, Watchdog, supply_event, verdict};

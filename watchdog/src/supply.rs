@@ -76,7 +76,7 @@ enum Happening {
 /// Everything that decides what a watchdog does next, numbers as far as they matter: equal states act alike. What it has
 /// published is not among it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct State {
+pub struct SupplyState {
     /// The motor supply.
     pub supply: Supply,
     /// Epoch and tick of the newest sign of life.
@@ -148,8 +148,8 @@ impl Watchdog {
     }
 
     /// The state that decides what it does next.
-    pub fn state(&self) -> State {
-        State {
+    pub fn state(&self) -> SupplyState {
+        SupplyState {
             supply: self.supply,
             seen: self.seen,
             reset_pause: self.reset_pause.min(self.pause),

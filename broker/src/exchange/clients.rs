@@ -3,24 +3,24 @@
 use messages::command::Domain;
 use messages::{Reason, Stamp};
 
-use super::{Exchange, FIRST_STREAM, LEASE_ROUND, MAX_PROCESSES, Report, SILENCE};
+use super::{BrokerEvent, Exchange, FIRST_STREAM, LEASE_ROUND, MAX_PROCESSES, SILENCE};
 use crate::admission::Sender;
-use crate::inlet::{Request, Table};
-use crate::members::{Exit, Member, Watch};
+use crate::inlet::{BrokerTable, Request};
+use crate::members::{Member, MemberExit, Watch};
 use crate::message::{Message, client_queue, describe, domain_mask, service, service_message, split_u32};
 use crate::observation::Observation;
 use crate::refusal::Refusal;
 
 impl Exchange<'_> {
     /// Serves one request of a stream; false if none waits.
-    pub(super) fn serve_stream(&mut self, report: &mut dyn FnMut(Report)) -> bool {
+    pub(super) fn serve_stream(&mut self, report: &mut dyn FnMut(BrokerEvent)) -> bool {
         let Ok(request) = self.inlet.requests.try_recv() else { return false };
         match request {
             Request::Join { token, name, may, out, done } => {
                 // HELLO sent twice must not make two members of one connection.
                 self.members.retain(|m| m.sender.token != token);
                 let sender = Sender { token, may, last: [0; 3] };
-                let exit = Exit::Stream(out);
+                let exit = MemberExit::Stream(out);
                 self.members.push(Member {
                     name,
                     sender,
@@ -42,9 +42,11 @@ impl Exchange<'_> {
             }
             Request::Lines { token, sequence, table } => {
                 let lines = match table {
-                    Table::Commands => describe(),
-                    Table::Parameters => self.robot.as_mut().map_or(Vec::new(), Observation::parameters),
-                    Table::Statistics => self.statistics(),
+                    BrokerTable::Commands => describe(),
+                    BrokerTable::Parameters => {
+                        self.robot.as_mut().map_or(Vec::new(), Observation::parameters)
+                    }
+                    BrokerTable::Statistics => self.statistics(),
                 };
                 self.answer_lines(token, sequence, lines);
             }
@@ -127,7 +129,7 @@ impl Exchange<'_> {
         let (now, sent) = (self.now, message.stamp.sent_ns);
         let member = &mut self.members[index];
         (member.domains, member.lost) = (domains, lost.into());
-        if let Exit::Queue { renewed, .. } = &mut member.exit {
+        if let MemberExit::Queue { renewed, .. } = &mut member.exit {
             *renewed = now;
         }
         member.answer(service_message(service::ACCEPTED, 0, now, &[]));
@@ -155,7 +157,7 @@ impl Exchange<'_> {
             // A process of the run: shared memory is its user's.
             sender: Sender { token, may: domain_mask(&Domain::ALL), last: [0; 3] },
             domains: 0,
-            exit: Exit::Queue { sender: Box::new(sender), renewed: self.now },
+            exit: MemberExit::Queue { sender: Box::new(sender), renewed: self.now },
             sent: 0,
             lost: 0,
             watch: Watch::default(),
@@ -167,8 +169,8 @@ impl Exchange<'_> {
     pub(super) fn release_silent(&mut self) {
         let now = self.now;
         let silent = |m: &Member| match &m.exit {
-            Exit::Queue { renewed, .. } => now.saturating_sub(*renewed) > SILENCE,
-            Exit::Stream(_) => false,
+            MemberExit::Queue { renewed, .. } => now.saturating_sub(*renewed) > SILENCE,
+            MemberExit::Stream(_) => false,
         };
         let gone: Vec<u32> = self.members.iter().filter(|m| silent(m)).map(|m| m.sender.token).collect();
         for token in gone {
@@ -190,7 +192,7 @@ impl Exchange<'_> {
         self.next_lease = self.now + LEASE_ROUND;
         let news = self.lease_message();
         for member in self.members.iter_mut().filter(|m| m.is_process()) {
-            if let Exit::Queue { sender, .. } = &mut member.exit {
+            if let MemberExit::Queue { sender, .. } = &mut member.exit {
                 sender.send(&news);
             }
         }

@@ -3,7 +3,7 @@
 use messages::Stamp;
 use messages::command::Priority;
 
-use super::{Exchange, Report};
+use super::{BrokerEvent, Exchange};
 use crate::members::Watch;
 use crate::message::{MAX_BYTES, service, service_message, write_command};
 use crate::observation::layout;
@@ -55,7 +55,7 @@ impl Exchange<'_> {
         stamp: &Stamp,
         name: &str,
         value: f64,
-        report: &mut dyn FnMut(Report),
+        report: &mut dyn FnMut(BrokerEvent),
     ) {
         let command = self.robot.as_ref().map_or_else(
             || Err(Refusal::NoParameter("nothing is known of this run's parameters".into())),

@@ -1,5 +1,5 @@
 use super::*;
-use crate::inlet::{self, Gate, Request, Table};
+use crate::inlet::{self, BrokerTable, Gate, Request};
 use crate::members::Outgoing;
 use crate::message::{Message, domain_mask};
 use crate::observation::Observation;
@@ -233,7 +233,7 @@ fn a_parameter_is_set_by_name_or_refused_with_the_reason() {
         assert_eq!(operator.refused(), (code, text.into()));
     }
     assert_eq!(stranger.refused().0, 8);
-    gate.ask(Request::Lines { token: stranger.token, sequence: 2, table: Table::Parameters });
+    gate.ask(Request::Lines { token: stranger.token, sequence: 2, table: BrokerTable::Parameters });
     exchange.turn(SECOND, &mut |_| {});
     let lines: Vec<String> = std::iter::from_fn(|| stranger.answers.try_recv().ok())
         .map(|bytes| String::from_utf8_lossy(Message::parse(&bytes).unwrap().payload).into_owned())

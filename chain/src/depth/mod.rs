@@ -28,13 +28,14 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt::Write;
 
-use config::scene::Integrator::{self, Euler, SemiImplicit};
-use config::tolerance::{Method, Output};
+use config::method::Integrator::{self, Euler, SemiImplicit};
+use config::method::Method;
+use config::tolerance::Output;
 use config::{Robot, Scene, Setup};
 use messages::Command;
 use serde::Serialize;
 
-use self::trial::Trial;
+use self::trial::MethodTrial;
 
 /// \[s\] Of what matters, walking or a push, a trial lasts this long.
 pub const WALKING: f64 = 3.0;
@@ -286,7 +287,7 @@ struct Trials<'s, F> {
     setup: &'s Setup,
     cycles: usize,
     trying: F,
-    done: BTreeMap<String, Trial>,
+    done: BTreeMap<String, MethodTrial>,
 }
 
 impl<'s, F: FnMut(&str)> Trials<'s, F> {
@@ -303,7 +304,7 @@ impl<'s, F: FnMut(&str)> Trials<'s, F> {
         let name = method.to_string();
         if !self.done.contains_key(&name) {
             (self.trying)(&name);
-            self.done.insert(name, Trial::run(self.setup, method, self.cycles)?);
+            self.done.insert(name, MethodTrial::run(self.setup, method, self.cycles)?);
         }
         Ok(())
     }

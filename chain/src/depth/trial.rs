@@ -3,7 +3,8 @@
 use std::error::Error;
 
 use config::Setup;
-use config::tolerance::{Method, Output};
+use config::method::Method;
+use config::tolerance::Output;
 use messages::SimState;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use realtime::clock::processor_time;
@@ -12,7 +13,7 @@ use crate::Chain;
 use crate::ending::is_doubt;
 
 /// What a scene did with one method: the outputs of every cycle.
-pub struct Trial {
+pub struct MethodTrial {
     /// The method.
     pub method: Method,
     /// \[s\] Processor time it took.
@@ -35,7 +36,7 @@ pub struct Trial {
     position: [f64; 3],
 }
 
-impl Trial {
+impl MethodTrial {
     /// Simulates the first `cycles` bus cycles of a scene, everything in the loop.
     ///
     /// # Errors

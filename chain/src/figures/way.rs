@@ -7,7 +7,7 @@ const AS_LONG: f64 = 0.97;
 
 /// Steps so far.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Way {
+pub(super) struct StepRecord {
     /// Stance foot of the last cycle.
     stance: Option<usize>,
     /// \[m, m, rad\] Where the stance foot of each step stood, and where it pointed.
@@ -29,7 +29,7 @@ pub(super) struct Periodic {
     pub(super) turn: f64,
 }
 
-impl Way {
+impl StepRecord {
     /// A step begins when the planned load has moved to one foot alone. `heading` is the torso's.
     pub(super) fn add(&mut self, sim: &SimState, state: &ControllerState, heading: f64) {
         let stance = match state.load_left {
@@ -113,8 +113,8 @@ mod tests {
     use super::*;
 
     /// A walk whose stance feet stand at these places.
-    fn walk(footholds: &[f64]) -> Way {
-        let mut way = Way::default();
+    fn walk(footholds: &[f64]) -> StepRecord {
+        let mut way = StepRecord::default();
         let mut time = 0.0;
         for (k, x) in footholds.iter().enumerate() {
             let mut sim = SimState { time, position: [*x, 0.0, 0.0], ..SimState::default() };

@@ -8,23 +8,23 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use codec::frames::encode_sensors;
-use codec::layout::Layout;
+use codec::layout::FrameLayout;
 use config::Setup;
 use fieldbus::Capture;
-use fieldbus::capture::Form;
+use fieldbus::capture::FrameType;
 use fieldbus::cycles::Cycles;
 use fieldbus::owners::Owners;
 use lowlevel::JointLoop;
 use messages::topics::{JOINT_TARGETS, SENSORS};
 use messages::{BusFrames, Frame, Header, JointTargets, Sensors};
 use recording::Log;
-use recording::cdr::Encoder;
+use recording::cdr::CdrEncoder;
 
 use super::file;
 
 /// Inputs of the comparison.
 #[derive(clap::Args)]
-pub struct Order {
+pub struct CheckOptions {
     /// A candump log, ASC, TRC or MCAP file of the bus, from the begin of the run on.
     pub recording: PathBuf,
     /// The log of the run.
@@ -39,11 +39,11 @@ pub struct Order {
 ///
 /// # Errors
 /// Something cannot be read; or the first difference: tick, frame, signal.
-pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
+pub fn run(config: &Path, order: &CheckOptions) -> Result<(), Box<dyn Error>> {
     let log = Log::open(&order.against)?;
     let mut setup = Setup::load(config, &log.run().scene)?;
     let capture = file::read(&order.recording, order.lenient)?;
-    if !capture.frames.iter().any(|frame| matches!(frame.form, Form::Fd { .. })) {
+    if !capture.frames.iter().any(|frame| matches!(frame.form, FrameType::Fd { .. })) {
         setup = setup.on_bus(true)?;
     }
     let outcome = Comparison::new(&setup, &capture, &log)?.run();
@@ -67,7 +67,7 @@ struct Equal {
 }
 
 struct Comparison<'a> {
-    layout: &'a Layout,
+    layout: &'a FrameLayout,
     capture: &'a Capture,
     cycles: Cycles,
     joints: JointLoop,
@@ -98,7 +98,7 @@ impl<'a> Comparison<'a> {
     /// Cycle by cycle, to the end of the shorter one.
     fn run(mut self) -> Result<Equal, String> {
         let mut equal = Equal { cycles: 0, answers: 0, told: 0 };
-        let (mut from, mut to) = (Encoder::new(), Encoder::new());
+        let (mut from, mut to) = (CdrEncoder::new(), CdrEncoder::new());
         for (i, logged) in std::mem::take(&mut self.sensors).iter().enumerate() {
             let tick = i as u64 + 1;
             if logged.header.tick != tick {
@@ -150,7 +150,7 @@ impl<'a> Comparison<'a> {
 }
 
 /// The first frame that is not the same in both, with its first signal that differs.
-fn differs(layout: &Layout, a_is: &str, a: &BusFrames, b_is: &str, b: &BusFrames) -> Option<String> {
+fn differs(layout: &FrameLayout, a_is: &str, a: &BusFrames, b_is: &str, b: &BusFrames) -> Option<String> {
     let same = |x: &Frame, y: &Frame| (x.line, x.id) == (y.line, y.id);
     for x in a.as_slice() {
         let name = describe(layout, x);
@@ -165,7 +165,7 @@ fn differs(layout: &Layout, a_is: &str, a: &BusFrames, b_is: &str, b: &BusFrames
     more.map(|y| format!("{} stands in the recording, but does not belong there", describe(layout, y)))
 }
 
-fn describe(layout: &Layout, frame: &Frame) -> String {
+fn describe(layout: &FrameLayout, frame: &Frame) -> String {
     let node = layout.nodes.get(frame.line as usize).map_or("?", String::as_str);
     match layout.find(frame.line, frame.id) {
         Some(i) => format!("frame {:03X} {} of {node}", frame.id, layout.messages[i].name),
@@ -173,7 +173,7 @@ fn describe(layout: &Layout, frame: &Frame) -> String {
     }
 }
 
-fn signal_differs(layout: &Layout, a_is: &str, a: &Frame, b_is: &str, b: &Frame) -> String {
+fn signal_differs(layout: &FrameLayout, a_is: &str, a: &Frame, b_is: &str, b: &Frame) -> String {
     if a.len != b.len {
         return format!("{a_is} {} bytes, {b_is} {}", a.len, b.len);
     }

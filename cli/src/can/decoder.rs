@@ -4,15 +4,15 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
-use codec::layout::{Carries, Layout, Message};
+use codec::layout::{BusMessage, Carries, FrameLayout};
 use config::Robot;
-use fieldbus::capture::{Captured, Form};
+use fieldbus::capture::{Captured, FrameType};
 use fieldbus::owners::Owners;
 
 use super::Only;
 
 /// The layouts of a robot, and which node is behind which interface.
-pub(super) struct Decoder {
+pub(super) struct FrameDecoder {
     pub(super) robot: Robot,
     /// Whether a frame of CAN FD was seen: then the layout is that of CAN FD, also for frames of up to 8 bytes.
     fd: bool,
@@ -20,11 +20,11 @@ pub(super) struct Decoder {
 }
 
 /// The layout of classic CAN or CAN FD; a robot without frames of classic CAN has just one.
-fn layout(robot: &Robot, fd: bool) -> &Layout {
+fn layout(robot: &Robot, fd: bool) -> &FrameLayout {
     robot.classic.as_ref().ok().filter(|_| !fd).unwrap_or(&robot.layout)
 }
 
-impl Decoder {
+impl FrameDecoder {
     /// The robot of that name.
     pub(super) fn load(config: &Path, name: &str) -> Result<Self, Box<dyn Error>> {
         let place = config.join("robots").join(name);
@@ -34,17 +34,17 @@ impl Decoder {
 
     /// Learns from frames: all of a recording before it is looked at, or each as it comes.
     pub(super) fn learn(&mut self, frame: &Captured) {
-        self.fd |= matches!(frame.form, Form::Fd { .. });
+        self.fd |= matches!(frame.form, FrameType::Fd { .. });
         self.owners.learn(layout(&self.robot, self.fd), frame);
     }
 
     /// The layout in use.
-    pub(super) fn layout(&self) -> &Layout {
+    pub(super) fn layout(&self) -> &FrameLayout {
         layout(&self.robot, self.fd)
     }
 
     /// The message of a frame.
-    pub(super) fn message(&self, frame: &Captured) -> Option<&Message> {
+    pub(super) fn message(&self, frame: &Captured) -> Option<&BusMessage> {
         self.owners.message(self.layout(), frame)
     }
 
@@ -83,7 +83,7 @@ pub(super) fn unit(carries: Carries) -> &'static str {
 }
 
 /// One line for each signal: name, value, unit; words of bits in hex digits.
-pub(super) fn signals(message: &Message, frame: &Captured) -> String {
+pub(super) fn signals(message: &BusMessage, frame: &Captured) -> String {
     let mut text = String::new();
     for signal in &message.signals {
         let raw = signal.get(&frame.data);

@@ -9,7 +9,7 @@ use fieldbus::capture::{Captured, ERROR, EXTENDED, EXTENDED_BITS, REMOTE};
 use fieldbus::cycles::counter;
 
 use super::Only;
-use super::decoder::{Decoder, signals};
+use super::decoder::{FrameDecoder, signals};
 
 /// Source of the frames.
 #[derive(clap::Args)]
@@ -29,7 +29,7 @@ impl Source {
     /// There is no such robot, or file.
     pub(super) fn load(&self, config: &Path) -> Result<Option<Dictionary>, Box<dyn Error>> {
         Ok(match (&self.robot, &self.dbc) {
-            (Some(name), _) => Some(Dictionary::Robot(Box::new(Decoder::load(config, name)?))),
+            (Some(name), _) => Some(Dictionary::Robot(Box::new(FrameDecoder::load(config, name)?))),
             (None, Some(path)) => Some(Dictionary::File(Database::load(path)?)),
             (None, None) => None,
         })
@@ -39,7 +39,7 @@ impl Source {
 /// Frames by name.
 pub(super) enum Dictionary {
     /// Of a robot: which node is behind which interface is learnt from the frames.
-    Robot(Box<Decoder>),
+    Robot(Box<FrameDecoder>),
     /// Of a file, the same on all interfaces.
     File(Database),
 }

@@ -11,7 +11,7 @@ use super::{Only, file, source};
 
 /// Output options.
 #[derive(clap::Args)]
-pub struct Order {
+pub struct DumpOptions {
     /// A recording, or interfaces: can0 or can0,can1 or vcan0-8.
     pub source: String,
     /// Whose frames these are.
@@ -32,7 +32,7 @@ pub struct Order {
 ///
 /// # Errors
 /// The source cannot be read.
-pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
+pub fn run(config: &Path, order: &DumpOptions) -> Result<(), Box<dyn Error>> {
     let dictionary = order.words.load(config)?;
     let mut page = Page { dictionary, only: order.only, unknown: 0, wrong_length: 0 };
     if source::is_file(&order.source) {

@@ -6,9 +6,9 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use fieldbus::candump;
-use fieldbus::capture::{Capture, Captured, Form, Way};
+use fieldbus::capture::{Capture, CaptureDirection, Captured, FrameType};
 use fieldbus::text_log::{self, Strictness};
-use recording::End;
+use recording::LogEnd;
 use recording::traffic::{CanFrame, TrafficWriter, read_traffic};
 
 /// Whether a file is, or is to become, MCAP.
@@ -57,7 +57,7 @@ fn read_mcap(path: &Path, lenient: bool) -> Result<Capture, Box<dyn Error>> {
     if broken > 0 {
         wrong.push(format!("{broken} frames are longer than a frame can be"));
     }
-    if let End::Truncated(messages) = end {
+    if let LogEnd::Truncated(messages) = end {
         wrong.push(format!("it ends in the middle, behind frame {messages}"));
     }
     let wrong = wrong.join("; ");
@@ -77,8 +77,8 @@ fn read_mcap(path: &Path, lenient: bool) -> Result<Capture, Box<dyn Error>> {
 /// A frame of a log; none if it is longer than its form allows.
 fn captured(frame: &CanFrame<'_>) -> Option<Captured> {
     let form = match frame.form {
-        0 => Form::Classic { code: frame.flags },
-        _ => Form::Fd { flags: frame.flags },
+        0 => FrameType::Classic { code: frame.flags },
+        _ => FrameType::Fd { flags: frame.flags },
     };
     let most = if frame.form == 0 { 8 } else { 64 };
     if frame.data.len() > most || usize::from(frame.len) > most {
@@ -87,20 +87,20 @@ fn captured(frame: &CanFrame<'_>) -> Option<Captured> {
     let mut data = [0; 64];
     data[..frame.data.len()].copy_from_slice(frame.data);
     let way = match frame.way {
-        1 => Some(Way::Received),
-        2 => Some(Way::Sent),
+        1 => Some(CaptureDirection::Received),
+        2 => Some(CaptureDirection::Sent),
         _ => None,
     };
     Some(Captured { time_ns: frame.stamp_ns, line: 0, id: frame.id, len: frame.len, data, form, way })
 }
 
 /// A recording being written.
-pub(super) enum Writer {
-    Candump(candump::Writer<BufWriter<File>>),
+pub(super) enum RecordingWriter {
+    Candump(candump::CandumpWriter<BufWriter<File>>),
     Mcap(Box<TrafficWriter>),
 }
 
-impl Writer {
+impl RecordingWriter {
     /// Makes the file; an existing one is overwritten.
     pub(super) fn create(path: &Path, lines: &[String]) -> Result<Self, Box<dyn Error>> {
         if is_mcap(path) {
@@ -109,7 +109,7 @@ impl Writer {
         let file = File::create(path).map_err(|e| {
             format!("{}: cannot make it: {e}; choose a directory that exists and is writable", path.display())
         })?;
-        Ok(Self::Candump(candump::Writer::new(BufWriter::new(file), lines)))
+        Ok(Self::Candump(candump::CandumpWriter::new(BufWriter::new(file), lines)))
     }
 
     pub(super) fn write(&mut self, name: &str, frame: &Captured) -> Result<(), Box<dyn Error>> {
@@ -117,10 +117,10 @@ impl Writer {
             Self::Candump(writer) => Ok(writer.write(name, frame).map_err(full)?),
             Self::Mcap(writer) => {
                 let (form, flags) = match frame.form {
-                    Form::Classic { code } => (0, code),
-                    Form::Fd { flags } => (1, flags),
+                    FrameType::Classic { code } => (0, code),
+                    FrameType::Fd { flags } => (1, flags),
                 };
-                let way = frame.way.map_or(0, |way| if way == Way::Received { 1 } else { 2 });
+                let way = frame.way.map_or(0, |way| if way == CaptureDirection::Received { 1 } else { 2 });
                 let (stamp_ns, data) = (frame.time_ns, frame.payload());
                 Ok(writer.write(&CanFrame {
                     stamp_ns,
@@ -150,7 +150,7 @@ fn full(error: std::io::Error) -> String {
 
 /// Writes a whole recording.
 pub(super) fn write(path: &Path, capture: &Capture) -> Result<(), Box<dyn Error>> {
-    let mut writer = Writer::create(path, &capture.lines)?;
+    let mut writer = RecordingWriter::create(path, &capture.lines)?;
     for frame in &capture.frames {
         writer.write(&capture.lines[frame.line as usize], frame)?;
     }

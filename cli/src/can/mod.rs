@@ -18,17 +18,17 @@ use clap::Subcommand;
 
 /// Task on the traffic of a bus.
 #[derive(Subcommand)]
-pub enum Task {
+pub enum CanTask {
     /// Record interfaces to a file: candump log, or MCAP if it ends in .mcap. Ctrl-C ends it.
-    Record(record::Order),
+    Record(record::RecordOptions),
     /// Play a recording on interfaces of this machine.
-    Replay(replay::Order),
+    Replay(replay::ReplayOptions),
     /// Print the frames of a file or of interfaces; with a robot also what they carry.
-    Dump(dump::Order),
+    Dump(dump::DumpOptions),
     /// Count the frames of a file or of interfaces: rates, periods, bus load, gaps.
-    Stat(stat::Order),
+    Stat(stat::StatOptions),
     /// Hold a recording against the log of the run it was made in: same sensor data, same target frames, bit for bit.
-    Check(check::Order),
+    Check(check::CheckOptions),
     /// Write a recording as another file: candump log, or MCAP if it ends in .mcap.
     Convert {
         /// A candump log, ASC, TRC or an MCAP file.
@@ -55,20 +55,20 @@ pub enum Only {
 ///
 /// # Errors
 /// A file, an interface or the configuration cannot be used.
-pub fn run(config: &Path, task: Task) -> Result<(), Box<dyn Error>> {
+pub fn run(config: &Path, task: CanTask) -> Result<(), Box<dyn Error>> {
     match task {
-        Task::Record(order) => record::run(config, &order),
-        Task::Replay(order) => replay::run(config, &order),
-        Task::Dump(order) => {
+        CanTask::Record(order) => record::run(config, &order),
+        CanTask::Replay(order) => replay::run(config, &order),
+        CanTask::Dump(order) => {
             realtime::end_with_reader();
             dump::run(config, &order)
         }
-        Task::Stat(order) => {
+        CanTask::Stat(order) => {
             realtime::end_with_reader();
             stat::run(config, &order)
         }
-        Task::Check(order) => check::run(config, &order),
-        Task::Convert { from, to, lenient } => {
+        CanTask::Check(order) => check::run(config, &order),
+        CanTask::Convert { from, to, lenient } => {
             let capture = file::read(&from, lenient)?;
             file::write(&to, &capture)?;
             println!("{}: {} frames of {}", to.display(), capture.frames.len(), capture.lines.join(", "));

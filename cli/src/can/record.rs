@@ -5,15 +5,15 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use codec::layout::Layout;
-use fieldbus::capture::{Captured, Form};
+use codec::layout::FrameLayout;
+use fieldbus::capture::{Captured, FrameType};
 use ipc::{Reader, Run, Space};
 use messages::topics::{BUS_RX, BUS_TX};
 use messages::{BusFrames, Process};
 use realtime::{Stop, clock};
 
-use super::decoder::Decoder;
-use super::file::Writer;
+use super::decoder::FrameDecoder;
+use super::file::RecordingWriter;
 use super::{Only, source};
 
 /// Frames are held back this long \[ns\] and written in the order of time: lines are read one by one.
@@ -21,11 +21,11 @@ const HELD: u64 = 200_000_000;
 /// Cycles of the bus in shared memory that are held back for the same reason.
 const HELD_CYCLES: usize = 64;
 /// The bus in shared memory has the frames of CAN FD: bit rate switch, FD.
-const SHARED_MEMORY: Form = Form::Fd { flags: 5 };
+const SHARED_MEMORY: FrameType = FrameType::Fd { flags: 5 };
 
 /// Recording options.
 #[derive(clap::Args)]
-pub struct Order {
+pub struct RecordOptions {
     /// Interfaces: can0 or can0,can1 or vcan0-8; or shm: the bus of a running robot in shared memory.
     pub interfaces: String,
     /// Candump log, or MCAP if it ends in .mcap; an existing file is overwritten.
@@ -48,8 +48,8 @@ pub struct Order {
 ///
 /// # Errors
 /// An interface or the file cannot be used; what was recorded until then is kept.
-pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
-    let decoder = order.robot.as_deref().map(|name| Decoder::load(config, name)).transpose()?;
+pub fn run(config: &Path, order: &RecordOptions) -> Result<(), Box<dyn Error>> {
+    let decoder = order.robot.as_deref().map(|name| FrameDecoder::load(config, name)).transpose()?;
     if order.interfaces == "shm" {
         return shared_memory(order);
     }
@@ -75,7 +75,7 @@ pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
 /// Writes frames of several lines in the order of time.
 struct Sorted<'a> {
     /// Made with the first call: an interface that cannot be used leaves an old recording alone.
-    writer: Option<Writer>,
+    writer: Option<RecordingWriter>,
     names: Vec<String>,
     file: &'a Path,
     waiting: Vec<Captured>,
@@ -85,7 +85,7 @@ struct Sorted<'a> {
 impl Sorted<'_> {
     fn take(&mut self, frame: Option<&Captured>) -> Result<(), Box<dyn Error>> {
         if self.writer.is_none() {
-            self.writer = Some(Writer::create(self.file, &self.names)?);
+            self.writer = Some(RecordingWriter::create(self.file, &self.names)?);
         }
         self.waiting.extend(frame);
         // Sorted in batches: now and then, not with every frame.
@@ -118,8 +118,8 @@ impl Sorted<'_> {
 
 /// The frames of bus cycles as a recording: an interface `shmN` for each node.
 pub struct Traffic {
-    writer: Writer,
-    form: Form,
+    writer: RecordingWriter,
+    form: FrameType,
     /// Frames so far.
     pub count: u64,
 }
@@ -129,9 +129,10 @@ impl Traffic {
     ///
     /// # Errors
     /// It cannot be made.
-    pub fn create(path: &Path, layout: Option<&Layout>) -> Result<Self, Box<dyn Error>> {
-        let form = if layout.is_some_and(Layout::is_classic) { Form::CLASSIC } else { SHARED_MEMORY };
-        Ok(Self { writer: Writer::create(path, &[])?, form, count: 0 })
+    pub fn create(path: &Path, layout: Option<&FrameLayout>) -> Result<Self, Box<dyn Error>> {
+        let form =
+            if layout.is_some_and(FrameLayout::is_classic) { FrameType::CLASSIC } else { SHARED_MEMORY };
+        Ok(Self { writer: RecordingWriter::create(path, &[])?, form, count: 0 })
     }
 
     /// Appends one direction of a cycle, at the stamp of its header.
@@ -157,7 +158,7 @@ impl Traffic {
 }
 
 /// The bus between lowlevel and the simulated robot, from its topics.
-fn shared_memory(order: &Order) -> Result<(), Box<dyn Error>> {
+fn shared_memory(order: &RecordOptions) -> Result<(), Box<dyn Error>> {
     let stop = Stop::on_signals()?;
     let run = Run::load(&order.dir)?;
     let space = Space::open(&run.dir, Process::Observer)?;

@@ -17,7 +17,7 @@ use fieldbus::interface::InterfaceError;
 use fieldbus::tap::{Player, Tap};
 use realtime::{Stop, clock};
 
-use super::decoder::Decoder;
+use super::decoder::FrameDecoder;
 use super::{Only, file};
 
 /// Between two looks whether to end.
@@ -27,7 +27,7 @@ const PATIENCE: u64 = 10 * clock::SECOND;
 
 /// Replay options.
 #[derive(clap::Args)]
-pub struct Order {
+pub struct ReplayOptions {
     /// A candump log, ASC, TRC or an MCAP file.
     pub file: PathBuf,
     /// Play what was recorded on A on the interface B; without it every frame goes to the interface of its name.
@@ -63,9 +63,9 @@ fn speed(text: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// The recording is broken, an interface cannot be used, nobody consumes.
-pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
+pub fn run(config: &Path, order: &ReplayOptions) -> Result<(), Box<dyn Error>> {
     let capture = file::read(&order.file, order.lenient)?;
-    let mut decoder = order.robot.as_deref().map(|name| Decoder::load(config, name)).transpose()?;
+    let mut decoder = order.robot.as_deref().map(|name| FrameDecoder::load(config, name)).transpose()?;
     if let Some(decoder) = &mut decoder {
         capture.frames.iter().for_each(|frame| decoder.learn(frame));
     }
@@ -152,7 +152,7 @@ fn sleep_until(due_ns: u64, stop: &Stop) -> bool {
 
 /// Answers the SYNC frames of a peer with what the drives answered in the recording.
 struct Answering<'a, S> {
-    decoder: &'a Decoder,
+    decoder: &'a FrameDecoder,
     capture: &'a Capture,
     cycles: Cycles,
     send: S,
@@ -163,7 +163,7 @@ struct Answering<'a, S> {
 }
 
 impl<'a, S: FnMut(&Captured) -> Result<(), InterfaceError>> Answering<'a, S> {
-    fn new(decoder: &'a Decoder, capture: &'a Capture, send: S) -> Self {
+    fn new(decoder: &'a FrameDecoder, capture: &'a Capture, send: S) -> Self {
         let nodes = decoder.layout().nodes.len();
         let cycles = Cycles::of(decoder.layout(), &decoder.owners, capture);
         let (ticks, answered) = (vec![Unwrapped::default(); nodes], vec![None; nodes]);
@@ -240,7 +240,7 @@ mod tests {
     use super::*;
     use chain::Chain;
     use config::Setup;
-    use fieldbus::Form;
+    use fieldbus::FrameType;
     use lowlevel::JointLoop;
     use messages::{BusFrames, Sensors};
 
@@ -250,7 +250,7 @@ mod tests {
         let mut capture = Capture::default();
         let mut add = |frames: &BusFrames| {
             for frame in frames.as_slice() {
-                let mut one = Captured::of(frame, frames.header.stamp_ns, Form::Fd { flags: 5 });
+                let mut one = Captured::of(frame, frames.header.stamp_ns, FrameType::Fd { flags: 5 });
                 one.line = capture.line(&format!("vcan{}", frame.line));
                 capture.frames.push(one);
             }
@@ -273,7 +273,7 @@ mod tests {
         let root = config::root(None);
         let setup = Setup::load(&root, "walk_2kmh").unwrap().with_method(None).unwrap();
         let (capture, sensors, targets) = recorded(&setup, 300);
-        let mut decoder = Decoder::load(&root, "lola").unwrap();
+        let mut decoder = FrameDecoder::load(&root, "lola").unwrap();
         capture.frames.iter().for_each(|frame| decoder.learn(frame));
         let sent = std::cell::RefCell::new(Vec::new());
         let mut replay = Answering::new(&decoder, &capture, |frame: &Captured| {
@@ -286,7 +286,7 @@ mod tests {
         codec::frames::encode_targets(&setup.robot.layout, &Default::default(), &mut told);
         let mut ask = |told: &BusFrames| {
             for frame in told.as_slice() {
-                replay.answer(&Captured::of(frame, 0, Form::Fd { flags: 5 })).unwrap();
+                replay.answer(&Captured::of(frame, 0, FrameType::Fd { flags: 5 })).unwrap();
             }
         };
         ask(&told);
@@ -303,7 +303,7 @@ mod tests {
         }
         assert!(!replay.done(), "the answer to the last cycle was not asked for");
         for frame in told.as_slice() {
-            replay.answer(&Captured::of(frame, 0, Form::Fd { flags: 5 })).unwrap();
+            replay.answer(&Captured::of(frame, 0, FrameType::Fd { flags: 5 })).unwrap();
         }
         assert!(replay.done());
         let silence = replay.silence(301);

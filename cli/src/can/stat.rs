@@ -8,7 +8,7 @@ use fieldbus::capture::{BASE_BITS, Captured, ERROR, EXTENDED, EXTENDED_BITS, REM
 use fieldbus::clock_steps::ClockSteps;
 use fieldbus::load::{BIT_RATE, DATA_BIT_RATE};
 use fieldbus::load_course::LoadCourse;
-use fieldbus::statistics::{BitRates, Row, Statistics};
+use fieldbus::statistics::{BitRates, IdentifierStatistics, Statistics};
 use serde::Serialize;
 
 use super::dictionary::{Dictionary, Source};
@@ -16,7 +16,7 @@ use super::{file, load_picture, source};
 
 /// Input of the statistics.
 #[derive(clap::Args)]
-pub struct Order {
+pub struct StatOptions {
     /// A recording, or interfaces: can0 or can0,can1 or vcan0-8.
     pub source: String,
     /// Whose frames these are.
@@ -51,18 +51,18 @@ fn rate(text: &str) -> Result<f64, String> {
 
 /// All figures.
 #[derive(Serialize)]
-struct Report {
+struct TrafficReport {
     /// As far as it is known: what passed while the clock was put back is not.
     seconds: f64,
     clock_steps: usize,
     bitrate: f64,
     data_bitrate: f64,
-    lines: Vec<Line>,
-    messages: Vec<Message>,
+    lines: Vec<LineRate>,
+    messages: Vec<MessageRate>,
 }
 
 #[derive(Serialize)]
-struct Line {
+struct LineRate {
     interface: String,
     frames: u64,
     error_frames: u64,
@@ -72,7 +72,7 @@ struct Line {
 }
 
 #[derive(Serialize)]
-struct Message {
+struct MessageRate {
     interface: String,
     id: String,
     /// Empty if unknown.
@@ -91,7 +91,7 @@ struct Message {
 ///
 /// # Errors
 /// The source cannot be read, or the picture not be written.
-pub fn run(config: &Path, order: &Order) -> Result<(), Box<dyn Error>> {
+pub fn run(config: &Path, order: &StatOptions) -> Result<(), Box<dyn Error>> {
     let rates = BitRates { nominal: order.bitrate, data: order.data_bitrate };
     let mut count = Count {
         dictionary: order.words.load(config)?,
@@ -159,8 +159,8 @@ impl Count {
         }
     }
 
-    fn report(&self, names: &[String]) -> Report {
-        let line = |(line, total): (u32, &fieldbus::statistics::LineTotal)| Line {
+    fn report(&self, names: &[String]) -> TrafficReport {
+        let line = |(line, total): (u32, &fieldbus::statistics::LineTotal)| LineRate {
             interface: names[line as usize].clone(),
             frames: total.count,
             error_frames: total.errors,
@@ -168,7 +168,7 @@ impl Count {
             load: Some(self.statistics.load(total)).filter(|load| load.is_finite()),
         };
         let name = |line, id| self.dictionary.as_ref().map_or_else(String::new, |words| words.name(line, id));
-        let message = |(line, id, row): (u32, u32, &Row)| Message {
+        let message = |(line, id, row): (u32, u32, &IdentifierStatistics)| MessageRate {
             interface: names[line as usize].clone(),
             id: identifier(id),
             name: name(line, id),
@@ -181,7 +181,7 @@ impl Count {
             missing: row.missing,
             repeated: row.repeated,
         };
-        Report {
+        TrafficReport {
             seconds: self.statistics.seconds(),
             clock_steps: self.clock_steps,
             bitrate: self.rates.nominal,
@@ -202,7 +202,7 @@ fn identifier(id: u32) -> String {
     }
 }
 
-fn table(r: &Report) -> String {
+fn table(r: &TrafficReport) -> String {
     let mut text = format!(
         "{:12} {:>9} {:28} {:>8} {:>9} {:>10} {:>10} {:>10} {:>10} {:>8} {:>8}\n",
         "interface",

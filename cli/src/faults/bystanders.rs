@@ -10,8 +10,8 @@ use std::time::Duration;
 use harness::{Running, Signal, doze};
 use messages::{EventCode, Process};
 
-use super::lab::{Found, Lab, Seen};
-use super::robot::Robot;
+use super::lab::{FaultObservation, Found, Lab};
+use super::robot::RobotUnderTest;
 use super::scene::WALK;
 
 /// Observers that are killed, and connections that say nothing.
@@ -27,7 +27,7 @@ const STOPPED: u64 = 100;
 const DEATHS: usize = 4;
 const WATCHED: f64 = 8.0;
 
-type Trial = fn(&mut Robot, &Lab) -> Result<Seen, String>;
+type Trial = fn(&mut RobotUnderTest, &Lab) -> Result<FaultObservation, String>;
 
 /// In this order while it walks.
 const WALKING: [Trial; 9] =
@@ -51,41 +51,41 @@ pub(super) fn all(lab: &mut Lab) -> Found {
 }
 
 /// A command with a number that is none to be taken.
-fn refused(robot: &Robot, fault: &'static str, field: &str) -> Result<Seen, String> {
+fn refused(robot: &RobotUnderTest, fault: &'static str, field: &str) -> Result<FaultObservation, String> {
     let code = robot.publish(&["walk/velocity", field])?.code;
-    let seen = Seen::new(fault, "refused").after_ms(robot.wall_ms());
+    let seen = FaultObservation::new(fault, "refused").after_ms(robot.wall_ms());
     Ok(seen.demand(code == Some(1), format!("exit code 1, not {code:?}")))
 }
 
-fn nan(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
+fn nan(robot: &mut RobotUnderTest, _: &Lab) -> Result<FaultObservation, String> {
     refused(robot, "F20", "forward=NaN")
 }
 
-fn out_of_range(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
+fn out_of_range(robot: &mut RobotUnderTest, _: &Lab) -> Result<FaultObservation, String> {
     refused(robot, "F21", "forward=9")
 }
 
-fn second_instance(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
+fn second_instance(robot: &mut RobotUnderTest, _: &Lab) -> Result<FaultObservation, String> {
     let code = robot.site.run("fault", &["--no-log"]).try_end()?.code;
-    let seen = Seen::new("F26", "refused").after_ms(robot.wall_ms());
+    let seen = FaultObservation::new("F26", "refused").after_ms(robot.wall_ms());
     Ok(seen.demand(code == Some(1), format!("exit code 1, not {code:?}")))
 }
 
-fn connect(robot: &Robot) -> Result<TcpStream, String> {
+fn connect(robot: &RobotUnderTest) -> Result<TcpStream, String> {
     TcpStream::connect((Ipv4Addr::LOCALHOST, robot.site.port())).map_err(|e| e.to_string())
 }
 
-fn garbage(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
+fn garbage(robot: &mut RobotUnderTest, _: &Lab) -> Result<FaultObservation, String> {
     let mut stream = connect(robot)?;
     let sent = stream.write_all(b"GET / HTTP/1.1\r\nHost: lola\r\n\r\n");
     let limited = stream.set_read_timeout(Some(Duration::from_secs(3)));
     let closed = sent.and(limited).and_then(|()| stream.read_to_end(&mut Vec::new())).is_ok();
-    let seen = Seen::new("F13", "connection closed").after_ms(robot.wall_ms());
+    let seen = FaultObservation::new("F13", "connection closed").after_ms(robot.wall_ms());
     Ok(seen.demand(closed, "closed within 3 s"))
 }
 
 /// An operator asks for something harmless and is answered.
-fn answered(robot: &Robot, seen: Seen) -> Result<Seen, String> {
+fn answered(robot: &RobotUnderTest, seen: FaultObservation) -> Result<FaultObservation, String> {
     let begun = robot.wall_ms();
     let code = robot.publish(&["head/rest"])?.code;
     let took = robot.wall_ms() - begun;
@@ -93,9 +93,9 @@ fn answered(robot: &Robot, seen: Seen) -> Result<Seen, String> {
     Ok(seen.demand(took < ANSWERED, format!("answered within {ANSWERED} ms")))
 }
 
-fn idle(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
+fn idle(robot: &mut RobotUnderTest, _: &Lab) -> Result<FaultObservation, String> {
     let _connections: Vec<_> = (0..IDLE).map_while(|_| connect(robot).ok()).collect();
-    answered(robot, Seen::new("F14", "an operator is answered"))
+    answered(robot, FaultObservation::new("F14", "an operator is answered"))
 }
 
 /// Connections, and frames on them, as fast as a thread makes them, until it is dropped.
@@ -124,18 +124,18 @@ impl Drop for Flood {
     }
 }
 
-fn flood(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
+fn flood(robot: &mut RobotUnderTest, _: &Lab) -> Result<FaultObservation, String> {
     let _flood = Flood::on(robot.site.port());
     robot.watch(0.3);
-    answered(robot, Seen::new("F12", "an operator is answered"))
+    answered(robot, FaultObservation::new("F12", "an operator is answered"))
 }
 
-fn observer(robot: &Robot) -> Running {
+fn observer(robot: &RobotUnderTest) -> Running {
     let dir = robot.site.run_dir().display().to_string();
     robot.site.start(&["topic", "echo", "sensors", "--dir", &dir])
 }
 
-fn observers_killed(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
+fn observers_killed(robot: &mut RobotUnderTest, _: &Lab) -> Result<FaultObservation, String> {
     for _ in 0..OBSERVERS {
         let observer = observer(robot);
         robot.watch(0.03);
@@ -144,11 +144,11 @@ fn observers_killed(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
     }
     let dir = robot.site.run_dir().display().to_string();
     let next = robot.site.start(&["topic", "echo", "sensors", "--once", "--dir", &dir]).try_end()?;
-    let seen = Seen::new("F10", "the next one reads").after_ms(robot.wall_ms());
+    let seen = FaultObservation::new("F10", "the next one reads").after_ms(robot.wall_ms());
     Ok(seen.demand(next.code == Some(0), "the next one reads"))
 }
 
-fn observer_stopped(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
+fn observer_stopped(robot: &mut RobotUnderTest, _: &Lab) -> Result<FaultObservation, String> {
     let observer = observer(robot);
     robot.watch(0.2);
     let before = robot.late_cycles()[2];
@@ -156,18 +156,18 @@ fn observer_stopped(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
     robot.watch(1.0);
     let late = robot.late_cycles()[2] - before;
     observer.signal_supervisor(Signal::KILL);
-    let seen = Seen::new("F11", format!("{late} late cycles"));
+    let seen = FaultObservation::new("F11", format!("{late} late cycles"));
     Ok(seen.demand(late == 0, "no cycle of the joint loop is late"))
 }
 
 /// Kills it, and waits until the supervisor has started it again.
-fn again(robot: &mut Robot, process: Process) -> bool {
+fn again(robot: &mut RobotUnderTest, process: Process) -> bool {
     let before = robot.pid(process);
     robot.run.kill(process);
     robot.wait(BACK * 1e-3, |robot| robot.pid(process).is_some_and(|pid| Some(pid) != before))
 }
 
-fn no_broker(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
+fn no_broker(robot: &mut RobotUnderTest, _: &Lab) -> Result<FaultObservation, String> {
     let back = again(robot, Process::Broker);
     let ms = robot.wall_ms();
     let mut code = None;
@@ -178,21 +178,21 @@ fn no_broker(robot: &mut Robot, _: &Lab) -> Result<Seen, String> {
         }
         robot.watch(0.2);
     }
-    let seen = Seen::new("F5", "another one started").after_ms(ms).demand(back, "another broker");
+    let seen = FaultObservation::new("F5", "another one started").after_ms(ms).demand(back, "another broker");
     Ok(seen.demand(code == Some(0), "it answers an operator"))
 }
 
-fn no_logger(robot: &mut Robot) -> Result<Seen, String> {
+fn no_logger(robot: &mut RobotUnderTest) -> Result<FaultObservation, String> {
     let back = again(robot, Process::Logger);
     let ms = robot.wall_ms();
     let part = robot.site.path("fault.2.mcap");
     robot.wait(3.0, |_| part.exists());
-    let seen = Seen::new("F6", "another one started").after_ms(ms).demand(back, "another logger");
+    let seen = FaultObservation::new("F6", "another one started").after_ms(ms).demand(back, "another logger");
     Ok(seen.demand(part.exists(), "a second part of the log"))
 }
 
 /// F30, then F29.
-fn stop_under_flood(robot: &mut Robot) -> Result<[Seen; 2], String> {
+fn stop_under_flood(robot: &mut RobotUnderTest) -> Result<[FaultObservation; 2], String> {
     let load = Flood::on(robot.site.port());
     robot.watch(0.2);
     robot.mark();
@@ -200,7 +200,7 @@ fn stop_under_flood(robot: &mut Robot) -> Result<[Seen; 2], String> {
     let code = robot.site.start(&["estop", "--dir", &dir]).try_end()?.code;
     robot.watch(0.2);
     drop(load);
-    let stopped = Seen::new("F30", "answered, supply off")
+    let stopped = FaultObservation::new("F30", "answered, supply off")
         .after(robot.power_off(), robot)
         .within(STOPPED)
         .demand(code == Some(0), "answered")
@@ -214,7 +214,7 @@ fn stop_under_flood(robot: &mut Robot) -> Result<[Seen; 2], String> {
     robot.mark();
     robot.publish(&["system/enable"])?;
     let on = robot.wait(2.0, |robot| robot.after().last().is_some_and(|s| s.power == 1));
-    let again = Seen::new("F29", "off until reset and enable")
+    let again = FaultObservation::new("F29", "off until reset and enable")
         .demand(!early, "an enable alone is none")
         .demand(on, "on again after both");
     Ok([stopped, again])
@@ -222,7 +222,7 @@ fn stop_under_flood(robot: &mut Robot) -> Result<[Seen; 2], String> {
 
 /// The broker dies again and again: later and later it is there again, and the robot walks on.
 pub(super) fn dying_broker(lab: &mut Lab) -> Found {
-    let mut robot = Robot::start(lab.patient(), WALK, &["--no-log"])?;
+    let mut robot = RobotUnderTest::start(lab.patient(), WALK, &["--no-log"])?;
     robot.until(1.0)?;
     robot.mark();
     let mut back = Vec::new();
@@ -238,7 +238,7 @@ pub(super) fn dying_broker(lab: &mut Lab) -> Found {
     }
     let later = back.windows(2).all(|w| w[1] > w[0]) && back.len() == DEATHS;
     let times: Vec<String> = back.iter().map(|ms| format!("{:.1} s", ms * 1e-3)).collect();
-    let seen = Seen::new("F38", format!("started again after {}", times.join(", ")))
+    let seen = FaultObservation::new("F38", format!("started again after {}", times.join(", ")))
         .demand(later, "later and later")
         .demand(!robot.fell() && robot.power_off().is_none(), "on its feet, supply on");
     let disturbed = robot.disturbance();

@@ -3,10 +3,10 @@
 use harness::{Signal, Site, doze};
 use messages::topics::PLANNER_TICK;
 use messages::{EventCode, GaitState, Process};
-use realtime::{Schedule, clock, prepare_side_thread};
+use realtime::{ThreadSchedule, clock, prepare_side_thread};
 
-use super::lab::{Found, Lab, Seen, limits};
-use super::robot::Robot;
+use super::lab::{FaultObservation, Found, Lab, limits};
+use super::robot::RobotUnderTest;
 use super::scene::WAIT;
 
 /// \[cycle\] Between a decision and the robot's power line, over the bus.
@@ -18,12 +18,12 @@ const HUNG: [f64; 2] = [1900.0, 3500.0];
 /// \[cycle\] Time until a silent operator counts as dead, and period of the check.
 const LEASE: u64 = 600;
 
-fn rests(seen: Seen, robot: &Robot, reaction: Option<u64>) -> Seen {
+fn rests(seen: FaultObservation, robot: &RobotUnderTest, reaction: Option<u64>) -> FaultObservation {
     let soon = robot.at_rest().zip(reaction).is_some_and(|(rest, at)| rest <= at + AT_REST);
     seen.demand(soon, format!("joints at rest {AT_REST} cycles later"))
 }
 
-fn one(seen: Seen, robot: &mut Robot) -> (Vec<Seen>, Option<String>) {
+fn one(seen: FaultObservation, robot: &mut RobotUnderTest) -> (Vec<FaultObservation>, Option<String>) {
     (vec![seen], robot.disturbance())
 }
 
@@ -31,7 +31,7 @@ pub(super) fn planner_killed(lab: &mut Lab) -> Found {
     let mut robot = lab.killed(lab.patient(), Process::Planner, Signal::KILL)?;
     robot.wait(40.0, |_| false);
     let told = robot.told(Process::Controller, EventCode::PlannerSilent);
-    let seen = Seen::new("F1", format!("told; then {:?}", robot.last_gait()))
+    let seen = FaultObservation::new("F1", format!("told; then {:?}", robot.last_gait()))
         .after(told, &robot)
         .within(u64::from(PLANNER_TICK.stale_after) + 2)
         .demand(robot.last_gait() == GaitState::Standing, "stands in the end")
@@ -44,7 +44,7 @@ pub(super) fn controller_killed(lab: &mut Lab) -> Found {
     robot.watch(1.0);
     let missed = limits(&robot.setup).1;
     let stop = robot.told(Process::Lowlevel, EventCode::TargetsStale);
-    let seen = Seen::new("F2", "controlled stop")
+    let seen = FaultObservation::new("F2", "controlled stop")
         .after(stop, &robot)
         .within(missed + LINE)
         .demand(robot.power_off().is_none(), "the supply stays on");
@@ -59,7 +59,7 @@ pub(super) fn lowlevel_killed(lab: &mut Lab) -> Found {
     let off = robot.power_off();
     let reason = robot.powers.iter().find(|p| p.header.tick >= robot.tick() && p.on == 0);
     let named = reason.is_some_and(|p| p.reason == EventCode::ResetMissed as u64);
-    let seen = Seen::new("F3", "supply cut, `ResetMissed`")
+    let seen = FaultObservation::new("F3", "supply cut, `ResetMissed`")
         .after(off, &robot)
         .within(limits(&robot.setup).0 + LINE)
         .demand(named, "the watchdog says why");
@@ -68,7 +68,7 @@ pub(super) fn lowlevel_killed(lab: &mut Lab) -> Found {
 }
 
 /// Cycles without a moved toggle after which the relay falls.
-fn quiet(robot: &Robot) -> u64 {
+fn quiet(robot: &RobotUnderTest) -> u64 {
     u64::from(robot.setup.system.toggle_missed)
 }
 
@@ -77,7 +77,7 @@ pub(super) fn watchdog_killed(lab: &mut Lab) -> Found {
     let mut robot = lab.killed(Site::new(&lab.exe), Process::Watchdog, Signal::KILL)?;
     robot.watch(1.0);
     let off = robot.power_off();
-    let seen = Seen::new("F4", "relay fell").after(off, &robot).within(quiet(&robot) + LINE);
+    let seen = FaultObservation::new("F4", "relay fell").after(off, &robot).within(quiet(&robot) + LINE);
     let seen = rests(seen, &robot, off);
     Ok(one(seen, &mut robot))
 }
@@ -88,7 +88,7 @@ pub(super) fn watchdog_stopped(lab: &mut Lab) -> Found {
     robot.watch(1.5);
     let off = robot.power_off();
     let again = robot.after().iter().skip_while(|s| s.power == 1).any(|s| s.power == 1);
-    let seen = Seen::new("F7", "relay fell, stayed off")
+    let seen = FaultObservation::new("F7", "relay fell, stayed off")
         .after(off, &robot)
         .within(quiet(&robot) + LINE)
         .demand(!again, "off until reset and enable");
@@ -98,13 +98,14 @@ pub(super) fn watchdog_stopped(lab: &mut Lab) -> Found {
 pub(super) fn planner_hangs(lab: &mut Lab) -> Found {
     let robot = lab.killed(lab.patient(), Process::Planner, Signal::STOP)?;
     let pid = robot.pid(Process::Planner);
-    let gone = |_: &Robot| pid.is_none_or(|pid| !std::path::Path::new(&format!("/proc/{pid}")).exists());
+    let gone =
+        |_: &RobotUnderTest| pid.is_none_or(|pid| !std::path::Path::new(&format!("/proc/{pid}")).exists());
     let mut robot = robot;
     robot.wait(10.0, gone);
     let ms = robot.wall_ms();
     let mut disturbed = None;
     let said = robot.end(|robot| disturbed = robot.disturbance())?;
-    let seen = Seen::new("F8", "killed by the supervisor; the run ended")
+    let seen = FaultObservation::new("F8", "killed by the supervisor; the run ended")
         .after_ms(ms)
         .demand((HUNG[0]..HUNG[1]).contains(&ms), format!("after 2 s, not {ms:.0} ms"))
         .demand(said.code == Some(1), format!("exit code 1, not {:?}", said.code));
@@ -121,7 +122,7 @@ pub(super) fn planner_crashes(lab: &mut Lab) -> Found {
         told = robot.told(Process::Controller, EventCode::PlannerSilent);
         kept = record_of_crash(&out);
     })?;
-    let mut seen = Seen::new("F36", "as F1; the run ended as an error");
+    let mut seen = FaultObservation::new("F36", "as F1; the run ended as an error");
     (seen.cycles, seen.ms) = (told, told.map(|n| n as f64));
     let seen = seen
         .demand(gait == Some(GaitState::Standing), "stands in the end")
@@ -138,7 +139,7 @@ fn record_of_crash(out: &std::path::Path) -> bool {
 }
 
 pub(super) fn operator_killed(lab: &mut Lab) -> Found {
-    let mut robot = Robot::start(lab.patient(), WAIT, &["--no-log"])?;
+    let mut robot = RobotUnderTest::start(lab.patient(), WAIT, &["--no-log"])?;
     robot.until(2.2)?;
     let dir = robot.site.run_dir().display().to_string();
     let operator = robot.site.start(&["topic", "pub", "walk/velocity", "forward=0.278", "--dir", &dir]);
@@ -151,7 +152,7 @@ pub(super) fn operator_killed(lab: &mut Lab) -> Found {
     robot.wait(3.0, |robot| robot.told(Process::Planner, EventCode::LeaseLost).is_some());
     robot.wait(8.0, |robot| robot.gait() == GaitState::Standing);
     robot.watch(0.3);
-    let seen = Seen::new("F31", format!("{:?}", robot.gait()))
+    let seen = FaultObservation::new("F31", format!("{:?}", robot.gait()))
         .after(robot.told(Process::Planner, EventCode::LeaseLost), &robot)
         .within(LEASE)
         .demand(robot.gait() == GaitState::Standing, "stands")
@@ -162,7 +163,7 @@ pub(super) fn operator_killed(lab: &mut Lab) -> Found {
 pub(super) fn spinner(lab: &mut Lab) -> Found {
     let mut robot = lab.walking(lab.patient(), &["--no-log"])?;
     let schedule = robot.setup.system.process(Process::Lowlevel).ok_or("no row of the joint loop")?;
-    let place = Schedule { priority: schedule.priority, core: schedule.core };
+    let place = ThreadSchedule { priority: schedule.priority, core: schedule.core };
     let spin = std::thread::spawn(move || {
         let granted = prepare_side_thread(&place);
         let until = clock::now() + clock::SECOND / 10;
@@ -177,7 +178,7 @@ pub(super) fn spinner(lab: &mut Lab) -> Found {
     let stop = robot.told(Process::Lowlevel, EventCode::SafeStop);
     let reaction = robot.power_off().into_iter().chain(stop).min();
     let how = if robot.power_off().is_some() { "supply off" } else { "controlled stop" };
-    let seen = Seen::new("F33", how)
+    let seen = FaultObservation::new("F33", how)
         .after(reaction, &robot)
         .demand(!degraded, "this user may run at that priority")
         .demand(reaction.is_some(), "stops");

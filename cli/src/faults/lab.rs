@@ -4,7 +4,7 @@ use config::Setup;
 use harness::Site;
 use messages::Process;
 
-use super::robot::Robot;
+use super::robot::RobotUnderTest;
 use super::scene::WALK;
 
 /// \[s\] Simulated time between which a walking robot is hurt: two strides.
@@ -34,7 +34,7 @@ impl Random {
 
 /// Observations of one fault.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct FaultObservation {
     pub(super) fault: &'static str,
     /// Observed behaviour.
     pub(super) reaction: String,
@@ -45,13 +45,13 @@ pub(super) struct Seen {
     pub(super) unmet: Vec<String>,
 }
 
-impl Seen {
+impl FaultObservation {
     pub(super) fn new(fault: &'static str, reaction: impl Into<String>) -> Self {
         Self { fault, reaction: reaction.into(), ..Self::default() }
     }
 
     /// The reaction came after so many bus cycles.
-    pub(super) fn after(mut self, cycles: Option<u64>, robot: &Robot) -> Self {
+    pub(super) fn after(mut self, cycles: Option<u64>, robot: &RobotUnderTest) -> Self {
         self.cycles = cycles;
         self.ms = cycles.map(|n| n as f64 * robot.setup.scene.cycle * 1e3);
         self
@@ -77,14 +77,14 @@ impl Seen {
     }
 
     /// It is demanded that the robot walks on.
-    pub(super) fn walks(mut self, robot: &Robot) -> Self {
+    pub(super) fn walks(mut self, robot: &RobotUnderTest) -> Self {
         self.unmet.extend(robot.walks_on().map(str::to_owned));
         self
     }
 }
 
 /// Finding of a scenario, and the disturbance from outside that spoilt it, if any.
-pub(super) type Found = Result<(Vec<Seen>, Option<String>), String>;
+pub(super) type Found = Result<(Vec<FaultObservation>, Option<String>), String>;
 
 /// The laboratory.
 pub(super) struct Lab {
@@ -104,9 +104,9 @@ impl Lab {
     }
 
     /// A robot that walks, at the instant of the fault.
-    pub(super) fn walking(&mut self, site: Site, more: &[&str]) -> Result<Robot, String> {
+    pub(super) fn walking(&mut self, site: Site, more: &[&str]) -> Result<RobotUnderTest, String> {
         let at = self.instant();
-        let mut robot = Robot::start(site, WALK, more)?;
+        let mut robot = RobotUnderTest::start(site, WALK, more)?;
         robot.until(at)?;
         robot.mark();
         Ok(robot)
@@ -118,7 +118,7 @@ impl Lab {
         site: Site,
         victim: Process,
         signal: harness::Signal,
-    ) -> Result<Robot, String> {
+    ) -> Result<RobotUnderTest, String> {
         let robot = self.walking(site, &["--no-log"])?;
         robot.run.signal(victim, signal);
         Ok(robot)

@@ -15,7 +15,7 @@ const WATCHED: f64 = 2.5;
 
 /// Actions of a trial, and their failures.
 #[derive(Clone, Debug)]
-pub struct Trial {
+pub struct LongTrial {
     /// Fault injected.
     pub what: String,
     /// Failures; empty if none.
@@ -23,7 +23,7 @@ pub struct Trial {
 }
 
 /// `count` trials with what they were, one after the other.
-pub fn long(exe: &str, seed: u64, count: u32) -> impl Iterator<Item = Trial> {
+pub fn long(exe: &str, seed: u64, count: u32) -> impl Iterator<Item = LongTrial> {
     let mut lab = Lab { exe: exe.to_owned(), random: Random(seed) };
     (0..count).map(move |_| {
         let victim = lab.random.one_of(&[Planner, Controller, Lowlevel, Watchdog, Broker, Logger]);
@@ -31,7 +31,7 @@ pub fn long(exe: &str, seed: u64, count: u32) -> impl Iterator<Item = Trial> {
         let how = stop.map_or("killed".into(), |s| format!("stopped for {:.0} ms", s * 1e3));
         let what = format!("{} {how}", victim.name());
         let wrong = trial(&mut lab, victim, stop).unwrap_or_else(|error| vec![error]);
-        Trial { what, wrong }
+        LongTrial { what, wrong }
     })
 }
 

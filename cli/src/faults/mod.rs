@@ -25,7 +25,7 @@ mod text;
 
 use serde::Serialize;
 
-use lab::{Found, Lab, Random, Seen};
+use lab::{FaultObservation, Found, Lab, Random};
 pub use long::long;
 pub use table::{FAULTS, Fault, Proof};
 pub use text::{line, markdown};
@@ -69,7 +69,7 @@ const UNPRIVILEGED: [Scenario; 2] =
 /// Result of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum FaultVerdict {
     /// As expected.
     Met,
     /// Not as expected, or not tried by anything.
@@ -80,7 +80,7 @@ pub enum Verdict {
 
 /// A line of the table.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct FaultRow {
     /// Number, as `F3`.
     pub fault: &'static str,
     /// Fault injected.
@@ -94,7 +94,7 @@ pub struct Row {
     /// The same in time \[ms\].
     pub ms: Option<f64>,
     /// Whether that is as expected.
-    pub verdict: Verdict,
+    pub verdict: FaultVerdict,
     /// Unmet part of the expectation.
     pub unmet: Vec<String>,
     /// Runs that were disturbed from outside and done again, and by what.
@@ -103,7 +103,7 @@ pub struct Row {
 
 /// Faults to try.
 #[derive(Clone, Debug)]
-pub struct Order {
+pub struct FaultsOptions {
     /// The executable `gangwerk`.
     pub exe: String,
     /// Seed of all instants.
@@ -116,7 +116,7 @@ pub struct Order {
 ///
 /// # Errors
 /// A fault of `only` that there is not.
-pub fn run(order: &Order, mut told: impl FnMut(&Row)) -> Result<Vec<Row>, String> {
+pub fn run(order: &FaultsOptions, mut told: impl FnMut(&FaultRow)) -> Result<Vec<FaultRow>, String> {
     if let Some(unknown) = order.only.iter().find(|id| !FAULTS.iter().any(|f| f.id == id.as_str())) {
         return Err(format!("there is no fault {unknown}: F1 to F40"));
     }
@@ -143,11 +143,15 @@ pub fn run(order: &Order, mut told: impl FnMut(&Row)) -> Result<Vec<Row>, String
 }
 
 /// Plays a scenario until it was not disturbed, or is as expected all the same.
-fn played(lab: &mut Lab, faults: &[&'static str], play: fn(&mut Lab) -> Found) -> (Vec<Seen>, Vec<String>) {
+fn played(
+    lab: &mut Lab,
+    faults: &[&'static str],
+    play: fn(&mut Lab) -> Found,
+) -> (Vec<FaultObservation>, Vec<String>) {
     let mut repeated = Vec::new();
     loop {
         let (seen, disturbed) = play(lab).unwrap_or_else(|error| {
-            let failed = |id: &&'static str| Seen::new(id, "-").demand(false, error.clone());
+            let failed = |id: &&'static str| FaultObservation::new(id, "-").demand(false, error.clone());
             (faults.iter().map(failed).collect(), Some(format!("no result: {error}")))
         });
         match disturbed.filter(|_| seen.iter().any(|s| !s.unmet.is_empty())) {
@@ -157,13 +161,13 @@ fn played(lab: &mut Lab, faults: &[&'static str], play: fn(&mut Lab) -> Found) -
     }
 }
 
-fn row(seen: Seen, repeated: &[String]) -> Row {
+fn row(seen: FaultObservation, repeated: &[String]) -> FaultRow {
     let fault = FAULTS.iter().find(|f| f.id == seen.fault).unwrap_or(&FAULTS[0]);
-    Row {
+    FaultRow {
         observed: seen.reaction,
         cycles: seen.cycles,
         ms: seen.ms,
-        verdict: if seen.unmet.is_empty() { Verdict::Met } else { Verdict::NotMet },
+        verdict: if seen.unmet.is_empty() { FaultVerdict::Met } else { FaultVerdict::NotMet },
         unmet: seen.unmet,
         repeated: repeated.to_vec(),
         ..untried(fault)
@@ -171,13 +175,23 @@ fn row(seen: Seen, repeated: &[String]) -> Row {
 }
 
 /// The row of a fault that no scenario has tried.
-fn untried(fault: &Fault) -> Row {
+fn untried(fault: &Fault) -> FaultRow {
     let (observed, verdict, unmet) = match fault.proof {
-        Proof::Bounded(why) => (why.to_owned(), Verdict::NotApplicable, Vec::new()),
-        Proof::Tried => ("-".to_owned(), Verdict::NotMet, vec!["nothing tries it".to_owned()]),
+        Proof::Bounded(why) => (why.to_owned(), FaultVerdict::NotApplicable, Vec::new()),
+        Proof::Tried => ("-".to_owned(), FaultVerdict::NotMet, vec!["nothing tries it".to_owned()]),
     };
     let Fault { id, name, expected, .. } = *fault;
-    Row { fault: id, name, expected, observed, cycles: None, ms: None, verdict, unmet, repeated: Vec::new() }
+    FaultRow {
+        fault: id,
+        name,
+        expected,
+        observed,
+        cycles: None,
+        ms: None,
+        verdict,
+        unmet,
+        repeated: Vec::new(),
+    }
 }
 
 #[cfg(test)]
@@ -199,6 +213,6 @@ mod tests {
     #[test]
     fn a_fault_that_nothing_tries_is_red() {
         let row = untried(&Fault { id: "F1", name: "", expected: "", proof: Proof::Tried });
-        assert_eq!(row.verdict, Verdict::NotMet);
+        assert_eq!(row.verdict, FaultVerdict::NotMet);
     }
 }

@@ -22,7 +22,7 @@ const LONGEST_END: f64 = 25.0;
 const LOOK: f64 = 0.002;
 
 /// A robot at work, and what was seen.
-pub(super) struct Robot {
+pub(super) struct RobotUnderTest {
     pub(super) run: Running,
     pub(super) site: Site,
     pub(super) setup: Setup,
@@ -70,7 +70,7 @@ impl Readers {
     }
 }
 
-impl Robot {
+impl RobotUnderTest {
     /// Starts a scene at a site.
     pub(super) fn start(site: Site, tables: &str, more: &[&str]) -> Result<Self, String> {
         site.scene("fault", 600.0, tables);

@@ -4,8 +4,8 @@ use harness::{Running, Said, Signal, Site, doze};
 use messages::Process;
 use realtime::clock;
 
-use super::lab::{Found, Lab, Seen};
-use super::robot::Robot;
+use super::lab::{FaultObservation, Found, Lab};
+use super::robot::RobotUnderTest;
 use super::scene::WAIT;
 
 /// \[ms\] In which no process is left after the supervisor's death.
@@ -27,7 +27,7 @@ fn short(site: &Site, wrapper: &[&str], more: &[&str]) -> Result<(f64, Said), St
 
 /// Refused for the reason that was given to it: there is no record of a run that did not start, only what it says.
 fn refused(fault: &'static str, reason: &str, (ms, said): (f64, Said)) -> Found {
-    let seen = Seen::new(fault, "refused")
+    let seen = FaultObservation::new(fault, "refused")
         .after_ms(ms)
         .demand(said.code == Some(1), format!("exit code 1, not {:?}", said.code))
         .demand(said.err.contains(reason), format!("says `{reason}`, not {:?}", said.err));
@@ -76,7 +76,7 @@ pub(super) fn full_disk(lab: &mut Lab) -> Found {
     let dir = site.run_dir().display().to_string();
     let arguments = ["run", "fault", "--dir", &dir, "--out", &disk, "--no-plots"];
     let run = site.start_under(&wrapper.each_ref().map(String::as_str), &arguments);
-    let mut robot = Robot::of(site, run)?;
+    let mut robot = RobotUnderTest::of(site, run)?;
     robot.until(0.5)?;
     robot.mark();
     let (mut upright, mut disturbed) = (false, None);
@@ -85,7 +85,7 @@ pub(super) fn full_disk(lab: &mut Lab) -> Found {
         upright = !robot.fell() && robot.time() > 4.5;
         disturbed = robot.disturbance();
     })?;
-    let seen = Seen::new("F23", "stands to the end; exit code 1")
+    let seen = FaultObservation::new("F23", "stands to the end; exit code 1")
         .demand(upright, "the robot does not notice")
         .demand(said.code == Some(1), format!("exit code 1, not {:?}", said.code));
     Ok((vec![seen], disturbed))
@@ -94,7 +94,7 @@ pub(super) fn full_disk(lab: &mut Lab) -> Found {
 pub(super) fn long_up(lab: &mut Lab) -> Found {
     let wrapper = ["unshare", "--time", "--fork", "--kill-child", "--monotonic", UPTIME, "--"];
     let code = short(&lab.patient(), &wrapper, &["--no-log"])?.1.code;
-    let seen = Seen::new("F19", "stood up, ended by itself");
+    let seen = FaultObservation::new("F19", "stood up, ended by itself");
     Ok((vec![seen.demand(code == Some(0), format!("exit code 0, not {code:?}"))], None))
 }
 
@@ -106,11 +106,11 @@ pub(super) fn no_rights(lab: &mut Lab) -> Found {
         "ulimit -l 64; ulimit -r 0; exec setpriv --bounding-set -sys_nice,-ipc_lock,-sys_resource \"$@\"";
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let run = site.start_under(&["sh", "-c", limits, "sh"], &arguments);
-    let mut robot = Robot::of(site, run)?;
+    let mut robot = RobotUnderTest::of(site, run)?;
     robot.until(1.5)?;
     let degraded = robot.degraded();
     let said = robot.end(|_| ())?;
-    let seen = Seen::new("F35", "runs, degraded")
+    let seen = FaultObservation::new("F35", "runs, degraded")
         .demand(degraded, "says so")
         .demand(said.code == Some(0), format!("exit code 0, not {:?}", said.code));
     Ok((vec![seen], None))
@@ -128,7 +128,7 @@ pub(super) fn death_at_start(lab: &mut Lab) -> Found {
     run.kill(Process::Planner);
     let code = run.try_end()?.code;
     let armed = site.run_dir().join("lowlevel.lock").exists();
-    let seen = Seen::new("F28", "the joint loop was never started")
+    let seen = FaultObservation::new("F28", "the joint loop was never started")
         .after_ms((clock::now() - begun) as f64 * 1e-6)
         .demand(code == Some(1), format!("exit code 1, not {code:?}"))
         .demand(!armed, "never armed");
@@ -149,13 +149,15 @@ pub(super) fn supervisor_killed(lab: &mut Lab) -> Found {
         doze(0.002);
     }
     let ms = robot.wall_ms();
-    let ended = Seen::new("F37", "all ended").after_ms(ms).demand(ms <= ENDED, format!("within {ENDED} ms"));
+    let ended = FaultObservation::new("F37", "all ended")
+        .after_ms(ms)
+        .demand(ms <= ENDED, format!("within {ENDED} ms"));
     let disturbed = robot.disturbance();
     let site = robot.into_site();
     let (ms, said) = short(&site, &[], &["--no-log"])?;
     let code = said.code;
     let left = site.shared_memory();
-    let cold = Seen::new("F25", "started, ended, nothing left")
+    let cold = FaultObservation::new("F25", "started, ended, nothing left")
         .after_ms(ms)
         .demand(code == Some(0), format!("exit code 0, not {code:?}"))
         .demand(left.is_empty(), format!("nothing left behind, not {left:?}"));

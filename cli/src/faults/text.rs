@@ -1,13 +1,13 @@
 //! The table for people.
 
-use super::{Row, Verdict};
+use super::{FaultRow, FaultVerdict};
 
 /// One line of a terminal.
-pub fn line(row: &Row) -> String {
+pub fn line(row: &FaultRow) -> String {
     let mark = match row.verdict {
-        Verdict::Met => "met    ",
-        Verdict::NotMet => "NOT MET",
-        Verdict::NotApplicable => "n/a    ",
+        FaultVerdict::Met => "met    ",
+        FaultVerdict::NotMet => "NOT MET",
+        FaultVerdict::NotApplicable => "n/a    ",
     };
     let mut text =
         format!("{mark} {:4} {} → {} → {} → {}", row.fault, row.name, row.expected, observed(row), time(row));
@@ -18,7 +18,7 @@ pub fn line(row: &Row) -> String {
 }
 
 /// Observed behaviour, and what is missing of the expected.
-fn observed(row: &Row) -> String {
+fn observed(row: &FaultRow) -> String {
     if row.unmet.is_empty() {
         row.observed.clone()
     } else {
@@ -26,7 +26,7 @@ fn observed(row: &Row) -> String {
     }
 }
 
-fn time(row: &Row) -> String {
+fn time(row: &FaultRow) -> String {
     match (row.cycles, row.ms) {
         (Some(cycles), Some(ms)) => format!("{cycles} cycles, {ms:.0} ms"),
         (None, Some(ms)) => format!("{ms:.0} ms"),
@@ -35,13 +35,13 @@ fn time(row: &Row) -> String {
 }
 
 /// The table in Markdown, as docs/safety.md holds it.
-pub fn markdown(rows: &[Row]) -> String {
+pub fn markdown(rows: &[FaultRow]) -> String {
     let mut text = String::from("| | fault | expected | observed | time | |\n|---|---|---|---|---|---|\n");
     for row in rows {
         let verdict = match row.verdict {
-            Verdict::Met => "met",
-            Verdict::NotMet => "**not met**",
-            Verdict::NotApplicable => "not tried",
+            FaultVerdict::Met => "met",
+            FaultVerdict::NotMet => "**not met**",
+            FaultVerdict::NotApplicable => "not tried",
         };
         let again = if row.repeated.is_empty() {
             String::new()

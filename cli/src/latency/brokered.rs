@@ -6,7 +6,7 @@ use std::process::Child;
 use broker::Client;
 use broker::daemon::{Tcp, serve};
 use ipc::{Run, Space};
-use latency::{End, Link, Opened, spin};
+use latency::{Link, LinkEnd, Opened, spin};
 use messages::command::PushCommand;
 use messages::{Command, CommandSource, Process};
 use realtime::Stop;
@@ -19,23 +19,23 @@ fn text(e: impl std::fmt::Display) -> String {
 
 struct Commands {
     client: Client,
-    end: End,
+    end: LinkEnd,
     stamp: u64,
     _space: Space,
     _made: Option<(Helper, Space)>,
 }
 
 /// The near end commands and hears the answer, the far one takes commands and answers.
-pub(super) fn commands(dir: &Path, end: End, start: impl Fn(&str) -> Result<Child, String>) -> Opened {
+pub(super) fn commands(dir: &Path, end: LinkEnd, start: impl Fn(&str) -> Result<Child, String>) -> Opened {
     let mut made = None;
-    if end == End::Near {
+    if end == LinkEnd::Near {
         let space = Space::create(dir).map_err(text)?;
         Run::bare(dir).save().map_err(text)?;
         made = Some((Helper(start("broker")?), space));
     }
     let (process, name) = match end {
-        End::Near => (Process::Observer, "operator"),
-        End::Far => (Process::SimBackend, Process::SimBackend.name()),
+        LinkEnd::Near => (Process::Observer, "operator"),
+        LinkEnd::Far => (Process::SimBackend, Process::SimBackend.name()),
     };
     let space = Space::open(dir, process).map_err(text)?;
     let client = Client::start(name, process.command_domains(), &space)?;
@@ -51,7 +51,7 @@ pub(super) fn broker(dir: &Path) -> Result<(), String> {
 impl Link for Commands {
     fn send(&mut self, stamp: u64) -> Result<(), String> {
         self.stamp = stamp;
-        if self.end == End::Near {
+        if self.end == LinkEnd::Near {
             let push = PushCommand { force: [0.0; 3], duration: 0.1 };
             self.client.publish(&Command::Push(push)).ok_or("the ring of commands is full")?;
         }
@@ -62,7 +62,7 @@ impl Link for Commands {
         let Self { client, end, .. } = self;
         spin(|| {
             std::thread::yield_now();
-            if *end == End::Near {
+            if *end == LinkEnd::Near {
                 return client.answered().map(drop);
             }
             let live = client.next()?;

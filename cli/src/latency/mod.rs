@@ -13,11 +13,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::Duration;
 
-use latency::{End, Link, Opened, raw, system, topics};
+use latency::{Link, LinkEnd, Opened, raw, system, topics};
 use realtime::cyclictest;
-use realtime::{Schedule, clock, prepare_thread};
+use realtime::{ThreadSchedule, clock, prepare_thread};
 
-pub use report::{Report, Row};
+pub use report::{LatencyReport, LatencyRow};
 
 /// Scheduling of both ends.
 const PRIORITY: u8 = 70;
@@ -32,7 +32,7 @@ const LAST: u64 = u64::MAX;
 /// Wake-up of the other end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum WakeUp {
     /// It looks all the time.
     Polled,
     /// It sleeps until it is woken.
@@ -42,19 +42,19 @@ pub enum Kind {
 }
 
 /// All ways, in the order of the table.
-const WAYS: [(&str, Kind); 9] = [
-    ("topic", Kind::Polled),
-    ("iceoryx2 blackboard", Kind::Polled),
-    ("iceoryx2 samples", Kind::Polled),
-    ("topic and bell", Kind::Woken),
-    ("iceoryx2 with an event", Kind::Woken),
-    ("POSIX queue, in 2 parts", Kind::Woken),
-    ("Unix datagram", Kind::Woken),
-    ("TCP on loopback", Kind::Woken),
-    ("command to answer over the broker", Kind::Brokered),
+const WAYS: [(&str, WakeUp); 9] = [
+    ("topic", WakeUp::Polled),
+    ("iceoryx2 blackboard", WakeUp::Polled),
+    ("iceoryx2 samples", WakeUp::Polled),
+    ("topic and bell", WakeUp::Woken),
+    ("iceoryx2 with an event", WakeUp::Woken),
+    ("POSIX queue, in 2 parts", WakeUp::Woken),
+    ("Unix datagram", WakeUp::Woken),
+    ("TCP on loopback", WakeUp::Woken),
+    ("command to answer over the broker", WakeUp::Brokered),
 ];
 
-fn open(way: &str, dir: &Path, end: End) -> Opened {
+fn open(way: &str, dir: &Path, end: LinkEnd) -> Opened {
     match way {
         "topic" => topics::open(dir, end, false),
         "iceoryx2 blackboard" => raw::blackboard(dir, end),
@@ -72,14 +72,15 @@ fn open(way: &str, dir: &Path, end: End) -> Opened {
 ///
 /// # Errors
 /// The program cannot start itself again, or has no place to put files.
-pub fn measure(rounds: usize, progress: impl Fn(usize, &str)) -> Result<Report, String> {
+pub fn measure(rounds: usize, progress: impl Fn(usize, &str)) -> Result<LatencyReport, String> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut report = Report::new(WAYS.iter().map(|&(name, kind)| Row::new(name, kind)).collect());
+    let mut report =
+        LatencyReport::new(WAYS.iter().map(|&(name, kind)| LatencyRow::new(name, kind)).collect());
     for round in 0..rounds {
         report.hear(cyclictest(Some(cores - 1), PRIORITY, 1));
         for (row, &(way, kind)) in WAYS.iter().enumerate() {
             progress(round, way);
-            let found = if kind == Kind::Polled && cores < 2 {
+            let found = if kind == WakeUp::Polled && cores < 2 {
                 Err("needs two cores".into())
             } else {
                 std::thread::scope(|s| s.spawn(|| one_round(way, kind, cores)).join())
@@ -92,17 +93,17 @@ pub fn measure(rounds: usize, progress: impl Fn(usize, &str)) -> Result<Report, 
 }
 
 /// The times \[ns\] of one way in one round, on a thread of its own.
-fn one_round(way: &str, kind: Kind, cores: usize) -> Result<Vec<u64>, String> {
+fn one_round(way: &str, kind: WakeUp, cores: usize) -> Result<Vec<u64>, String> {
     let dir = Dir::make()?;
-    let mut near = open(way, &dir.0, End::Near)?;
+    let mut near = open(way, &dir.0, LinkEnd::Near)?;
     let (own, other) = match kind {
-        Kind::Polled => (cores - 2, (cores - 1).to_string()),
-        Kind::Woken => (cores - 1, (cores - 1).to_string()),
-        Kind::Brokered => (0, "any".to_owned()),
+        WakeUp::Polled => (cores - 2, (cores - 1).to_string()),
+        WakeUp::Woken => (cores - 1, (cores - 1).to_string()),
+        WakeUp::Brokered => (0, "any".to_owned()),
     };
     let mut far = Helper(start(way, &dir.0, &other)?);
-    if kind != Kind::Brokered {
-        prepare_thread(&Schedule { priority: PRIORITY, core: Some(own) });
+    if kind != WakeUp::Brokered {
+        prepare_thread(&ThreadSchedule { priority: PRIORITY, core: Some(own) });
         near.receive()?;
     } else {
         clock::sleep_until(clock::now() + clock::SECOND / 5);
@@ -113,11 +114,11 @@ fn one_round(way: &str, kind: Kind, cores: usize) -> Result<Vec<u64>, String> {
     times
 }
 
-fn round_trips(near: &mut dyn Link, kind: Kind) -> Result<Vec<u64>, String> {
-    let count = if kind == Kind::Polled { POLLED } else { WOKEN };
+fn round_trips(near: &mut dyn Link, kind: WakeUp) -> Result<Vec<u64>, String> {
+    let count = if kind == WakeUp::Polled { POLLED } else { WOKEN };
     let mut times = Vec::with_capacity(count);
     for _ in 0..count {
-        if kind != Kind::Polled {
+        if kind != WakeUp::Polled {
             clock::sleep_until(clock::now() + PAUSE_NS);
         }
         let sent = clock::now();
@@ -140,9 +141,9 @@ pub fn answer(way: &str, dir: &Path, core: &str) -> Result<(), String> {
     if way == "broker" {
         return brokered::broker(dir);
     }
-    let mut far = open(way, dir, End::Far)?;
+    let mut far = open(way, dir, LinkEnd::Far)?;
     if let Ok(core) = core.parse() {
-        prepare_thread(&Schedule { priority: PRIORITY, core: Some(core) });
+        prepare_thread(&ThreadSchedule { priority: PRIORITY, core: Some(core) });
     }
     far.send(HELLO)?;
     loop {

@@ -7,15 +7,15 @@ use drawing::{Chart, Color, Figure, color};
 use latency::SIZE;
 use serde::Serialize;
 
-use super::Kind;
+use super::WakeUp;
 
 /// One way between two processes.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct LatencyRow {
     /// Its name.
     pub way: &'static str,
     /// Wake-up of the other end.
-    pub kind: Kind,
+    pub kind: WakeUp,
     /// \[us\] Half of a round trip: p50, p99, p99.9, max.
     pub us: Option<[f64; 4]>,
     /// Messages sent to and fro.
@@ -28,19 +28,19 @@ pub struct Row {
 
 /// All ways, and what the machine gives to anybody.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct LatencyReport {
     /// Bytes of a message.
     pub bytes: usize,
     /// \[us\] Lateness of `cyclictest` between the rounds, medians over them: p50, p99, p99.9; and the max.
     pub cyclictest_us: Option<[u64; 4]>,
     /// The ways.
-    pub ways: Vec<Row>,
+    pub ways: Vec<LatencyRow>,
     #[serde(skip)]
     lateness: Vec<[u64; 4]>,
 }
 
-impl Row {
-    pub(super) fn new(way: &'static str, kind: Kind) -> Self {
+impl LatencyRow {
+    pub(super) fn new(way: &'static str, kind: WakeUp) -> Self {
         Self { way, kind, us: None, messages: 0, problem: None, ns: Vec::new() }
     }
 
@@ -50,8 +50,8 @@ impl Row {
     }
 }
 
-impl Report {
-    pub(super) fn new(ways: Vec<Row>) -> Self {
+impl LatencyReport {
+    pub(super) fn new(ways: Vec<LatencyRow>) -> Self {
         Self { bytes: SIZE, cyclictest_us: None, ways, lateness: Vec::new() }
     }
 
@@ -111,9 +111,9 @@ impl Report {
         const COLORS: [Color; 5] =
             [color::BLUE, color::VERMILION, color::GREEN, color::PURPLE, color::ORANGE];
         for (kind, title) in [
-            (Kind::Polled, "Polled, two cores"),
-            (Kind::Woken, "Woken, one core"),
-            (Kind::Brokered, "Through the broker"),
+            (WakeUp::Polled, "Polled, two cores"),
+            (WakeUp::Woken, "Woken, one core"),
+            (WakeUp::Brokered, "Through the broker"),
         ] {
             let mut chart = Chart::new(title, "time, one way [us]", "share of messages [1]").logarithmic();
             let rows = self.ways.iter().filter(|row| row.kind == kind && !row.ns.is_empty());

@@ -1,10 +1,10 @@
 //! Vertical forces on the feet: measured, and desired after modification (5.22).
 
-use super::walk::Walk;
+use super::walk::WalkData;
 use drawing::color::{BLACK, BLUE, VERMILION};
 use drawing::{Chart, Figure};
 
-pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
+pub(super) fn draw(walk: &WalkData) -> Result<Figure, String> {
     if walk.cycles.iter().all(|c| c.force_z[0].is_nan()) {
         return Err("the log has no sensor records".into());
     }

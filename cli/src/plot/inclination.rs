@@ -1,10 +1,10 @@
 //! Inclination errors of the upper body (5.2), (5.3).
 
-use super::walk::Walk;
+use super::walk::WalkData;
 use drawing::color::{BLUE, GREY, VERMILION};
 use drawing::{Chart, Figure};
 
-pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
+pub(super) fn draw(walk: &WalkData) -> Result<Figure, String> {
     let end = walk.cycles.last().map_or(0.0, |c| c.time);
     let chart = |title: &str, axis: usize, color| {
         let largest = walk.cycles.iter().map(|c| c.state.inclination_error[axis].abs()).fold(0.0, f64::max);

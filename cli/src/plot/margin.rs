@@ -1,13 +1,13 @@
 //! Stability margin: distance of the zero-moment point to the edge of the support polygon, over time.
 
-use super::walk::Walk;
+use super::walk::WalkData;
 use drawing::color::{BLUE, GREY};
 use drawing::{Chart, Figure};
 
 /// \[m\] Below this little is left.
 const LITTLE: f64 = 0.01;
 
-pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
+pub(super) fn draw(walk: &WalkData) -> Result<Figure, String> {
     let known: Vec<[f64; 2]> =
         walk.over_time(|c| c.state.zmp_margin).into_iter().filter(|p| p[1].is_finite()).collect();
     let least = known.iter().min_by(|a, b| a[1].total_cmp(&b[1])).ok_or("no foot ever carries load")?;

@@ -16,7 +16,7 @@ mod zmp;
 
 use drawing::Figure;
 use std::path::{Path, PathBuf};
-use walk::Walk;
+use walk::WalkData;
 
 /// Pictures drawn.
 #[derive(Clone, Debug, Default)]
@@ -27,7 +27,7 @@ pub struct Pictures {
     pub skipped: Vec<String>,
 }
 
-type Draw = fn(&Walk) -> Result<Figure, String>;
+type Draw = fn(&WalkData) -> Result<Figure, String>;
 
 /// File names, and who draws them.
 const PICTURES: [(&str, Draw); 8] = [
@@ -43,7 +43,7 @@ const PICTURES: [(&str, Draw); 8] = [
 
 /// Draws all pictures of a log into a directory, which is made if it does not exist.
 pub fn run(log: &Path, out: &Path) -> Result<Pictures, String> {
-    let walk = Walk::load(log)?;
+    let walk = WalkData::load(log)?;
     std::fs::create_dir_all(out).map_err(|e| {
         format!("{}: cannot make the directory: {e}; choose another with --out", out.display())
     })?;
@@ -69,7 +69,7 @@ pub fn run(log: &Path, out: &Path) -> Result<Pictures, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use synthetic::Part;
+    use synthetic::LogPart;
 
     fn directory(name: &str) -> PathBuf {
         let directory = std::env::temp_dir().join(format!("gangwerk-plot-{name}-{}", std::process::id()));
@@ -101,7 +101,7 @@ mod tests {
     fn a_log_without_links_has_no_stick_figures() {
         let out = directory("no-links");
         let log = out.join("walk.mcap");
-        synthetic::write(&log, &[Part::Links]);
+        synthetic::write(&log, &[LogPart::Links]);
         let pictures = run(&log, &out).expect("pictures");
         assert_eq!(pictures.skipped.len(), 1);
         assert!(pictures.skipped[0].starts_with("stick_figures.png: "), "{:?}", pictures.skipped);
@@ -115,11 +115,11 @@ mod tests {
         let out = directory("parts");
         let log = out.join("walk.mcap");
         for (part, names) in [
-            (Part::Truth, &[][..]),
-            (Part::Tracking, &["joint_tracking.png: every joint is where its target is"]),
-            (Part::Sensors, &["foot_forces.png: ", "redundant_joints.png: ", "stick_figures.png: "]),
-            (Part::Margin, &["margin.png: no foot ever carries load"]),
-            (Part::Inclination, &["inclination.png: the log holds nothing for \"φ_x"]),
+            (LogPart::Truth, &[][..]),
+            (LogPart::Tracking, &["joint_tracking.png: every joint is where its target is"]),
+            (LogPart::Sensors, &["foot_forces.png: ", "redundant_joints.png: ", "stick_figures.png: "]),
+            (LogPart::Margin, &["margin.png: no foot ever carries load"]),
+            (LogPart::Inclination, &["inclination.png: the log holds nothing for \"φ_x"]),
         ] {
             synthetic::write(&log, &[part]);
             let pictures = run(&log, &out).expect("pictures");

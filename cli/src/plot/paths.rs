@@ -1,19 +1,19 @@
 //! The centre of gravity and the feet from above, with footprints.
 
-use super::walk::Walk;
+use super::walk::WalkData;
 use drawing::color::{BLACK, BLUE, GREEN, VERMILION};
 use drawing::{Chart, Figure, Pen};
 
-pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
+pub(super) fn draw(walk: &WalkData) -> Result<Figure, String> {
     let mut chart = map("From above");
     draw_footprints(&mut chart, walk);
     for (foot, name, color) in [(0, "right sole", VERMILION), (1, "left sole", BLUE)] {
         let pen = Pen { color: color.faint(0xc0), width: 2.0, dashed: false };
-        let sole = |c: &super::walk::Cycle| c.place([c.state.feet[foot][0], c.state.feet[foot][1]]);
+        let sole = |c: &super::walk::CycleData| c.place([c.state.feet[foot][0], c.state.feet[foot][1]]);
         chart.styled(name, walk.path(sole), pen);
     }
     chart.line("centre of gravity", walk.path(|c| c.place([c.state.com[0], c.state.com[1]])), GREEN);
-    let desired = |c: &super::walk::Cycle| c.place([c.state.com_desired[0], c.state.com_desired[1]]);
+    let desired = |c: &super::walk::CycleData| c.place([c.state.com_desired[0], c.state.com_desired[1]]);
     chart.dashed("planned", walk.path(desired), BLACK);
 
     let mut height =
@@ -36,7 +36,7 @@ pub(super) fn map(title: &str) -> Chart {
 }
 
 /// The rectangles on which the feet stood.
-pub(super) fn draw_footprints(chart: &mut Chart, walk: &Walk) {
+pub(super) fn draw_footprints(chart: &mut Chart, walk: &WalkData) {
     for print in walk.footprints() {
         let (name, color) = [("right foot", VERMILION), ("left foot", BLUE)][print.foot];
         chart.area(name, print.corners.to_vec(), color.faint(0x30));

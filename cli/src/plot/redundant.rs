@@ -1,10 +1,10 @@
 //! Angles of the joints that a walk on flat ground could do without: pelvis and toes (thesis figure 8.4).
 
-use super::walk::Walk;
+use super::walk::WalkData;
 use drawing::color::{BLUE, GREEN, VERMILION};
 use drawing::{Chart, Figure};
 
-pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
+pub(super) fn draw(walk: &WalkData) -> Result<Figure, String> {
     let named = |part: &str| -> Vec<usize> {
         let joints = walk.robot.joints.iter().enumerate();
         joints.filter(|(_, name)| name.contains(part)).map(|(i, _)| i).collect()

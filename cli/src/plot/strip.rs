@@ -3,11 +3,11 @@
 //! The figures stand at equal distances, further apart than the robot really walks between them, so that they do not
 //! hide each other; the scale is the same in both directions.
 
-use super::walk::{Walk, seconds};
+use super::walk::{WalkData, seconds};
 use drawing::color::{BLACK, BLUE, GREY, LIGHT, VERMILION};
 use drawing::{Chart, Color, Figure, Pen, Point};
 use messages::GaitState;
-use recording::{FrameTree, Log, Pose};
+use recording::{FrameTree, Log, RecordedPose};
 use std::collections::HashMap;
 
 /// \[s\] Time between two figures.
@@ -18,7 +18,7 @@ const SPACING: f64 = 0.62;
 const PER_ROW: usize = 14;
 const ROWS: usize = 3;
 
-pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
+pub(super) fn draw(walk: &WalkData) -> Result<Figure, String> {
     let links = walk.frames.first().map_or(0, |tree| tree.transforms.len());
     if links < 4 {
         return Err("the log has no poses of links in /tf".into());
@@ -63,7 +63,7 @@ pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
 }
 
 /// One tree of frames per interval, from `begin` on.
-fn every(walk: &Walk, begin: f64) -> Vec<&FrameTree> {
+fn every(walk: &WalkData, begin: f64) -> Vec<&FrameTree> {
     let mut next = begin;
     let mut chosen = Vec::new();
     for tree in &walk.frames {
@@ -77,9 +77,9 @@ fn every(walk: &Walk, begin: f64) -> Vec<&FrameTree> {
 }
 
 /// Draws the tree of links as lines from parent to child: far side first.
-fn draw_robot(chart: &mut Chart, walk: &Walk, tree: &FrameTree, at: f64) {
+fn draw_robot(chart: &mut Chart, walk: &WalkData, tree: &FrameTree, at: f64) {
     let skeleton = Skeleton::new(walk, tree);
-    let torso = skeleton.world.get(walk.robot.torso.as_str()).copied().unwrap_or(Pose::IDENTITY);
+    let torso = skeleton.world.get(walk.robot.torso.as_str()).copied().unwrap_or(RecordedPose::IDENTITY);
     let side_view = |[x, _, z]: [f64; 3]| -> Point { [at + x - torso.position[0], z] };
     for wanted in [BLUE, BLACK, VERMILION] {
         for (child, parent) in &skeleton.parents {
@@ -105,14 +105,14 @@ fn draw_robot(chart: &mut Chart, walk: &Walk, tree: &FrameTree, at: f64) {
 
 /// Links in the world, and who hangs on whom.
 struct Skeleton<'a> {
-    world: HashMap<&'a str, Pose>,
+    world: HashMap<&'a str, RecordedPose>,
     parents: Vec<(&'a str, &'a str)>,
     legs: [Vec<&'a str>; 2],
 }
 
 impl<'a> Skeleton<'a> {
-    fn new(walk: &'a Walk, tree: &'a FrameTree) -> Self {
-        let mut world: HashMap<&str, Pose> = HashMap::from([(Log::ODOM, Pose::IDENTITY)]);
+    fn new(walk: &'a WalkData, tree: &'a FrameTree) -> Self {
+        let mut world: HashMap<&str, RecordedPose> = HashMap::from([(Log::ODOM, RecordedPose::IDENTITY)]);
         let mut parents = Vec::new();
         for t in &tree.transforms {
             if let Some(parent) = world.get(t.parent.as_str()).copied() {

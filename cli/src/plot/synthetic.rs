@@ -3,7 +3,7 @@
 use messages::record::Wrench;
 use messages::topics::{CONTROLLER_STATE, SENSORS, SIM_STATE};
 use messages::{ControllerState, GaitState, Header, Joints, Sensors, SimState};
-use recording::{FootInfo, Link, LinkPoses, Pose, Recorder, RobotInfo, RunInfo};
+use recording::{FootInfo, LinkFrame, LinkPoses, RecordedPose, Recorder, RobotInfo, RunInfo};
 use std::path::Path;
 
 const STEP: f64 = 0.8;
@@ -75,12 +75,12 @@ fn pace(t: f64) -> Pace {
 const SOLES: usize = 8;
 
 /// Two-link legs by the law of cosines.
-struct Sticks(Vec<Link>);
+struct Sticks(Vec<LinkFrame>);
 impl LinkPoses for Sticks {
-    fn links(&self) -> &[Link] {
+    fn links(&self) -> &[LinkFrame] {
         &self.0
     }
-    fn poses(&mut self, torso: &Pose, joint_angle: &Joints, out: &mut [Pose]) {
+    fn poses(&mut self, torso: &RecordedPose, joint_angle: &Joints, out: &mut [RecordedPose]) {
         out[0] = *torso;
         for (foot, thigh) in [(0, 1), (1, 4)] {
             let sole = torso.place(std::array::from_fn(|k| joint_angle[SOLES + 3 * foot + k]));
@@ -94,19 +94,19 @@ impl LinkPoses for Sticks {
                 sole[1],
                 (hip[2] + ankle[2]) / 2.0 + dx / length * bend,
             ];
-            out[thigh] = Pose::moved(hip);
-            out[thigh + 1] = Pose::moved(knee);
-            out[thigh + 2] = Pose::moved(ankle);
+            out[thigh] = RecordedPose::moved(hip);
+            out[thigh + 1] = RecordedPose::moved(knee);
+            out[thigh + 2] = RecordedPose::moved(ankle);
         }
-        out[7] = torso.then(&Pose::moved([0.0, 0.0, 0.55]));
-        out[8] = torso.then(&Pose::moved([0.05, -0.25, 0.1]));
-        out[9] = torso.then(&Pose::moved([0.05, 0.25, 0.1]));
+        out[7] = torso.then(&RecordedPose::moved([0.0, 0.0, 0.55]));
+        out[8] = torso.then(&RecordedPose::moved([0.05, -0.25, 0.1]));
+        out[9] = torso.then(&RecordedPose::moved([0.05, 0.25, 0.1]));
     }
 }
 
 /// Optional parts of a log.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Part {
+pub(super) enum LogPart {
     Links,
     Truth,
     Sensors,
@@ -116,8 +116,8 @@ pub(super) enum Part {
 }
 
 /// Writes the walk without some parts.
-pub(super) fn write(path: &Path, without: &[Part]) {
-    let with = |part: Part| !without.contains(&part);
+pub(super) fn write(path: &Path, without: &[LogPart]) {
+    let with = |part: LogPart| !without.contains(&part);
     let foot = |side: &str| FootInfo {
         link: format!("{side}_foot"),
         sole: [0.0, 0.0, -0.1],
@@ -138,10 +138,10 @@ pub(super) fn write(path: &Path, without: &[Part]) {
     let run =
         RunInfo { scene: "synthetic".into(), config_hash: 1, software: "0.1.0".into(), ..RunInfo::default() };
     let mut recorder = Recorder::create(path, &robot, &run).expect("log");
-    if with(Part::Links) {
+    if with(LogPart::Links) {
         let tree = LINKS
             .iter()
-            .map(|(name, parent)| Link { name: (*name).into(), parent: *parent, fixed: false })
+            .map(|(name, parent)| LinkFrame { name: (*name).into(), parent: *parent, fixed: false })
             .collect();
         recorder = recorder.with_links(Box::new(Sticks(tree)));
     }
@@ -149,20 +149,20 @@ pub(super) fn write(path: &Path, without: &[Part]) {
         let t = tick as f64 * 1e-3;
         let header = Header { tick, stamp_ns: tick * 1_000_000, epoch: 1 };
         let (sensors, mut controller, state) = records(header, t);
-        if !with(Part::Tracking) {
+        if !with(LogPart::Tracking) {
             controller.tracking_error = Default::default();
         }
-        if !with(Part::Margin) {
+        if !with(LogPart::Margin) {
             controller.zmp_margin = f64::NAN;
         }
-        if !with(Part::Inclination) {
+        if !with(LogPart::Inclination) {
             controller.inclination_error = [f64::NAN; 2];
         }
         recorder.write(&CONTROLLER_STATE, &controller).expect("log");
-        if with(Part::Sensors) {
+        if with(LogPart::Sensors) {
             recorder.write(&SENSORS, &sensors).expect("log");
         }
-        if with(Part::Truth) {
+        if with(LogPart::Truth) {
             recorder.write(&SIM_STATE, &state).expect("log");
         }
     }
@@ -196,13 +196,13 @@ fn records(header: Header, t: f64) -> (Sensors, ControllerState, SimState) {
         controller.tracking_error[joint] = 0.3 * wobble(joint as f64);
         sensors.joint_angle[joint] = 20.0 * wobble(joint as f64);
     }
-    let torso = Pose {
+    let torso = RecordedPose {
         position: [pace.com[0] - 0.02, pace.com[1], 1.0],
         orientation: [0.0, 0.02, 0.0, 0.02f64.mul_add(-0.02, 1.0).sqrt()],
     };
     sensors.imu.orientation = torso.orientation;
     for (foot, [x, y, z, _]) in pace.feet.into_iter().enumerate() {
-        let sole = Pose::moved([x, y, z]).seen_from(&torso).position;
+        let sole = RecordedPose::moved([x, y, z]).seen_from(&torso).position;
         sensors.joint_angle[SOLES + 3 * foot..][..3].copy_from_slice(&sole);
     }
     let state = SimState {

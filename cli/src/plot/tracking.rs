@@ -1,6 +1,6 @@
 //! Tracking error of the leg joints.
 
-use super::walk::Walk;
+use super::walk::WalkData;
 use drawing::color::{BLUE, VERMILION};
 use drawing::{Chart, Figure};
 
@@ -10,8 +10,8 @@ const NOTHING: f64 = 1e-6;
 const GROUPS: [(&str, &str, &str); 3] =
     [("Hip flexion", "hip", "flex"), ("Knee", "knee", ""), ("Ankle flexion", "ankle", "flex")];
 
-pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
-    let moves = |c: &super::walk::Cycle| c.state.tracking_error.iter().any(|error| error.abs() > NOTHING);
+pub(super) fn draw(walk: &WalkData) -> Result<Figure, String> {
+    let moves = |c: &super::walk::CycleData| c.state.tracking_error.iter().any(|error| error.abs() > NOTHING);
     if !walk.cycles.iter().any(moves) {
         return Err(
             "every joint is where its target is: the scene has no drives (depth = 2 or more has)".into()
@@ -37,8 +37,8 @@ pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
     if found { Ok(figure) } else { Err("no joint is called hip, knee or ankle".into()) }
 }
 
-fn chart(walk: &Walk, title: &str, joints: &[usize]) -> Chart {
-    let error = |joint: usize| move |c: &super::walk::Cycle| c.state.tracking_error[joint];
+fn chart(walk: &WalkData, title: &str, joints: &[usize]) -> Chart {
+    let error = |joint: usize| move |c: &super::walk::CycleData| c.state.tracking_error[joint];
     let largest =
         joints.iter().flat_map(|&j| walk.cycles.iter().map(move |c| error(j)(c).abs())).fold(0.0, f64::max);
     let title = format!("{title}: largest {largest:.4} rad");

@@ -4,7 +4,7 @@ use drawing::Point;
 use messages::topics::{CONTROLLER_STATE, SENSORS};
 use messages::{ControllerState, Joints, MAX_JOINTS, Sensors};
 use recording::polygon::{convex_hull, sole_corners};
-use recording::{End, FrameTree, Log, RobotInfo};
+use recording::{FrameTree, Log, LogEnd, RobotInfo};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -14,12 +14,12 @@ const LOADED: f64 = 30.0;
 const FOOTHOLD: f64 = 0.15;
 
 /// Inputs of the figures.
-pub(super) struct Walk {
+pub(super) struct WalkData {
     /// Robot, scene, duration: the line under every title.
     pub(super) about: String,
     pub(super) robot: RobotInfo,
     /// One entry per cycle.
-    pub(super) cycles: Vec<Cycle>,
+    pub(super) cycles: Vec<CycleData>,
     /// Frames of the simulated robot, thinned; empty if the log has none.
     pub(super) frames: Vec<FrameTree>,
     /// Stamp of time zero \[ns\].
@@ -27,7 +27,7 @@ pub(super) struct Walk {
 }
 
 /// One cycle of the stabilizer. Positions are in the frame of the first plan.
-pub(super) struct Cycle {
+pub(super) struct CycleData {
     /// \[s\] Time since the beginning of the log.
     pub(super) time: f64,
     pub(super) state: ControllerState,
@@ -44,7 +44,7 @@ pub(super) struct Footprint {
     pub(super) corners: [Point; 4],
 }
 
-impl Walk {
+impl WalkData {
     pub(super) fn load(path: &Path) -> Result<Self, String> {
         let log = Log::open(path).map_err(|e| e.to_string())?;
         let mut sensed = HashMap::new();
@@ -58,18 +58,18 @@ impl Walk {
             states.first().ok_or_else(|| format!("{}: no record of controller_state", path.display()))?;
         let start_ns = first.header.stamp_ns;
         // Before the first plan nothing is desired and nothing has a frame.
-        let cycles: Vec<Cycle> = states
+        let cycles: Vec<CycleData> = states
             .into_iter()
             .filter(|state| state.plan_id > 0)
             .map(|state| {
                 let sensed = sensed.get(&state.header.tick).copied();
                 let (force_z, angle) = sensed.unwrap_or(([f64::NAN; 2], [f64::NAN; MAX_JOINTS]));
-                Cycle { time: seconds(state.header.stamp_ns, start_ns), force_z, angle, state }
+                CycleData { time: seconds(state.header.stamp_ns, start_ns), force_z, angle, state }
             })
             .collect();
         let duration =
             cycles.last().ok_or_else(|| format!("{}: no plan was ever active", path.display()))?.time;
-        let cut = if end == End::Complete { "" } else { "  ·  log was cut off" };
+        let cut = if end == LogEnd::Complete { "" } else { "  ·  log was cut off" };
         let (robot, run) = (log.robot().clone(), log.run());
         let about = format!(
             "{}  ·  {}  ·  {duration:.1} s  ·  software {}{cut}",
@@ -80,12 +80,12 @@ impl Walk {
     }
 
     /// Time of every cycle against a value of it.
-    pub(super) fn over_time(&self, value: impl Fn(&Cycle) -> f64) -> Vec<Point> {
+    pub(super) fn over_time(&self, value: impl Fn(&CycleData) -> f64) -> Vec<Point> {
         self.cycles.iter().map(|c| [c.time, value(c)]).collect()
     }
 
     /// Positions of every cycle.
-    pub(super) fn path(&self, position: impl Fn(&Cycle) -> Point) -> Vec<Point> {
+    pub(super) fn path(&self, position: impl Fn(&CycleData) -> Point) -> Vec<Point> {
         self.cycles.iter().map(position).collect()
     }
 
@@ -106,7 +106,7 @@ impl Walk {
     }
 }
 
-impl Cycle {
+impl CycleData {
     /// A point of the planning frame of the active plan in the frame of the first plan.
     pub(super) fn place(&self, [x, y]: Point) -> Point {
         let [ox, oy, heading] = self.state.origin;

@@ -1,11 +1,11 @@
 //! The zero-moment point in the support polygons: from above and over time.
 
 use super::paths::{draw_footprints, map};
-use super::walk::Walk;
+use super::walk::WalkData;
 use drawing::color::{BLACK, GREEN, VERMILION};
 use drawing::{Chart, Figure};
 
-pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
+pub(super) fn draw(walk: &WalkData) -> Result<Figure, String> {
     if walk.cycles.iter().all(|c| c.state.zmp[0].is_nan()) {
         return Err("no foot ever carries load".into());
     }
@@ -28,7 +28,7 @@ pub(super) fn draw(walk: &Walk) -> Result<Figure, String> {
 }
 
 /// One coordinate with the extent of the support polygon in that direction.
-fn over_time(walk: &Walk, axis: usize, title: &str) -> Chart {
+fn over_time(walk: &WalkData, axis: usize, title: &str) -> Chart {
     let label = ["x [m]", "y [m]"][axis];
     let mut chart = Chart::new(title, "time [s]", label).height(400.0).at_least(0.05);
     let time: Vec<f64> = walk.cycles.iter().map(|c| c.time).collect();

@@ -13,13 +13,13 @@ use std::error::Error;
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 
-use config::tolerance::Method;
+use config::method::Method;
 use config::{BusAddress, Setup};
 
 use messages::Process;
 use recording::Log;
 
-pub use problem::Problem;
+pub use problem::ReplayProblem;
 use tape::Tape;
 
 /// Processes whose step can be replayed.
@@ -56,7 +56,7 @@ impl std::fmt::Display for Replayed {
 /// Replays one process of a log.
 ///
 /// # Errors
-/// The log cannot be read, was not made by `gangwerk run`, or has another layout; a [`Problem`]: a record that the replay
+/// The log cannot be read, was not made by `gangwerk run`, or has another layout; a [`ReplayProblem`]: a record that the replay
 /// needs is missing, or one differs.
 pub fn replay(log: &Path, process: Process) -> Result<Replayed, Box<dyn Error>> {
     let file = Log::open(log)?;
@@ -69,7 +69,7 @@ pub fn replay(log: &Path, process: Process) -> Result<Replayed, Box<dyn Error>> 
         match cycle(&mut tape, part.as_mut(), &mut done) {
             Ok(true) => {}
             Ok(false) => break,
-            Err(Problem::EndOfCut) => {
+            Err(ReplayProblem::EndOfCut) => {
                 done.cut = true;
                 break;
             }
@@ -77,7 +77,7 @@ pub fn replay(log: &Path, process: Process) -> Result<Replayed, Box<dyn Error>> 
         }
     }
     if done.cycles == 0 {
-        return Err(Problem::NoCycles { process }.into());
+        return Err(ReplayProblem::NoCycles { process }.into());
     }
     if !done.cut {
         tape.nothing_is_left()?;
@@ -87,7 +87,7 @@ pub fn replay(log: &Path, process: Process) -> Result<Replayed, Box<dyn Error>> 
 }
 
 /// One cycle; `Ok(false)`: there is no more.
-fn cycle(tape: &mut Tape, part: &mut dyn parts::Part, done: &mut Replayed) -> Result<bool, Problem> {
+fn cycle(tape: &mut Tape, part: &mut dyn parts::Part, done: &mut Replayed) -> Result<bool, ReplayProblem> {
     let Some(inputs) = tape.inputs()? else { return Ok(false) };
     let commands = tape.commands(&inputs)?;
     part.cycle(tape, &inputs, &commands)?;

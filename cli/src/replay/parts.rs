@@ -15,15 +15,16 @@ use messages::{
     Plan, Process, Sensors, WatchdogReset,
 };
 use planner::Planner;
+use planner::obstacles::KnownObstacles;
 use watchdog::Watchdog;
 
-use super::problem::Problem;
+use super::problem::ReplayProblem;
 use super::tape::Tape;
 
 /// One process.
 pub(super) trait Part {
     /// Records written before its first cycle.
-    fn begin(&mut self, _: &mut Tape) -> Result<(), Problem> {
+    fn begin(&mut self, _: &mut Tape) -> Result<(), ReplayProblem> {
         Ok(())
     }
 
@@ -33,7 +34,7 @@ pub(super) trait Part {
         tape: &mut Tape,
         inputs: &CycleInputs,
         commands: &[CommandTaken],
-    ) -> Result<(), Problem>;
+    ) -> Result<(), ReplayProblem>;
 }
 
 /// The process as it is when it begins.
@@ -43,7 +44,7 @@ pub(super) fn of(process: Process, setup: &Setup, bus: &BusAddress) -> Result<Bo
     Ok(match process {
         Process::Planner => {
             let mut planner = Planner::of(gait, robot);
-            planner.see(planner::vision::known(setup)?);
+            planner.see(KnownObstacles::new(setup.known_obstacles()?));
             Box::new(Planning {
                 planner,
                 parameters: Parameters::default(),
@@ -79,8 +80,9 @@ pub(super) fn of(process: Process, setup: &Setup, bus: &BusAddress) -> Result<Bo
 }
 
 /// The command of a record.
-fn command(taken: &CommandTaken) -> Result<Command, Problem> {
-    let unknown = || Problem::Broken(format!("command {}/{} of the log is unknown", taken.domain, taken.id));
+fn command(taken: &CommandTaken) -> Result<Command, ReplayProblem> {
+    let unknown =
+        || ReplayProblem::Broken(format!("command {}/{} of the log is unknown", taken.domain, taken.id));
     taken.command().ok_or_else(unknown)
 }
 
@@ -93,7 +95,7 @@ struct Planning {
 }
 
 impl Part for Planning {
-    fn begin(&mut self, tape: &mut Tape) -> Result<(), Problem> {
+    fn begin(&mut self, tape: &mut Tape) -> Result<(), ReplayProblem> {
         self.planner.report_parameters(&mut self.parameters);
         tape.compare(&PARAMETERS_PLANNER, &self.parameters)
     }
@@ -103,7 +105,7 @@ impl Part for Planning {
         tape: &mut Tape,
         inputs: &CycleInputs,
         commands: &[CommandTaken],
-    ) -> Result<(), Problem> {
+    ) -> Result<(), ReplayProblem> {
         tape.fetch(&CONTROLLER_STATE, inputs.used[0], &mut self.state)?;
         let commands = commands.iter().map(command).collect::<Result<Vec<_>, _>>()?;
         let output = self.planner.step(inputs.header.tick, self.dt, self.state.as_deref(), &commands);
@@ -130,7 +132,7 @@ struct Stabilizing {
 }
 
 impl Part for Stabilizing {
-    fn begin(&mut self, tape: &mut Tape) -> Result<(), Problem> {
+    fn begin(&mut self, tape: &mut Tape) -> Result<(), ReplayProblem> {
         self.controller.report_parameters(&mut self.parameters);
         tape.compare(&PARAMETERS_CONTROLLER, &self.parameters)
     }
@@ -140,7 +142,7 @@ impl Part for Stabilizing {
         tape: &mut Tape,
         inputs: &CycleInputs,
         commands: &[CommandTaken],
-    ) -> Result<(), Problem> {
+    ) -> Result<(), ReplayProblem> {
         let header = inputs.header;
         tape.fetch(&SENSORS, inputs.used[0], &mut self.sensors)?;
         tape.fetch(&PLAN, inputs.used[1], &mut self.plan)?;
@@ -158,7 +160,7 @@ impl Part for Stabilizing {
         let measured = self
             .sensors
             .as_deref()
-            .ok_or_else(|| Problem::Broken("a cycle of the controller without sensor data".into()))?;
+            .ok_or_else(|| ReplayProblem::Broken("a cycle of the controller without sensor data".into()))?;
         let (targets, state) = self.controller.step(measured, self.plan.as_deref());
         tape.compare(&CONTROLLER_STATE, state)?;
         tape.compare(&JOINT_TARGETS, targets)?;
@@ -177,7 +179,7 @@ struct Driving {
 }
 
 impl Part for Driving {
-    fn begin(&mut self, tape: &mut Tape) -> Result<(), Problem> {
+    fn begin(&mut self, tape: &mut Tape) -> Result<(), ReplayProblem> {
         if self.real_bus {
             tape.on_real_bus();
         }
@@ -189,7 +191,7 @@ impl Part for Driving {
         tape: &mut Tape,
         inputs: &CycleInputs,
         commands: &[CommandTaken],
-    ) -> Result<(), Problem> {
+    ) -> Result<(), ReplayProblem> {
         let header = inputs.header;
         tape.fetch(&JOINT_TARGETS, inputs.used[0], &mut self.targets)?;
         tape.fetch(&FRAMES_IN, inputs.used[1], &mut self.frames)?;
@@ -221,7 +223,7 @@ impl Part for Guarding {
         tape: &mut Tape,
         inputs: &CycleInputs,
         commands: &[CommandTaken],
-    ) -> Result<(), Problem> {
+    ) -> Result<(), ReplayProblem> {
         tape.fetch(&WATCHDOG_RESET, inputs.used[0], &mut self.reset)?;
         let commands = commands.iter().map(command).collect::<Result<Vec<_>, _>>()?;
         let before = self.watchdog.supply();

@@ -6,7 +6,7 @@ use messages::Process;
 
 /// First difference.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Problem {
+pub enum ReplayProblem {
     /// The log holds nothing of the cycles of this process.
     NoCycles {
         /// The process.
@@ -56,7 +56,7 @@ pub enum Problem {
     EndOfCut,
 }
 
-impl fmt::Display for Problem {
+impl fmt::Display for ReplayProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoCycles { process } => {
@@ -89,4 +89,4 @@ impl fmt::Display for Problem {
     }
 }
 
-impl std::error::Error for Problem {}
+impl std::error::Error for ReplayProblem {}

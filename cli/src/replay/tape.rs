@@ -9,9 +9,9 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use messages::cycle_inputs::{Used, inputs_of};
 use messages::topics::{ForType, with_type};
 use messages::{CommandTaken, CycleInputs, Detail, Event, EventCode, Header, Process, Record, TOPICS, Topic};
-use recording::{End, Log, cdr, channel_name, definition};
+use recording::{Log, LogEnd, cdr, channel_name, definition};
 
-use super::problem::Problem;
+use super::problem::ReplayProblem;
 use crate::fields::first_difference;
 
 /// Messages read ahead.
@@ -22,7 +22,7 @@ const FAR: usize = 50_000;
 enum Heard {
     Message(usize, Waiting),
     Layout(usize),
-    End(Result<End, String>),
+    End(Result<LogEnd, String>),
 }
 
 struct Waiting {
@@ -30,7 +30,7 @@ struct Waiting {
     payload: Vec<u8>,
 }
 
-struct Queue {
+struct TapeQueue {
     topic: &'static Topic,
     waiting: VecDeque<Waiting>,
     /// Number of the last output that was compared.
@@ -42,9 +42,9 @@ struct Queue {
 pub(super) struct Tape {
     process: Process,
     heard: Receiver<Heard>,
-    queues: Vec<Queue>,
-    end: Option<End>,
-    encoder: cdr::Encoder,
+    queues: Vec<TapeQueue>,
+    end: Option<LogEnd>,
+    encoder: cdr::CdrEncoder,
     cycle: u64,
     header: Header,
     records: u64,
@@ -55,7 +55,7 @@ pub(super) struct Tape {
 
 impl Tape {
     /// Begins to read.
-    pub(super) fn open(log: Log, process: Process) -> Result<Self, Problem> {
+    pub(super) fn open(log: Log, process: Process) -> Result<Self, ReplayProblem> {
         let mut queues = Vec::new();
         for topic in TOPICS.iter().filter(|t| t.logged) {
             // Inputs are fed, own outputs compared; statistics depend on the machine and are neither.
@@ -65,7 +65,7 @@ impl Tape {
             if input || own {
                 let of_log = topic.type_name == "CycleInputs" || topic.type_name == "CommandTaken";
                 let output = own && !input && !of_log;
-                queues.push(Queue { topic, waiting: VecDeque::new(), last: None, output });
+                queues.push(TapeQueue { topic, waiting: VecDeque::new(), last: None, output });
             }
         }
         let channels: Vec<_> =
@@ -79,13 +79,13 @@ impl Tape {
         std::thread::Builder::new()
             .name("tape".into())
             .spawn(reading)
-            .map_err(|e| Problem::Broken(format!("no thread to read the log: {e}")))?;
+            .map_err(|e| ReplayProblem::Broken(format!("no thread to read the log: {e}")))?;
         Ok(Self {
             process,
             heard,
             queues,
             end: None,
-            encoder: cdr::Encoder::new(),
+            encoder: cdr::CdrEncoder::new(),
             cycle: 0,
             header: Header { epoch: 1, ..Header::default() },
             records: 0,
@@ -100,11 +100,11 @@ impl Tape {
     }
 
     /// Inputs of the next cycle; none at the end of the log.
-    pub(super) fn inputs(&mut self) -> Result<Option<CycleInputs>, Problem> {
+    pub(super) fn inputs(&mut self) -> Result<Option<CycleInputs>, ReplayProblem> {
         let at = self.queue_of("cycle_inputs/");
         let next = match self.next(at) {
             Ok(next) => next,
-            Err(Problem::EndOfCut) if self.end == Some(End::Complete) => return Ok(None),
+            Err(ReplayProblem::EndOfCut) if self.end == Some(LogEnd::Complete) => return Ok(None),
             Err(problem) => return Err(problem),
         };
         let inputs: CycleInputs = self.decode(at, &next)?;
@@ -127,7 +127,7 @@ impl Tape {
     }
 
     /// The commands that the step saw in this cycle.
-    pub(super) fn commands(&mut self, inputs: &CycleInputs) -> Result<Vec<CommandTaken>, Problem> {
+    pub(super) fn commands(&mut self, inputs: &CycleInputs) -> Result<Vec<CommandTaken>, ReplayProblem> {
         let at = self.queue_of("commands/");
         let mut commands = Vec::new();
         for _ in 0..inputs.commands {
@@ -149,7 +149,7 @@ impl Tape {
         topic: &Topic,
         used: Used,
         held: &mut Option<Box<T>>,
-    ) -> Result<(), Problem> {
+    ) -> Result<(), ReplayProblem> {
         if used.epoch == 0 {
             *held = None;
             return Ok(());
@@ -178,14 +178,19 @@ impl Tape {
     }
 
     /// Holds what the step made against the log.
-    pub(super) fn compare<T: Record>(&mut self, topic: &Topic, made: &T) -> Result<(), Problem> {
+    pub(super) fn compare<T: Record>(&mut self, topic: &Topic, made: &T) -> Result<(), ReplayProblem> {
         let at = self.queue_of(topic.name);
         let logged = self.needed(at)?;
         self.compare_with(at, &logged, made)
     }
 
     /// The same for an event.
-    pub(super) fn event(&mut self, header: Header, code: EventCode, detail: Detail) -> Result<(), Problem> {
+    pub(super) fn event(
+        &mut self,
+        header: Header,
+        code: EventCode,
+        detail: Detail,
+    ) -> Result<(), ReplayProblem> {
         let at = self.queue_of("events/");
         let made = Event::new(header, code, detail);
         loop {
@@ -200,7 +205,12 @@ impl Tape {
         }
     }
 
-    fn compare_with<T: Record>(&mut self, at: usize, logged: &Waiting, made: &T) -> Result<(), Problem> {
+    fn compare_with<T: Record>(
+        &mut self,
+        at: usize,
+        logged: &Waiting,
+        made: &T,
+    ) -> Result<(), ReplayProblem> {
         self.follows(at, logged)?;
         let topic = self.queues[at].topic.name;
         let mut made = *made;
@@ -213,11 +223,11 @@ impl Tape {
         let theirs: T = self.decode(at, logged)?;
         let (field, logged, replayed) = first_difference(&theirs, &made).unwrap_or_default();
         let tick = made.header().tick;
-        Err(Problem::Differs { process: self.process, topic, tick, field, logged, replayed })
+        Err(ReplayProblem::Differs { process: self.process, topic, tick, field, logged, replayed })
     }
 
     /// Whether this is the record after the last one.
-    fn follows(&mut self, at: usize, logged: &Waiting) -> Result<(), Problem> {
+    fn follows(&mut self, at: usize, logged: &Waiting) -> Result<(), ReplayProblem> {
         let last = self.queues[at].last.replace(logged.number);
         match last.map(|last| logged.number.wrapping_sub(last)) {
             None | Some(1) => Ok(()),
@@ -230,16 +240,16 @@ impl Tape {
     }
 
     /// Nothing that the process wrote before this cycle may be left.
-    pub(super) fn end_of_cycle(&mut self, inputs: &CycleInputs) -> Result<(), Problem> {
+    pub(super) fn end_of_cycle(&mut self, inputs: &CycleInputs) -> Result<(), ReplayProblem> {
         self.left_before(inputs.header.tick)
     }
 
     /// Nothing that it wrote may be left at the end; what a cycle that did not end wrote is of a later tick.
-    pub(super) fn nothing_is_left(&mut self) -> Result<(), Problem> {
+    pub(super) fn nothing_is_left(&mut self) -> Result<(), ReplayProblem> {
         self.left_before(self.header.tick + 1)
     }
 
-    fn left_before(&mut self, tick: u64) -> Result<(), Problem> {
+    fn left_before(&mut self, tick: u64) -> Result<(), ReplayProblem> {
         for at in 0..self.queues.len() {
             while let Some(front) = self.queues[at].waiting.front().filter(|_| self.queues[at].output) {
                 let header = header_of(&front.payload);
@@ -252,7 +262,7 @@ impl Tape {
                 let code = event.and_then(|event| EventCode::from_number(event.code));
                 if !code.is_some_and(self.not_ours) {
                     let (process, topic) = (self.process, topic.name);
-                    return Err(Problem::NotMade { process, topic, tick: header.tick });
+                    return Err(ReplayProblem::NotMade { process, topic, tick: header.tick });
                 }
                 let Some(front) = self.queues[at].waiting.pop_front() else { break };
                 self.follows(at, &front)?;
@@ -267,45 +277,45 @@ impl Tape {
     }
 
     /// The next message of a topic, which must be there.
-    fn needed(&mut self, at: usize) -> Result<Waiting, Problem> {
+    fn needed(&mut self, at: usize) -> Result<Waiting, ReplayProblem> {
         match self.next(at) {
-            Err(Problem::EndOfCut) if self.end == Some(End::Complete) => {
+            Err(ReplayProblem::EndOfCut) if self.end == Some(LogEnd::Complete) => {
                 Err(self.missing(at, self.header.tick, "it is not in the rest of the log".into()))
             }
             other => other,
         }
     }
 
-    fn next(&mut self, at: usize) -> Result<Waiting, Problem> {
+    fn next(&mut self, at: usize) -> Result<Waiting, ReplayProblem> {
         let mut passed = 0;
         while self.queues[at].waiting.is_empty() {
             if self.end.is_some() {
-                return Err(Problem::EndOfCut);
+                return Err(ReplayProblem::EndOfCut);
             }
             if passed > FAR {
                 return Err(self.missing(at, self.header.tick, "it is not where it should be".into()));
             }
-            match self.heard.recv().map_err(|e| Problem::Broken(e.to_string()))? {
+            match self.heard.recv().map_err(|e| ReplayProblem::Broken(e.to_string()))? {
                 Heard::Message(of, waiting) => self.queues[of].waiting.push_back(waiting),
-                Heard::Layout(of) => return Err(Problem::Layout { topic: self.queues[of].topic.name }),
-                Heard::End(end) => self.end = Some(end.map_err(Problem::Broken)?),
+                Heard::Layout(of) => return Err(ReplayProblem::Layout { topic: self.queues[of].topic.name }),
+                Heard::End(end) => self.end = Some(end.map_err(ReplayProblem::Broken)?),
             }
             passed += 1;
         }
-        self.queues[at].waiting.pop_front().ok_or(Problem::EndOfCut)
+        self.queues[at].waiting.pop_front().ok_or(ReplayProblem::EndOfCut)
     }
 
-    fn decode<T: Record>(&self, at: usize, waiting: &Waiting) -> Result<T, Problem> {
-        cdr::decode(&waiting.payload).ok_or(Problem::Layout { topic: self.queues[at].topic.name })
+    fn decode<T: Record>(&self, at: usize, waiting: &Waiting) -> Result<T, ReplayProblem> {
+        cdr::decode(&waiting.payload).ok_or(ReplayProblem::Layout { topic: self.queues[at].topic.name })
     }
 
-    fn missing(&self, at: usize, tick: u64, why: String) -> Problem {
-        Problem::Missing { topic: self.queues[at].topic.name, tick, why }
+    fn missing(&self, at: usize, tick: u64, why: String) -> ReplayProblem {
+        ReplayProblem::Missing { topic: self.queues[at].topic.name, tick, why }
     }
 
     /// The queue of the topic that begins like this; of `prefix/PROCESS` there is one.
     fn queue_of(&self, name: &str) -> usize {
-        let begins = |q: &Queue| {
+        let begins = |q: &TapeQueue| {
             if name.ends_with('/') { q.topic.name.starts_with(name) } else { q.topic.name == name }
         };
         self.queues.iter().position(begins).expect("a topic of this process")
@@ -338,7 +348,7 @@ fn read(
     log: &Log,
     channels: &[(String, String)],
     heard: &SyncSender<Heard>,
-) -> Result<End, recording::RecordingError> {
+) -> Result<LogEnd, recording::RecordingError> {
     log.each(|message| {
         let Some(at) = channels.iter().position(|(name, _)| name == message.channel) else { return };
         // Who does not listen any more has found what he wanted.

@@ -23,7 +23,7 @@ const LAST_PLAN: u64 = 12 * SECOND;
 
 /// Observation of one check.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct CourseObservation {
     /// Somebody asked for the end since the last look.
     pub(super) asked: bool,
     /// The broker has passed the stop on.
@@ -86,7 +86,7 @@ impl Course {
     }
 
     /// One look.
-    pub(super) fn step(&mut self, now: u64, seen: Seen) -> Act {
+    pub(super) fn step(&mut self, now: u64, seen: CourseObservation) -> Act {
         self.passed |= seen.passed;
         if seen.asked && self.asked() {
             return Act::EmergencyStop;
@@ -116,8 +116,10 @@ impl Course {
 mod tests {
     use super::*;
 
-    const ASKED: Seen = Seen { asked: true, passed: false, stands: false, finished: false };
-    const NOTHING: Seen = Seen { asked: false, passed: false, stands: false, finished: false };
+    const ASKED: CourseObservation =
+        CourseObservation { asked: true, passed: false, stands: false, finished: false };
+    const NOTHING: CourseObservation =
+        CourseObservation { asked: false, passed: false, stands: false, finished: false };
 
     fn asked() -> Course {
         let mut course = Course::new(Mode::RealTime);
@@ -129,9 +131,9 @@ mod tests {
     #[test]
     fn a_stop_that_the_broker_passes_on_ends_with_the_stand() {
         let mut course = asked();
-        assert_eq!(course.step(2, Seen { passed: true, ..NOTHING }), Act::GoOn);
+        assert_eq!(course.step(2, CourseObservation { passed: true, ..NOTHING }), Act::GoOn);
         assert_eq!(course.step(2 * SECOND, NOTHING), Act::GoOn);
-        assert_eq!(course.step(3 * SECOND, Seen { stands: true, ..NOTHING }), Act::Finish);
+        assert_eq!(course.step(3 * SECOND, CourseObservation { stands: true, ..NOTHING }), Act::Finish);
     }
 
     /// With the broker dead the robot walked on for 8.6 s.

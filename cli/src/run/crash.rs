@@ -13,7 +13,7 @@ use ipc::Run;
 use logger::Origin;
 use messages::topics::{ForType, with_type};
 use messages::{Process, Record, TOPICS, Topic};
-use realtime::black_box::{Entry, Left};
+use realtime::black_box::{BlackBoxEntry, Left};
 use realtime::{clock, last_words};
 use recording::{Recorder, RecordingError};
 use terminal::Console;
@@ -75,7 +75,7 @@ fn write(
     path: &Path,
     (setup, origin): (&Setup, &Origin),
     text: &str,
-    entries: &[Entry],
+    entries: &[BlackBoxEntry],
 ) -> Result<(), RecordingError> {
     let mut recorder = logger::recorder(path, setup, origin)?;
     recorder.attach(TEXT, text.as_bytes())?;
@@ -88,7 +88,7 @@ fn write(
 
 struct Put<'a> {
     recorder: &'a mut Recorder,
-    entry: &'a Entry,
+    entry: &'a BlackBoxEntry,
 }
 
 impl ForType<Result<(), RecordingError>> for Put<'_> {

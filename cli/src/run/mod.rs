@@ -21,7 +21,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
 
-use config::tolerance::Method;
+use config::method::Method;
 use config::{BusAddress, Setup};
 
 use ipc::{Mode, Run, Space};
@@ -40,7 +40,7 @@ const OPEN_FILES: u64 = 2048;
 
 /// Options of a run.
 #[derive(Clone, Debug)]
-pub struct Order {
+pub struct RunOptions {
     /// Lockstep or real time.
     pub mode: Mode,
     /// In lockstep: no faster than real time.
@@ -92,7 +92,7 @@ impl std::fmt::Display for Cause {
 
 /// Outcome of a run.
 #[derive(Debug, Default)]
-pub struct Outcome {
+pub struct RunOutcome {
     /// Processes that died or hung before their time, also those that were started again.
     pub lost: Vec<(Process, Cause)>,
     /// Whether a signal asked for the end.
@@ -113,7 +113,7 @@ pub struct Outcome {
 ///
 /// # Errors
 /// The configuration is wrong, another run uses the directory, or a process does not start.
-pub fn run(order: &Order, stop: Stop, console: &Console) -> Result<Outcome, Box<dyn Error>> {
+pub fn run(order: &RunOptions, stop: Stop, console: &Console) -> Result<RunOutcome, Box<dyn Error>> {
     let files = realtime::open_files(OPEN_FILES);
     if files < OPEN_FILES {
         return Err(format!(

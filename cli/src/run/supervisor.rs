@@ -15,13 +15,13 @@ use realtime::{Stop, black_box, clock};
 use terminal::{Console, Feed};
 
 use super::backoff::Backoff;
-use super::course::{Act, Course, Seen};
+use super::course::{Act, Course, CourseObservation};
 use super::crash::{self, Crashes};
 use super::hearing::Hearing;
 use super::manager::{ENVIRONMENT, Manager};
 use super::pulse::Pulse;
 use super::view::View;
-use super::{Cause, Outcome};
+use super::{Cause, RunOutcome};
 
 /// Between two looks at the processes.
 const LOOK: Duration = Duration::from_millis(10);
@@ -47,7 +47,7 @@ pub(super) fn supervise(
     rt_required: bool,
     stop: Stop,
     console: &Console,
-) -> Result<Outcome, Box<dyn Error>> {
+) -> Result<RunOutcome, Box<dyn Error>> {
     let course = Course::new(run.mode);
     let mut view = View::new(&space, setup, console.clone())?;
     let mut supervisor = Supervisor {
@@ -57,7 +57,7 @@ pub(super) fn supervise(
         crashes: Crashes::new(setup, &run, console),
         memories: Vec::new(),
         manager: Manager::new(),
-        outcome: Outcome::default(),
+        outcome: RunOutcome::default(),
         console: console.clone(),
         patience: (setup.system.peer_timeout * 1e9) as u64,
         rt_required: rt_required && run.mode == Mode::RealTime,
@@ -92,7 +92,7 @@ struct Supervisor {
     memories: Vec<(Process, File)>,
     manager: Manager,
     course: Course,
-    outcome: Outcome,
+    outcome: RunOutcome,
     console: Console,
     /// Timeout between processes in lockstep \[ns\].
     patience: u64,
@@ -103,11 +103,11 @@ struct Supervisor {
 }
 
 impl Supervisor {
-    /// Starts the processes one after the other, in the order of `start_order`; each has built everything before the next begins. Who waits longer for
+    /// Starts the processes one after the other; each has built everything before the next begins. Who waits longer for
     /// peers, `peer_timeout`, waits longer for their start, too.
     fn start(&mut self, setup: &Setup) -> Result<(), Box<dyn Error>> {
         let patience = START_PATIENCE.max(self.patience);
-        for &process in &setup.system.start_order {
+        for process in Process::ALL {
             let wanted = match process {
                 Process::Logger => self.run.log.is_some(),
                 Process::SimBackend => self.run.robot,
@@ -202,7 +202,7 @@ impl Supervisor {
             view.update();
             let now = clock::now();
             self.manager.look(now);
-            let mut seen = Seen { finished: self.bury(now), ..Seen::default() };
+            let mut seen = CourseObservation { finished: self.bury(now), ..CourseObservation::default() };
             // Who hangs is treated as who died.
             hearing.listen(operator.statistics().connected);
             // The last records of who died are heard after the death.

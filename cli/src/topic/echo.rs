@@ -4,12 +4,12 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
-use drives::cia402::Fault;
+use drives::cia402::DriveFault;
 use ipc::Reader;
 use messages::topics::{ForType, Topic, with_type};
 use messages::{Event, Process, Record, TOPICS, Words};
 
-use super::{EVENTS, Robot, find};
+use super::{EVENTS, ObservedRobot, find};
 use crate::fields::{Number, numbers};
 
 /// Between two looks.
@@ -38,16 +38,16 @@ pub fn echo(dir: &Path, name: &str, how: &Echo) -> Result<(), Box<dyn Error>> {
         name => vec![find(name)?],
     };
     if sentences && wanted.iter().all(reports) {
-        return tell(&Robot::open(dir)?, &wanted, how.count);
+        return tell(&ObservedRobot::open(dir)?, &wanted, how.count);
     }
     let [topic] = wanted[..] else {
         return Err("--field and --csv take the events of one process: events/lowlevel".into());
     };
-    with_type(topic.name, Records { robot: &Robot::open(dir)?, how }).unwrap_or(Ok(()))
+    with_type(topic.name, Records { robot: &ObservedRobot::open(dir)?, how }).unwrap_or(Ok(()))
 }
 
 /// Prints events as sentences: first those that are still kept, then new ones.
-fn tell(robot: &Robot, topics: &[&'static Topic], count: Option<u64>) -> Result<(), Box<dyn Error>> {
+fn tell(robot: &ObservedRobot, topics: &[&'static Topic], count: Option<u64>) -> Result<(), Box<dyn Error>> {
     let mut readers = Vec::new();
     for &topic in topics {
         readers.push((topic.writer, robot.space.reader::<Event>(topic)?));
@@ -82,7 +82,7 @@ pub(crate) fn words(setup: &config::Setup) -> Words {
     Words {
         joints: setup.robot.joints.iter().map(|joint| joint.name.clone()).collect(),
         nodes: setup.robot.layout.nodes.clone(),
-        fault: Some(|code| Fault::from_code(code).map_or("", Fault::text)),
+        fault: Some(|code| DriveFault::from_code(code).map_or("", DriveFault::text)),
     }
 }
 
@@ -93,14 +93,14 @@ fn sentence(words: &Words, cycle: f64, process: Process, event: &Event) -> Strin
 }
 
 struct Records<'a> {
-    robot: &'a Robot,
+    robot: &'a ObservedRobot,
     how: &'a Echo,
 }
 
 impl ForType<Result<(), Box<dyn Error>>> for Records<'_> {
     fn call<T: Record>(self, topic: &'static Topic) -> Result<(), Box<dyn Error>> {
         let joints = self.robot.joints();
-        let mut table = Table::new(self.how, &numbers(&T::empty(), &joints))?;
+        let mut table = EchoTable::new(self.how, &numbers(&T::empty(), &joints))?;
         let mut reader: Reader<T> = self.robot.space.reader(topic)?;
         let mut left = self.how.count;
         let mut print = |record: &T| -> Result<bool, Box<dyn Error>> {
@@ -135,13 +135,13 @@ impl ForType<Result<(), Box<dyn Error>>> for Records<'_> {
 }
 
 /// Numbers of records as lines or as a table.
-pub(crate) struct Table<'a> {
+pub(crate) struct EchoTable<'a> {
     how: &'a Echo,
     /// Names of the columns of the table; none before its first line.
     columns: Option<Vec<String>>,
 }
 
-impl<'a> Table<'a> {
+impl<'a> EchoTable<'a> {
     /// A table of what is wanted of `all` fields.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ use messages::Record;
 use messages::topics::{ForType, Topic, with_type};
 use realtime::clock;
 
-use super::{Robot, find};
+use super::{ObservedRobot, find};
 
 /// Between two looks: what an age is measured to.
 const LOOK: Duration = Duration::from_micros(100);
@@ -34,13 +34,13 @@ pub fn measure(dir: &Path, name: &str, what: Measure, seconds: f64) -> Result<()
     if !(seconds.is_finite() && seconds > 0.0) {
         return Err("--seconds: a number above 0 is needed".into());
     }
-    let robot = Robot::open(dir)?;
+    let robot = ObservedRobot::open(dir)?;
     if what == Measure::Delay && robot.mode == Mode::Lockstep {
         return Err(
             "this robot runs in simulated time (--lockstep): its stamps say nothing about ages".into()
         );
     }
-    with_type(topic.name, Listen { robot: &robot, what, seconds }).unwrap_or(Ok(()))
+    with_type(topic.name, Listener { robot: &robot, what, seconds }).unwrap_or(Ok(()))
 }
 
 /// Least, mean, greatest and standard deviation of a quantity.
@@ -75,13 +75,13 @@ impl Spread {
     }
 }
 
-struct Listen<'a> {
-    robot: &'a Robot,
+struct Listener<'a> {
+    robot: &'a ObservedRobot,
     what: Measure,
     seconds: f64,
 }
 
-impl ForType<Result<(), Box<dyn Error>>> for Listen<'_> {
+impl ForType<Result<(), Box<dyn Error>>> for Listener<'_> {
     fn call<T: Record>(self, topic: &'static Topic) -> Result<(), Box<dyn Error>> {
         let mut reader = self.robot.space.reader::<T>(topic)?;
         // What is kept from before says nothing about now.

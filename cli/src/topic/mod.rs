@@ -18,14 +18,14 @@ use messages::{Process, Record, TOPICS};
 use crate::fields::numbers;
 
 pub use echo::{Echo, echo};
-pub(crate) use echo::{Table, words};
+pub(crate) use echo::{EchoTable, words};
 pub use measure::{Measure, measure};
 
 /// Name of all events together in `topic echo`.
 const EVENTS: &str = "events";
 
 /// A robot that runs, as an observer sees it.
-pub struct Robot {
+pub struct ObservedRobot {
     /// Its shared memory.
     pub space: Space,
     /// Mode.
@@ -34,7 +34,7 @@ pub struct Robot {
     pub setup: Setup,
 }
 
-impl Robot {
+impl ObservedRobot {
     /// The robot that runs in `dir`.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! One control cycle as its stages see it: constants of the robot, the plan at both ends of the cycle, measured state.
 
 use config::Robot;
-use config::gait::Control;
+use config::gait::StabilizerGains;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::estimate::TaskEstimate;
@@ -42,7 +42,7 @@ impl CycleClock {
 #[derive(Clone, Copy)]
 pub(super) struct ControlCycle<'a> {
     pub(super) robot: &'a Robot,
-    pub(super) control: &'a Control,
+    pub(super) control: &'a StabilizerGains,
     /// \[s\]
     pub(super) dt: f64,
     /// The plan now and at the end of the cycle.

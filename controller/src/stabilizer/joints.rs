@@ -1,6 +1,6 @@
 //! Integration of joint speeds to joint targets, within what each joint can do.
 
-use config::gait::Control;
+use config::gait::StabilizerGains;
 use config::{Robot, WITH_LOAD};
 use messages::{MAX_JOINTS, Sensors};
 
@@ -61,7 +61,7 @@ impl JointState {
 
     /// Onset of drift compensation, null-space motion and returns: all of it a while after the joints began to move. A leg
     /// that is nearly straight has no length to spare for any of them before the plan has lowered the body.
-    pub(super) fn onset(&self, control: &Control) -> Onset {
+    pub(super) fn onset(&self, control: &StabilizerGains) -> Onset {
         let x = (self.moving / RAMP).min(1.0);
         let share = x * x * (3.0 - 2.0 * x);
         Onset { share, drift: control.drift_gain * share }

@@ -22,6 +22,9 @@ const SETTLE: Approach = Approach { rate: 2.0, speed: 0.5, acceleration: 5.0 };
 /// \[rad\] Toes are not held against the ground further than this from where they are.
 const YIELD: f64 = 0.05;
 
+/// \[1/s\] alpha_N: weight of the null-space cost H (5.38).
+const NULL_SPACE_GAIN: f64 = 1.0;
+
 /// Inverse kinematics and the limbs that move beside the feet's task.
 #[derive(Clone)]
 pub(super) struct JointSpeeds {
@@ -38,12 +41,11 @@ impl JointSpeeds {
     pub(super) fn new(
         robot: &Robot,
         kinematics: &TaskSpace,
-        null_space_gain: f64,
         arm_swing: Option<f64>,
     ) -> Result<Self, ModelError> {
         let free = kinematics.leg_joints(robot);
         Ok(Self {
-            ik: InverseKinematics::new(&robot.joints, &free, null_space_gain),
+            ik: InverseKinematics::new(&robot.joints, &free, NULL_SPACE_GAIN),
             free,
             jacobian: TaskJacobian::zeros(),
             gaze: Gaze::new(robot)?,

@@ -13,7 +13,7 @@ use crate::estimate::TaskEstimate;
 use crate::force_control::Modification;
 use crate::plan_follower::{Desired, PlanFollower};
 use crate::watch::{FALLING, SafetyWatch};
-use config::gait::Control;
+use config::gait::StabilizerGains;
 use config::parameters::STABILIZER;
 
 /// \[s\] Minimum time between reports of the same limit.
@@ -132,7 +132,7 @@ fn gait(sensors: &Sensors, outcome: &CycleOutcome<'_>, t: f64) -> GaitState {
 }
 
 /// Writes the present values of all parameters.
-pub(super) fn report_parameters(control: &Control, record: &mut Parameters) {
+pub(super) fn report_parameters(control: &StabilizerGains, record: &mut Parameters) {
     record.count = STABILIZER.len() as u64;
     for (value, p) in record.values.iter_mut().zip(STABILIZER) {
         *value = p.get(control);

@@ -1,6 +1,6 @@
-//! Records to frames and back, by the layout of a robot: [`Layout`].
+//! Records to frames and back, by the layout of a robot: [`FrameLayout`].
 
-use crate::layout::{Carries, Layout, MAX_NODES, Message};
+use crate::layout::{BusMessage, Carries, FrameLayout, MAX_NODES};
 use messages::{BusFrames, ERROR_FLAG, Frame, JointMode, JointTargets, MAX_JOINTS, Sensors};
 
 /// Command to the drives in one cycle.
@@ -42,7 +42,7 @@ impl Received {
 }
 
 /// Every message to the drives.
-pub fn encode_targets(layout: &Layout, command: &DriveCommand, frames: &mut BusFrames) {
+pub fn encode_targets(layout: &FrameLayout, command: &DriveCommand, frames: &mut BusFrames) {
     let t = &command.targets;
     frames.header = t.header;
     encode(layout, true, t.header.tick, frames, |carries| match carries {
@@ -55,7 +55,7 @@ pub fn encode_targets(layout: &Layout, command: &DriveCommand, frames: &mut BusF
 }
 
 /// Reads the frames of their header's cycle; what is missing stays as it was.
-pub fn decode_targets(layout: &Layout, frames: &BusFrames, command: &mut DriveCommand) -> Received {
+pub fn decode_targets(layout: &FrameLayout, frames: &BusFrames, command: &mut DriveCommand) -> Received {
     let t = &mut command.targets;
     t.header = frames.header;
     decode(layout, true, frames, |carries, value| match carries {
@@ -68,7 +68,7 @@ pub fn decode_targets(layout: &Layout, frames: &BusFrames, command: &mut DriveCo
 }
 
 /// Every message from the drives.
-pub fn encode_sensors(layout: &Layout, sensors: &Sensors, frames: &mut BusFrames) {
+pub fn encode_sensors(layout: &FrameLayout, sensors: &Sensors, frames: &mut BusFrames) {
     let s = sensors;
     frames.header = s.header;
     encode(layout, false, s.header.tick, frames, |carries| match carries {
@@ -92,7 +92,7 @@ pub fn encode_sensors(layout: &Layout, sensors: &Sensors, frames: &mut BusFrames
 
 /// Reads the frames of their header's cycle; what is missing stays as it was. Motor sides that no message brings are copies
 /// of the link sides.
-pub fn decode_sensors(layout: &Layout, frames: &BusFrames, sensors: &mut Sensors) -> Received {
+pub fn decode_sensors(layout: &FrameLayout, frames: &BusFrames, sensors: &mut Sensors) -> Received {
     let s = sensors;
     decode(layout, false, frames, |carries, value| match carries {
         Carries::Supply => s.power = value as u64,
@@ -125,12 +125,12 @@ pub fn decode_sensors(layout: &Layout, frames: &BusFrames, sensors: &mut Sensors
 }
 
 /// Outcome of the frames of their header's cycle, without reading any number.
-pub fn look(layout: &Layout, to_drives: bool, frames: &BusFrames) -> Received {
+pub fn look(layout: &FrameLayout, to_drives: bool, frames: &BusFrames) -> Received {
     decode(layout, to_drives, frames, |_, _| {})
 }
 
 /// Throws away what does not belong to the header's cycle.
-pub fn keep_current(layout: &Layout, to_drives: bool, frames: &mut BusFrames) {
+pub fn keep_current(layout: &FrameLayout, to_drives: bool, frames: &mut BusFrames) {
     let mut kept = 0;
     for i in 0..frames.as_slice().len() {
         let frame = frames.frames[i];
@@ -147,14 +147,14 @@ pub fn keep_current(layout: &Layout, to_drives: bool, frames: &mut BusFrames) {
 }
 
 /// Whether a frame of this message is of cycle `tick`; one without counter always is.
-fn is_current(message: &Message, frame: &Frame, tick: u64) -> bool {
+fn is_current(message: &BusMessage, frame: &Frame, tick: u64) -> bool {
     let counter = message.counter();
     counter.is_none_or(|s| s.get(&frame.data) as u64 == tick & ((1 << s.bits) - 1))
 }
 
 /// Every message of one direction, in the order of the layout.
 fn encode(
-    layout: &Layout,
+    layout: &FrameLayout,
     to_drives: bool,
     tick: u64,
     frames: &mut BusFrames,
@@ -177,7 +177,7 @@ fn encode(
 
 /// Reads the frames that belong to their header's tick, each message once.
 fn decode(
-    layout: &Layout,
+    layout: &FrameLayout,
     to_drives: bool,
     frames: &BusFrames,
     mut take: impl FnMut(Carries, f64),

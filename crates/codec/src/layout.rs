@@ -57,7 +57,7 @@ pub enum Carries {
 
 /// One number of a message.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Signal {
+pub struct BusSignal {
     /// Its name in the DBC file.
     pub name: String,
     /// First bit.
@@ -76,7 +76,7 @@ pub struct Signal {
 
 /// One frame of every cycle.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Message {
+pub struct BusMessage {
     /// Its name in the DBC file.
     pub name: String,
     /// Identifier, 11 bits; unique on its line.
@@ -88,23 +88,23 @@ pub struct Message {
     /// Whether lowlevel sends it.
     pub to_drives: bool,
     /// Its numbers.
-    pub signals: Vec<Signal>,
+    pub signals: Vec<BusSignal>,
 }
 
 /// All messages of a robot.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Layout {
+pub struct FrameLayout {
     /// Names of the local controllers, in the order of their lines.
     pub nodes: Vec<String>,
     /// Of both directions; those of a node in the order they are sent.
-    pub messages: Vec<Message>,
+    pub messages: Vec<BusMessage>,
     /// Message by line and identifier.
     index: Vec<u16>,
     /// Whether some message brings a motor side of the joint.
     pub(crate) motor_side: [bool; MAX_JOINTS],
 }
 
-impl Signal {
+impl BusSignal {
     /// Raw number of a value: rounded to nearest and saturated; NaN becomes the raw number nearest to zero.
     pub fn raw(&self, value: f64) -> i64 {
         let (low, high) = self.range();
@@ -153,9 +153,9 @@ impl Signal {
     }
 }
 
-impl Message {
+impl BusMessage {
     /// The number that says to which cycle the frame belongs.
-    pub fn counter(&self) -> Option<&Signal> {
+    pub fn counter(&self) -> Option<&BusSignal> {
         self.signals.iter().find(|s| s.carries == Carries::Counter)
     }
 
@@ -165,9 +165,9 @@ impl Message {
     }
 }
 
-impl Layout {
+impl FrameLayout {
     /// Of these nodes and messages, whose nodes and identifiers are in range and unique on each line.
-    pub fn new(nodes: Vec<String>, messages: Vec<Message>) -> Self {
+    pub fn new(nodes: Vec<String>, messages: Vec<BusMessage>) -> Self {
         let mut index = vec![NOBODY; nodes.len() * IDS];
         let mut motor_side = [false; MAX_JOINTS];
         for (i, message) in messages.iter().enumerate() {
@@ -201,7 +201,7 @@ impl Layout {
     }
 
     /// Messages of one direction.
-    pub fn sent(&self, to_drives: bool) -> impl Iterator<Item = &Message> {
+    pub fn sent(&self, to_drives: bool) -> impl Iterator<Item = &BusMessage> {
         self.messages.iter().filter(move |m| m.to_drives == to_drives)
     }
 }
@@ -210,8 +210,16 @@ impl Layout {
 mod tests {
     use super::*;
 
-    fn signal(start: u32, bits: u32, signed: bool) -> Signal {
-        Signal { name: "x".into(), start, bits, signed, scale: 0.5, offset: 10.0, carries: Carries::Counter }
+    fn signal(start: u32, bits: u32, signed: bool) -> BusSignal {
+        BusSignal {
+            name: "x".into(),
+            start,
+            bits,
+            signed,
+            scale: 0.5,
+            offset: 10.0,
+            carries: Carries::Counter,
+        }
     }
 
     #[test]

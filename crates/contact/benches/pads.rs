@@ -11,8 +11,8 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
 
-use contact::hexahedron::{Elasticity, Volume};
-use contact::{Ground, Layer, Material, Memory, Method, Pad, Settings, Twist};
+use contact::hexahedron::{LinearElasticity, Volume};
+use contact::{CouplingMethod, Ground, Layer, Material, Memory, Pad, SegmentMotion, Settings};
 use nalgebra::Vector3;
 
 const PADS: usize = 8;
@@ -23,7 +23,7 @@ const RUNS: usize = 5;
 struct Instance {
     d: Vec<f64>,
     ground: Vec<Option<Ground>>,
-    twist: Twist,
+    twist: SegmentMotion,
 }
 
 /// Motion of the foot and the ground below; `(time, x of a node) -> height`.
@@ -44,7 +44,7 @@ const SCENES: [Scene; 5] = [
 ];
 
 fn layer(poisson: f64) -> Arc<Layer> {
-    let elasticity = Elasticity { modulus: 4.643e5, poisson };
+    let elasticity = LinearElasticity { modulus: 4.643e5, poisson };
     let size = [0.06, 0.04, 0.012];
     let material =
         Material { size, bricks: [5, 5, 1], elasticity, volume: Volume::Mean, damping_time: 0.008 };
@@ -62,7 +62,7 @@ fn record(pad: &Pad, scene: &Scene, phase: f64) -> Vec<Instance> {
     for step in 0..3000 + 10 * STATES {
         let t = h * step as f64;
         let swing = (TAU * 2.0 * t + phase).sin();
-        let twist = Twist {
+        let twist = SegmentMotion {
             linear: Vector3::new(scene.shear, 0.3 * scene.shear, 1e-3) * swing,
             angular: Vector3::new(0.0, 0.03 * swing, 0.1 * scene.shear * swing),
         };
@@ -141,11 +141,11 @@ fn main() {
                 (0..PADS).map(|k| record(&pads[k], scene, k as f64 * TAU / PADS as f64)).collect();
             println!("\nnu = {poisson}, {}", scene.name);
             for (method, tolerance, cold) in [
-                (Method::GaussSeidel, 1e-3, false),
-                (Method::Velocity, 1e-3, false),
-                (Method::Fastest, 1e-3, false),
-                (Method::Fastest, 1e-6, false),
-                (Method::Fastest, 1e-3, true),
+                (CouplingMethod::GaussSeidel, 1e-3, false),
+                (CouplingMethod::Velocity, 1e-3, false),
+                (CouplingMethod::Fastest, 1e-3, false),
+                (CouplingMethod::Fastest, 1e-6, false),
+                (CouplingMethod::Fastest, 1e-3, true),
             ] {
                 let settings = Settings { method, tolerance, ..Settings::of_friction(scene.friction) };
                 let row = measure(&pads, &seen, &settings, cold);

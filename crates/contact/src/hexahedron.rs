@@ -21,7 +21,7 @@ type Strain = SMatrix<f64, 6, 24>;
 
 /// Linear isotropic elasticity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Elasticity {
+pub struct LinearElasticity {
     /// \[N/m^2\] E, Young's modulus.
     pub modulus: f64,
     /// \[1\] nu, Poisson's ratio; above -1 and below 1/2.
@@ -50,7 +50,7 @@ pub const CORNERS: [[f64; 3]; 8] = [
     [-1.0, 1.0, 1.0],
 ];
 
-impl Elasticity {
+impl LinearElasticity {
     /// C
     pub fn matrix(&self) -> SMatrix<f64, 6, 6> {
         let (e, nu) = (self.modulus, self.poisson);
@@ -65,7 +65,11 @@ impl Elasticity {
 }
 
 /// \[N/m\] Stiffness of a brick with these corners \[m\]; `None` if it is turned inside out or flat somewhere.
-pub fn stiffness(corners: &[Vector3<f64>; 8], material: &Elasticity, volume: Volume) -> Option<Stiffness> {
+pub fn stiffness(
+    corners: &[Vector3<f64>; 8],
+    material: &LinearElasticity,
+    volume: Volume,
+) -> Option<Stiffness> {
     let c = material.matrix();
     let points = gauss_points();
     let mut strains = [(Strain::zeros(), 0.0); 8];

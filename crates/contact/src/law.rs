@@ -4,14 +4,14 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 /// Search for the forces of coupled nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum CouplingMethod {
     /// Algorithm 1 as the thesis has it, with the r-factors of the errata: all nodes at once.
     Jacobi,
     /// The same, each node with the newest forces of the others.
     GaussSeidel,
     /// Each node's law solved exactly with its neighbours' velocities held.
     Velocity,
-    /// [`Method::Velocity`] when a good part of the sole touches and most of that sticks, else [`Method::GaussSeidel`];
+    /// [`CouplingMethod::Velocity`] when a good part of the sole touches and most of that sticks, else [`CouplingMethod::GaussSeidel`];
     /// that, too, if the former does not converge.
     Fastest,
 }
@@ -24,7 +24,7 @@ pub struct Settings {
     /// \[1/s\] Rate at which penetration left over from a finite step is taken back (errata 1, drift stabilization).
     pub recovery: f64,
     /// Method.
-    pub method: Method,
+    pub method: CouplingMethod,
     /// \[1\] gamma of the r-factors (2.48), (2.49); 0 < gamma < 2, for Jacobi often less.
     pub gamma: f64,
     /// \[1\] Largest residual, as a multiple of 0.1 N and of 1 mm/s.
@@ -36,13 +36,20 @@ pub struct Settings {
 impl Settings {
     /// For rubber on a floor with friction mu.
     pub fn of_friction(friction: f64) -> Self {
-        Self { friction, recovery: 200.0, method: Method::Fastest, gamma: 1.0, tolerance: 1e-3, sweeps: 200 }
+        Self {
+            friction,
+            recovery: 200.0,
+            method: CouplingMethod::Fastest,
+            gamma: 1.0,
+            tolerance: 1e-3,
+            sweeps: 200,
+        }
     }
 }
 
 /// End of the solver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Report {
+pub struct SolverReport {
     /// Sweeps over the nodes.
     pub sweeps: u32,
     /// \[1\] Residual of the law, as a multiple of 0.1 N and of 1 mm/s, the larger of the two.

@@ -12,8 +12,8 @@ use std::fmt;
 use nalgebra::{DMatrix, Vector3};
 
 use crate::coupling::Coupling;
-use crate::hexahedron::{self, Elasticity, Volume};
-use crate::mesh::Mesh;
+use crate::hexahedron::{self, LinearElasticity, Volume};
+use crate::mesh::BrickMesh;
 
 /// Size, mesh and material of a pad.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Material {
     /// Bricks along x, y, z.
     pub bricks: [usize; 3],
     /// Elasticity of the rubber.
-    pub elasticity: Elasticity,
+    pub elasticity: LinearElasticity,
     /// Kind of brick.
     pub volume: Volume,
     /// \[s\] alpha
@@ -66,7 +66,7 @@ impl Material {
             );
         }
         // Then the material: each number by itself.
-        let Elasticity { modulus, poisson } = self.elasticity;
+        let LinearElasticity { modulus, poisson } = self.elasticity;
         if !positive(modulus) {
             return refuse("modulus [N/m^2]", modulus, "positive");
         }
@@ -104,7 +104,7 @@ impl Layer {
     /// Builds the matrices; takes the cube of the number of nodes in time, so once at the start.
     pub fn new(material: &Material) -> Result<Self, BadMaterial> {
         material.check()?;
-        let mesh = Mesh::block(material.size, material.bricks);
+        let mesh = BrickMesh::block(material.size, material.bricks);
         let not_definite = || BadMaterial {
             field: "poisson",
             value: material.elasticity.poisson,
@@ -160,7 +160,7 @@ impl Layer {
 }
 
 /// K of the free nodes: the bonded ones do not move, so their rows and columns are left out.
-fn assemble(mesh: &Mesh, material: &Material) -> Option<DMatrix<f64>> {
+fn assemble(mesh: &BrickMesh, material: &Material) -> Option<DMatrix<f64>> {
     let free = mesh.free();
     let mut k = DMatrix::zeros(3 * free, 3 * free);
     for brick in &mesh.bricks {

@@ -23,7 +23,7 @@ mod prox;
 pub mod solver;
 mod velocity;
 
-pub use law::{Method, Report, Settings, TOUCHING};
+pub use law::{CouplingMethod, Settings, SolverReport, TOUCHING};
 pub use layer::{Layer, Material};
 pub use memory::Memory;
-pub use pad::{Ground, Outcome, Pad, Twist};
+pub use pad::{Ground, Pad, PadLoad, SegmentMotion};

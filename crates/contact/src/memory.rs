@@ -10,7 +10,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::coupling::Coupling;
-use crate::point::State;
+use crate::point::PointState;
 
 /// State of the solver of one pad.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub struct Memory {
     pub(crate) f: Vec<Vector3<f64>>,
     pub(crate) y: Vec<[f64; 4]>,
     pub(crate) c: Vec<Vector3<f64>>,
-    pub(crate) states: Vec<State>,
+    pub(crate) states: Vec<PointState>,
     pub(crate) normals: Vec<Vector3<f64>>,
     pub(crate) frames: Vec<Matrix3<f64>>,
     /// True if frame and mobility of a node are those of this call; few nodes need them when most stick.
@@ -47,7 +47,7 @@ impl Memory {
             f: vec![Vector3::zeros(); n],
             y: vec![[0.0; 4]; n],
             c: vec![Vector3::zeros(); n],
-            states: vec![State::Open; n],
+            states: vec![PointState::Open; n],
             normals: vec![Vector3::z(); n],
             frames: vec![Matrix3::identity(); n],
             framed: vec![false; n],
@@ -67,7 +67,7 @@ impl Memory {
     pub fn clear(&mut self) {
         self.f.fill(Vector3::zeros());
         self.y.fill([0.0; 4]);
-        self.states.fill(State::Open);
+        self.states.fill(PointState::Open);
     }
 
     /// Begins a new problem: no node touches yet.
@@ -99,7 +99,7 @@ impl Memory {
     }
 
     /// State of each contact node.
-    pub fn states(&self) -> &[State] {
+    pub fn states(&self) -> &[PointState] {
         &self.states
     }
 }

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 /// Nodes and bricks of a block.
 #[derive(Clone, Debug)]
-pub struct Mesh {
+pub struct BrickMesh {
     /// \[m\]
     pub nodes: Vec<Vector3<f64>>,
     /// Nodes of each brick, in the order of [`crate::hexahedron::CORNERS`].
@@ -16,7 +16,7 @@ pub struct Mesh {
     pub layer: usize,
 }
 
-impl Mesh {
+impl BrickMesh {
     /// A block of `size` \[m\] with so many bricks along x, y and z.
     pub fn block(size: [f64; 3], count: [usize; 3]) -> Self {
         let [nx, ny, nz] = count.map(|n| n + 1);
@@ -53,7 +53,7 @@ mod tests {
     /// Thesis 2.6.1: 72 nodes per element, 36 of them bonded, 108 degrees of freedom left.
     #[test]
     fn a_pad_of_lola_has_the_nodes_of_the_thesis() {
-        let mesh = Mesh::block([0.06, 0.03, 0.012], [5, 5, 1]);
+        let mesh = BrickMesh::block([0.06, 0.03, 0.012], [5, 5, 1]);
         assert_eq!((mesh.nodes.len(), mesh.layer, 3 * mesh.free(), mesh.bricks.len()), (72, 36, 108, 25));
         assert_eq!(mesh.nodes[0], Vector3::new(-0.03, -0.015, 0.0));
         assert_eq!(mesh.nodes[71], Vector3::new(0.03, 0.015, 0.012));

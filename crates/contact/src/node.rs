@@ -17,7 +17,7 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
-use crate::point::State;
+use crate::point::PointState;
 
 /// Force on the node and what the node does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct NodeAnswer {
     /// \[N\] lambda
     pub force: Vector3<f64>,
     /// Which case it is.
-    pub state: State,
+    pub state: PointState,
 }
 
 /// True if the law has exactly one solution for every c: G_NN > mu |G_NT| (errata 1, F7).
@@ -37,14 +37,14 @@ pub fn unique(g: &Matrix3<f64>, mu: f64) -> bool {
 /// stick, slip is the answer; `None` when the data hold no solution (G not positive definite, or not finite).
 pub fn solve(g: &Matrix3<f64>, c: &Vector3<f64>, mu: f64) -> Option<NodeAnswer> {
     if c.z >= 0.0 {
-        return Some(NodeAnswer { force: Vector3::zeros(), state: State::Open });
+        return Some(NodeAnswer { force: Vector3::zeros(), state: PointState::Open });
     }
     let force = -(g.cholesky()?.solve(c));
     if force.z > 0.0 && force.xy().norm() <= mu * force.z {
-        return Some(NodeAnswer { force, state: State::Stick });
+        return Some(NodeAnswer { force, state: PointState::Stick });
     }
     let hint = -force.xy().try_normalize(f64::MIN_POSITIVE).unwrap_or(Vector2::x());
-    slide(g, c, mu, hint).map(|force| NodeAnswer { force, state: State::Slip })
+    slide(g, c, mu, hint).map(|force| NodeAnswer { force, state: PointState::Slip })
 }
 
 /// Force on a node that slides under pressure (c_N < 0); `hint` is a direction to begin with, of length 1.
@@ -148,14 +148,14 @@ mod tests {
             (answer.state, answer.force, e * answer.force)
         };
         let (state, lambda, f) = case([0.02, -0.03, -0.1], [4.0, 3.0, 50.0]);
-        assert_eq!(state, State::Stick);
+        assert_eq!(state, PointState::Stick);
         assert!((lambda - Vector3::new(-27.9502860856, 23.4751430428, 104.161889225)).norm() < 1e-9);
         assert!((f - Vector3::new(1.0, 9.0, 110.0)).norm() < 1e-10);
         let (state, lambda, f) = case([0.3, -0.2, -0.2], [4.0, 3.0, 50.0]);
-        assert_eq!(state, State::Slip);
+        assert_eq!(state, PointState::Slip);
         assert!((lambda - Vector3::new(-48.1254904737, 34.2849789179, 118.17821479)).norm() < 1e-8);
         assert!((f - Vector3::new(-14.5563924194, 17.5004298908, 130.151678656)).norm() < 1e-8);
-        assert_eq!(case([0.0, 0.1, 0.3], [4.0, 3.0, 50.0]).0, State::Open);
+        assert_eq!(case([0.0, 0.1, 0.3], [4.0, 3.0, 50.0]).0, PointState::Open);
     }
 
     proptest! {

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::law::{Report, Settings, TOUCHING};
+use crate::law::{Settings, SolverReport, TOUCHING};
 use crate::layer::Layer;
 use crate::memory::Memory;
 use crate::solver;
@@ -32,7 +32,7 @@ pub struct Ground {
 
 /// Motion of the segment relative to the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Twist {
+pub struct SegmentMotion {
     /// \[m/s\] @segment Velocity of the segment's origin.
     pub linear: Vector3<f64>,
     /// \[rad/s\] @segment
@@ -41,13 +41,13 @@ pub struct Twist {
 
 /// Effect of a pad on its segment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Outcome {
+pub struct PadLoad {
     /// \[N\] @segment (2.38)
     pub force: Vector3<f64>,
     /// \[N m\] @segment About the segment's origin (2.39).
     pub moment: Vector3<f64>,
     /// End of the solver.
-    pub report: Report,
+    pub report: SolverReport,
 }
 
 /// A pad: a layer, which equal pads share, and where it is bonded.
@@ -88,32 +88,32 @@ impl Pad {
         memory: &mut Memory,
         d: &[f64],
         ground: &[Option<Ground>],
-        twist: &Twist,
+        twist: &SegmentMotion,
         settings: &Settings,
         dd: &mut [f64],
-    ) -> Outcome {
+    ) -> PadLoad {
         debug_assert!(d.len() == 3 * self.layer.nodes() && dd.len() == d.len(), "3 numbers per free node");
         debug_assert!(ground.len() == self.layer.contacts(), "one ground per node of the sole");
         let finite = self.load(memory, d, ground, twist, settings);
         if !finite {
             memory.clear();
             self.relax(d, dd);
-            let report = Report { residual: f64::INFINITY, ..Report::default() };
-            return Outcome { report, ..Outcome::default() };
+            let report = SolverReport { residual: f64::INFINITY, ..SolverReport::default() };
+            return PadLoad { report, ..PadLoad::default() };
         }
         // In the air: forces of the last touchdown are no guess for the next one.
         if memory.active.is_empty() {
             memory.clear();
             self.relax(d, dd);
-            return Outcome {
-                report: Report { converged: true, unique: true, ..Report::default() },
-                ..Outcome::default()
+            return PadLoad {
+                report: SolverReport { converged: true, unique: true, ..SolverReport::default() },
+                ..PadLoad::default()
             };
         }
         let report = solver::solve(&self.layer.coupling, memory, settings);
         self.rates(memory, d, dd);
         let (force, moment) = self.sum(memory, d);
-        Outcome { force, moment, report }
+        PadLoad { force, moment, report }
     }
 
     /// c, active nodes, normals; whether all of it is finite.
@@ -122,7 +122,7 @@ impl Pad {
         memory: &mut Memory,
         d: &[f64],
         ground: &[Option<Ground>],
-        twist: &Twist,
+        twist: &SegmentMotion,
         settings: &Settings,
     ) -> bool {
         memory.begin();

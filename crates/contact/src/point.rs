@@ -16,7 +16,7 @@ use crate::law::TOUCHING;
 
 /// Stiffness, damping and friction of a contact point.
 #[derive(Clone, Copy, Debug)]
-pub struct Law {
+pub struct ContactLaw {
     /// \[N/m\] K: tangential, tangential, normal.
     pub stiffness: [f64; 3],
     /// \[N s/m\] B: tangential, tangential, normal; the tangential ones are equal.
@@ -29,7 +29,7 @@ pub struct Law {
 
 /// State of a contact point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
+pub enum PointState {
     /// No contact.
     Open,
     /// The node rests on the ground.
@@ -46,14 +46,14 @@ pub struct PointAnswer {
     /// \[m/s\] d'
     pub rate: [f64; 3],
     /// Which case it was.
-    pub state: State,
+    pub state: PointState,
 }
 
 /// Solves the contact law for one node: lambda and d' from d, w and g_N.
-pub fn solve(law: &Law, d: [f64; 3], w: [f64; 3], gap: f64) -> PointAnswer {
+pub fn solve(law: &ContactLaw, d: [f64; 3], w: [f64; 3], gap: f64) -> PointAnswer {
     let (k, b, mu) = (law.stiffness, law.damping, law.friction);
     let rate = |lambda: [f64; 3]| std::array::from_fn(|i| (lambda[i] - k[i] * d[i]) / b[i]); // (2.37)
-    let open = PointAnswer { force: [0.0; 3], rate: rate([0.0; 3]), state: State::Open };
+    let open = PointAnswer { force: [0.0; 3], rate: rate([0.0; 3]), state: PointState::Open };
     if gap >= TOUCHING {
         return open;
     }
@@ -67,11 +67,11 @@ pub fn solve(law: &Law, d: [f64; 3], w: [f64; 3], gap: f64) -> PointAnswer {
     let size = (t[0] * t[0] + t[1] * t[1]).sqrt();
     if size <= mu * normal {
         let force = [t[0], t[1], normal];
-        return PointAnswer { force, rate: rate(force), state: State::Stick };
+        return PointAnswer { force, rate: rate(force), state: PointState::Stick };
     }
     let s = mu * normal / size;
     let force = [s * t[0], s * t[1], normal];
-    PointAnswer { force, rate: rate(force), state: State::Slip }
+    PointAnswer { force, rate: rate(force), state: PointState::Slip }
 }
 
 #[cfg(test)]
@@ -82,20 +82,20 @@ mod tests {
     /// Vector V5 of errata 1: b = 250, mu = 0.6; K d given directly (d = K d / k with k = 1000).
     #[test]
     fn isotropic_node_of_the_errata() {
-        let law = Law { stiffness: [1000.0; 3], damping: [250.0; 3], friction: 0.6, recovery: 0.0 };
+        let law = ContactLaw { stiffness: [1000.0; 3], damping: [250.0; 3], friction: 0.6, recovery: 0.0 };
         let case = |w: [f64; 3], kd: [f64; 3]| solve(&law, kd.map(|x| x / 1000.0), w, -1e-9);
         let close = |a: [f64; 3], b: [f64; 3]| a.iter().zip(&b).all(|(x, y)| (x - y).abs() < 1e-9);
 
         let a = case([0.05, -0.02, -0.3], [5.0, 3.0, 40.0]);
-        assert!(a.state == State::Stick && close(a.force, [-7.5, 8.0, 115.0]));
+        assert!(a.state == PointState::Stick && close(a.force, [-7.5, 8.0, 115.0]));
         let a = case([0.3, -0.2, -0.3], [5.0, 3.0, 40.0]);
-        assert!(a.state == State::Slip && close(a.force, [-55.010818639, 41.6510483981, 115.0]));
+        assert!(a.state == PointState::Slip && close(a.force, [-55.010818639, 41.6510483981, 115.0]));
         let velocity: [f64; 3] = std::array::from_fn(|i| [0.3, -0.2, -0.3][i] + a.rate[i]);
         assert!(close(velocity, [0.0599567254439, -0.0453958064075, 0.0]));
         let a = case([0.05, -0.02, 0.3], [5.0, 3.0, 40.0]);
-        assert!(a.state == State::Open && close(a.force, [0.0; 3]));
+        assert!(a.state == PointState::Open && close(a.force, [0.0; 3]));
         let a = case([0.0, 0.0, 0.1], [2.0, -1.0, 60.0]);
-        assert!(a.state == State::Stick && close(a.force, [2.0, -1.0, 35.0]));
+        assert!(a.state == PointState::Stick && close(a.force, [2.0, -1.0, 35.0]));
     }
 
     proptest! {
@@ -105,7 +105,7 @@ mod tests {
             d in prop::array::uniform3(-0.01..0.01f64), w in prop::array::uniform3(-1.0..1.0f64),
             gap in -0.01..0.01f64, mu in 0.0..2.0f64, ratio in 0.1..2.0f64,
         ) {
-            let law = Law { stiffness: [ratio * 6e4, ratio * 6e4, 6e4], damping: [ratio * 500.0, ratio * 500.0, 500.0],
+            let law = ContactLaw { stiffness: [ratio * 6e4, ratio * 6e4, 6e4], damping: [ratio * 500.0, ratio * 500.0, 500.0],
                             friction: mu, recovery: 0.0 };
             let a = solve(&law, d, w, gap);
             let u: [f64; 3] = std::array::from_fn(|i| w[i] + a.rate[i]); // velocity of the node
@@ -130,7 +130,7 @@ mod tests {
     /// A point mass on one node settles where statics says and is carried by its weight.
     #[test]
     fn a_mass_settles_at_its_static_deflection() {
-        let law = Law { stiffness: [2e4; 3], damping: [200.0; 3], friction: 0.6, recovery: 200.0 };
+        let law = ContactLaw { stiffness: [2e4; 3], damping: [200.0; 3], friction: 0.6, recovery: 200.0 };
         let (m, h) = (10.0, 1e-4);
         let (mut z, mut v, mut d, mut force) = (0.001, 0.0, [0.0; 3], 0.0);
         for _ in 0..200_000 {

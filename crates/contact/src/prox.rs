@@ -12,19 +12,20 @@
 use nalgebra::Vector3;
 
 use crate::coupling::Coupling;
-use crate::law::{self, Method, Report, Settings};
+use crate::law::{self, CouplingMethod, Settings, SolverReport};
 use crate::memory::Memory;
 use crate::node;
-use crate::point::State;
+use crate::point::PointState;
 
 /// Finds f of the active nodes from c, starting from f; leaves y of all nodes.
-pub(crate) fn solve(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> Report {
+pub(crate) fn solve(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> SolverReport {
     gather(coupling, memory);
     start(coupling, memory);
-    let mut report = Report { unique: is_unique(coupling, memory, settings), ..Report::default() };
+    let mut report =
+        SolverReport { unique: is_unique(coupling, memory, settings), ..SolverReport::default() };
     loop {
         let seen = match settings.method {
-            Method::Jacobi => jacobi(memory, settings),
+            CouplingMethod::Jacobi => jacobi(memory, settings),
             _ => gauss_seidel(memory, settings),
         };
         report.sweeps += 1;
@@ -161,14 +162,14 @@ fn finish(coupling: &Coupling, memory: &mut Memory, settings: &Settings) {
     for (y, rate) in memory.y.iter_mut().zip(rate.chunks_exact(3)) {
         y[..3].copy_from_slice(rate);
     }
-    memory.states.fill(State::Open);
+    memory.states.fill(PointState::Open);
     for &i in &memory.active {
         let lambda = memory.frames[i].tr_mul(&memory.f[i]);
         let inside = lambda.xy().norm() < settings.friction * lambda.z * (1.0 - 1e-9);
         memory.states[i] = match lambda.z > 0.0 {
-            true if inside => State::Stick,
-            true => State::Slip,
-            false => State::Open,
+            true if inside => PointState::Stick,
+            true => PointState::Slip,
+            false => PointState::Open,
         };
     }
 }

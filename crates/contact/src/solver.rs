@@ -5,9 +5,9 @@
 
 use crate::coupling::Coupling;
 use crate::frame::frame;
-use crate::law::{Method, Report, Settings};
+use crate::law::{CouplingMethod, Settings, SolverReport};
 use crate::memory::Memory;
-use crate::point::State;
+use crate::point::PointState;
 use crate::{prox, velocity};
 
 /// Sweeps over velocities are the faster ones when at least this share of the nodes touches ...
@@ -16,14 +16,14 @@ const FEW: f64 = 0.25;
 const MANY: f64 = 0.7;
 
 /// Finds forces and velocities of the nodes that were [set](Memory::set), starting from those of the last call.
-pub fn solve(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> Report {
-    let slid = memory.active.iter().filter(|i| memory.states[**i] == State::Slip).count() as f64;
+pub fn solve(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> SolverReport {
+    let slid = memory.active.iter().filter(|i| memory.states[**i] == PointState::Slip).count() as f64;
     let touch = memory.active.len() as f64;
     let most = touch > FEW * coupling.nodes() as f64 && slid < MANY * touch;
     let mut before = 0;
-    if settings.method == Method::Velocity || (settings.method == Method::Fastest && most) {
+    if settings.method == CouplingMethod::Velocity || (settings.method == CouplingMethod::Fastest && most) {
         let report = velocity::solve(coupling, memory, settings);
-        if report.converged || settings.method == Method::Velocity {
+        if report.converged || settings.method == CouplingMethod::Velocity {
             return report;
         }
         before = report.sweeps;
@@ -33,5 +33,5 @@ pub fn solve(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> R
         memory.frames[i] = frame(&memory.normals[i]);
     }
     let report = prox::solve(coupling, memory, settings);
-    Report { sweeps: before + report.sweeps, ..report }
+    SolverReport { sweeps: before + report.sweeps, ..report }
 }

@@ -12,15 +12,15 @@ use nalgebra::{Vector2, Vector3};
 
 use crate::coupling::Coupling;
 use crate::frame::frame;
-use crate::law::{self, Report, Settings};
+use crate::law::{self, Settings, SolverReport};
 use crate::memory::Memory;
 use crate::node;
-use crate::point::State;
+use crate::point::PointState;
 
 /// Finds y and f from c, starting from y and the states of the last call.
-pub(crate) fn solve(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> Report {
+pub(crate) fn solve(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> SolverReport {
     start(memory);
-    let mut report = Report { unique: true, ..Report::default() };
+    let mut report = SolverReport { unique: true, ..SolverReport::default() };
     while report.sweeps < settings.sweeps {
         let worst = sweep(coupling, memory, settings, &mut report.unique);
         report.sweeps += 1;
@@ -40,10 +40,10 @@ fn start(memory: &mut Memory) {
     framed.fill(false);
     for i in 0..y.len() {
         let now = Vector3::new(y[i][0], y[i][1], y[i][2]);
-        let sinks = states[i] == State::Open && normals[i].dot(&(now + c[i])) < 0.0;
-        if touching[i] && (states[i] == State::Stick || sinks) {
+        let sinks = states[i] == PointState::Open && normals[i].dot(&(now + c[i])) < 0.0;
+        if touching[i] && (states[i] == PointState::Stick || sinks) {
             y[i] = [-c[i].x, -c[i].y, -c[i].z, 0.0];
-            states[i] = State::Stick;
+            states[i] = PointState::Stick;
         }
     }
 }
@@ -90,7 +90,7 @@ fn visit(
         let normal = n.dot(&stick);
         let square = stick.norm_squared() - normal * normal;
         if normal > 0.0 && square <= (settings.friction * normal).powi(2) {
-            (*f, *state) = (stick, State::Stick);
+            (*f, *state) = (stick, PointState::Stick);
             return -c;
         }
         let free = c - g * s;
@@ -102,14 +102,14 @@ fn visit(
                 *unique &= node::unique(local, settings.friction);
             }
             // A node that has slid goes on much as it did.
-            let before = if *state == State::Slip { *f } else { stick };
+            let before = if *state == PointState::Slip { *f } else { stick };
             let hint = e.tr_mul(&before).xy().try_normalize(f64::MIN_POSITIVE).map_or(Vector2::x(), |t| -t);
             if let Some(force) = node::slide(local, &e.tr_mul(&free), settings.friction, hint) {
-                (*f, *state) = (*e * force, State::Slip);
+                (*f, *state) = (*e * force, PointState::Slip);
                 return g * (*f - s);
             }
         }
     }
-    (*f, *state) = (Vector3::zeros(), State::Open);
+    (*f, *state) = (Vector3::zeros(), PointState::Open);
     -(g * s)
 }

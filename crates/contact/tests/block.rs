@@ -1,15 +1,15 @@
 //! Bricks and the pad made of them: patch test, rigid motions, bars of closed form, locking, refinement.
 
-use contact::hexahedron::{CORNERS, Elasticity, Stiffness, Volume, stiffness};
-use contact::mesh::Mesh;
+use contact::hexahedron::{CORNERS, LinearElasticity, Stiffness, Volume, stiffness};
+use contact::mesh::BrickMesh;
 use contact::{Layer, Material};
 use nalgebra::{DMatrix, DVector, Matrix3, SVector, Vector3};
 
-const RUBBER: Elasticity = Elasticity { modulus: 5e5, poisson: 0.3 };
+const RUBBER: LinearElasticity = LinearElasticity { modulus: 5e5, poisson: 0.3 };
 const KINDS: [Volume; 2] = [Volume::Full, Volume::Mean];
 
 fn pad(bricks: [usize; 3], poisson: f64, volume: Volume) -> Layer {
-    let elasticity = Elasticity { modulus: 5e5, poisson };
+    let elasticity = LinearElasticity { modulus: 5e5, poisson };
     let size = [0.06, 0.04, 0.012];
     Layer::new(&Material { size, bricks, elasticity, volume, damping_time: 0.008 }).unwrap()
 }
@@ -84,7 +84,7 @@ fn homogeneous_strain_has_its_energy() {
 /// must find it by themselves.
 #[test]
 fn a_patch_of_crooked_bricks_reproduces_every_linear_field() {
-    let mut mesh = Mesh::block([0.03, 0.03, 0.03], [3, 3, 3]);
+    let mut mesh = BrickMesh::block([0.03, 0.03, 0.03], [3, 3, 3]);
     let inside: Vec<usize> =
         (0..64).filter(|k| [k % 4, k / 4 % 4, k / 16].iter().all(|i| (1..3).contains(i))).collect();
     for &k in &inside {
@@ -93,7 +93,7 @@ fn a_patch_of_crooked_bricks_reproduces_every_linear_field() {
     }
     let g = Matrix3::new(0.01, 0.004, -0.002, 0.0, -0.02, 0.006, 0.003, -0.001, 0.015);
     for (volume, poisson) in [(Volume::Full, 0.3), (Volume::Full, 0.49), (Volume::Mean, 0.49)] {
-        let material = Elasticity { poisson, ..RUBBER };
+        let material = LinearElasticity { poisson, ..RUBBER };
         let mut k = DMatrix::<f64>::zeros(192, 192);
         for brick in &mesh.bricks {
             let local = stiffness(&brick.map(|i| mesh.nodes[i]), &material, volume).unwrap();
@@ -217,7 +217,7 @@ fn bad_material_is_named() {
         damping_time: 0.008,
     };
     let text = |m: Material| Layer::new(&m).unwrap_err().to_string();
-    let soft = |poisson| Material { elasticity: Elasticity { poisson, ..RUBBER }, ..good };
+    let soft = |poisson| Material { elasticity: LinearElasticity { poisson, ..RUBBER }, ..good };
     assert!(text(soft(0.5)).contains("poisson is 0.5; it must be in -0.9..=0.499"));
     assert!(text(soft(f64::NAN)).contains("poisson is NaN"));
     assert!(text(Material { size: [0.06, 0.0, 0.012], ..good }).contains("size [m] is 0"));
@@ -225,6 +225,7 @@ fn bad_material_is_named() {
     assert!(text(Material { bricks: [50, 50, 1], ..good }).contains("2601"));
     assert!(text(Material { damping_time: 0.0, ..good }).contains("damping_time [s] is 0"));
     assert!(
-        text(Material { elasticity: Elasticity { modulus: -1.0, poisson: 0.3 }, ..good }).contains("modulus")
+        text(Material { elasticity: LinearElasticity { modulus: -1.0, poisson: 0.3 }, ..good })
+            .contains("modulus")
     );
 }

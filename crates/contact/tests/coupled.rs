@@ -5,14 +5,15 @@ mod problem;
 
 use contact::coupling::Coupling;
 use contact::solver::solve;
-use contact::{Memory, Method, Settings};
+use contact::{CouplingMethod, Memory, Settings};
 use nalgebra::{DMatrix, Vector3};
 use problem::{Problem, exact};
 
-const METHODS: [Method; 4] = [Method::Jacobi, Method::GaussSeidel, Method::Velocity, Method::Fastest];
+const METHODS: [CouplingMethod; 4] =
+    [CouplingMethod::Jacobi, CouplingMethod::GaussSeidel, CouplingMethod::Velocity, CouplingMethod::Fastest];
 
-fn sharp(friction: f64, method: Method) -> Settings {
-    let gamma = if method == Method::Jacobi { 0.5 } else { 1.0 };
+fn sharp(friction: f64, method: CouplingMethod) -> Settings {
+    let gamma = if method == CouplingMethod::Jacobi { 0.5 } else { 1.0 };
     Settings { method, gamma, tolerance: 1e-9, sweeps: 100_000, ..Settings::of_friction(friction) }
 }
 
@@ -33,7 +34,7 @@ fn three_nodes_of_the_errata() {
             let c = Vector3::from_fn(|k, _| w[3 * i + k] - free[3 * i + k]);
             memory.set(i, c, Some(Vector3::z()));
         }
-        let gamma = if method == Method::Jacobi { 0.7 } else { 1.0 };
+        let gamma = if method == CouplingMethod::Jacobi { 0.7 } else { 1.0 };
         let report = solve(&coupling, &mut memory, &Settings { gamma, ..sharp(0.6, method) });
         assert!(report.converged && report.unique, "{method:?}: {report:?}");
         assert!(report.sweeps <= sweeps + 2, "{method:?}: {} sweeps", report.sweeps);
@@ -105,11 +106,14 @@ fn two_starts_agree_or_the_report_says_that_they_need_not() {
             if start > 0 {
                 let other = Problem::random(start, 4, 1.0);
                 other.set(&mut memory);
-                solve(&coupling, &mut memory, &sharp(2.0, Method::GaussSeidel));
+                solve(&coupling, &mut memory, &sharp(2.0, CouplingMethod::GaussSeidel));
             }
             problem.set(&mut memory);
-            let report =
-                solve(&coupling, &mut memory, &Settings { sweeps: 5000, ..sharp(2.0, Method::GaussSeidel) });
+            let report = solve(
+                &coupling,
+                &mut memory,
+                &Settings { sweeps: 5000, ..sharp(2.0, CouplingMethod::GaussSeidel) },
+            );
             (report, memory)
         };
         let ((a, one), (b, two)) = (run(0), run(1000 + seed));

@@ -4,12 +4,12 @@ mod sole;
 
 use contact::coupling::Coupling;
 use contact::solver::solve;
-use contact::{Layer, Memory, Method, Report, Settings};
+use contact::{CouplingMethod, Layer, Memory, Settings, SolverReport};
 use nalgebra::{DMatrix, Vector3};
 use sole::layer;
 
 /// The sole pressed so evenly and hard that all nodes stick, with a little shear.
-fn sticking(coupling: &Coupling, settings: &Settings) -> (Report, Memory) {
+fn sticking(coupling: &Coupling, settings: &Settings) -> (SolverReport, Memory) {
     let mut memory = Memory::new(coupling);
     memory.begin();
     for i in 0..coupling.nodes() {
@@ -43,7 +43,7 @@ fn jacobi_ends_where_its_spectral_radius_is_one() {
         let run = |factor: f64| {
             let gamma = predicted * factor;
             let settings = Settings {
-                method: Method::Jacobi,
+                method: CouplingMethod::Jacobi,
                 gamma,
                 tolerance: 1e-6,
                 sweeps: 20_000,
@@ -73,9 +73,9 @@ fn nearly_incompressible_rubber_needs_more_sweeps() {
         };
         (
             spectral(&layer).1,
-            sweeps(Method::Jacobi, 0.9 * 2.0 / spectral(&layer).0),
-            sweeps(Method::GaussSeidel, 1.5),
-            sweeps(Method::Velocity, 1.0),
+            sweeps(CouplingMethod::Jacobi, 0.9 * 2.0 / spectral(&layer).0),
+            sweeps(CouplingMethod::GaussSeidel, 1.5),
+            sweeps(CouplingMethod::Velocity, 1.0),
         )
     };
     let (soft, hard) = (of(0.3), of(0.49));
@@ -90,15 +90,17 @@ fn much_friction_needs_more_sweeps() {
     let mut last = 0;
     for mu in [0.1, 0.5, 2.0] {
         let settings = Settings {
-            method: Method::GaussSeidel,
+            method: CouplingMethod::GaussSeidel,
             tolerance: 1e-6,
             sweeps: 5000,
             ..Settings::of_friction(mu)
         };
         sole.memory.clear();
         sole.d.fill(0.0);
-        let twist =
-            contact::Twist { linear: Vector3::new(0.05, 0.0, -0.1), angular: Vector3::new(0.3, 0.5, 2.0) };
+        let twist = contact::SegmentMotion {
+            linear: Vector3::new(0.05, 0.0, -0.1),
+            angular: Vector3::new(0.3, 0.5, 2.0),
+        };
         let report = sole.rates(-1e-3, &twist, &settings).report;
         assert!(report.converged && report.sweeps >= last);
         last = report.sweeps;
@@ -109,11 +111,13 @@ fn much_friction_needs_more_sweeps() {
 /// tells the residual.
 #[test]
 fn too_few_sweeps_are_told() {
-    for method in [Method::Jacobi, Method::GaussSeidel, Method::Velocity] {
+    for method in [CouplingMethod::Jacobi, CouplingMethod::GaussSeidel, CouplingMethod::Velocity] {
         let mut sole = sole::Sole::new(0.45);
         let settings = Settings { method, sweeps: 2, tolerance: 1e-9, ..Settings::of_friction(0.3) };
-        let twist =
-            contact::Twist { linear: Vector3::new(0.2, 0.0, -0.1), angular: Vector3::new(0.3, 0.5, 2.0) };
+        let twist = contact::SegmentMotion {
+            linear: Vector3::new(0.2, 0.0, -0.1),
+            angular: Vector3::new(0.3, 0.5, 2.0),
+        };
         let outcome = sole.rates(-1e-3, &twist, &settings);
         assert!(!outcome.report.converged && outcome.report.residual > 1e-9 && outcome.report.sweeps == 2);
         for f in sole.memory.forces() {

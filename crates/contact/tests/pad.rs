@@ -2,8 +2,8 @@
 
 mod sole;
 
-use contact::point::State;
-use contact::{Ground, Method, Settings, Twist};
+use contact::point::PointState;
+use contact::{CouplingMethod, Ground, SegmentMotion, Settings};
 use nalgebra::Vector3;
 use sole::{ALPHA, Sole};
 
@@ -17,7 +17,7 @@ fn a_free_layer_relaxes_with_alpha() {
     let mut sole = Sole::new(0.3);
     let start: Vec<f64> = (0..sole.d.len()).map(|k| 1e-3 * (k as f64).sin()).collect();
     sole.d.clone_from(&start);
-    let outcome = sole.rates(1.0, &Twist::default(), &sharp(0.7));
+    let outcome = sole.rates(1.0, &SegmentMotion::default(), &sharp(0.7));
     assert_eq!((outcome.force, outcome.moment), (Vector3::zeros(), Vector3::zeros()));
     assert!(sole.dd.iter().zip(&start).all(|(dd, d)| *dd == -d / ALPHA));
 }
@@ -29,7 +29,7 @@ fn explicit_euler_ends_at_two_alpha() {
         let mut sole = Sole::new(0.3);
         sole.d.fill(1e-3);
         for _ in 0..20_000 {
-            sole.step_on(h, &|_| None, &Twist::default(), &sharp(0.7));
+            sole.step_on(h, &|_| None, &SegmentMotion::default(), &sharp(0.7));
         }
         sole.d.iter().any(|d| d.abs() > 1e-3)
     };
@@ -39,13 +39,13 @@ fn explicit_euler_ends_at_two_alpha() {
 /// Pressed flat on the ground by a way that stands still, the pad carries its block stiffness times the way.
 #[test]
 fn a_pressed_pad_carries_its_stiffness() {
-    for method in [Method::GaussSeidel, Method::Velocity] {
+    for method in [CouplingMethod::GaussSeidel, CouplingMethod::Velocity] {
         let mut sole = Sole::new(0.3);
         let (way, h) = (1e-3, 1e-3);
         for _ in 0..300 {
-            sole.step(h, -way, &Twist::default(), &Settings { method, ..sharp(2.0) });
+            sole.step(h, -way, &SegmentMotion::default(), &Settings { method, ..sharp(2.0) });
         }
-        let outcome = sole.rates(-way, &Twist::default(), &Settings { method, ..sharp(2.0) });
+        let outcome = sole.rates(-way, &SegmentMotion::default(), &Settings { method, ..sharp(2.0) });
         let want = sole.pad.layer().block_stiffness(2) * way;
         assert!(outcome.report.converged && outcome.report.unique);
         assert!(
@@ -66,7 +66,8 @@ fn a_pressed_pad_carries_its_stiffness() {
 fn power_of_the_segment_is_that_of_the_layer() {
     let mut sole = Sole::new(0.45);
     for k in 0..60 {
-        let twist = Twist { linear: Vector3::new(0.01, 0.0, -0.02), angular: Vector3::new(0.02, 0.1, -0.05) };
+        let twist =
+            SegmentMotion { linear: Vector3::new(0.01, 0.0, -0.02), angular: Vector3::new(0.02, 0.1, -0.05) };
         let gap = -2e-5 * f64::from(k);
         let settings = Settings { recovery: 0.0, ..sharp(5.0) };
         let outcome = sole.rates(gap, &twist, &settings);
@@ -75,7 +76,7 @@ fn power_of_the_segment_is_that_of_the_layer() {
         let dd = nalgebra::DVector::from_column_slice(&sole.dd);
         let stored = (dd.transpose() * sole.pad.layer().stiffness() * &d)[0];
         let lost = ALPHA * (dd.transpose() * sole.pad.layer().stiffness() * &dd)[0];
-        let slides = sole.memory.states().contains(&State::Slip);
+        let slides = sole.memory.states().contains(&PointState::Slip);
         let scale = stored.abs() + lost + power.abs();
         if !slides {
             assert!((power + stored + lost).abs() < 1e-9 * scale, "{k}: {power} {stored} {lost} W");
@@ -93,16 +94,16 @@ fn the_cone_is_round() {
     for degrees in (0..=45).step_by(5) {
         let angle = f64::from(degrees).to_radians();
         let direction = Vector3::new(angle.cos(), angle.sin(), 0.0);
-        for method in [Method::GaussSeidel, Method::Velocity] {
+        for method in [CouplingMethod::GaussSeidel, CouplingMethod::Velocity] {
             let settings = Settings { method, tolerance: 1e-12, ..sharp(0.4) };
             let mut sole = Sole::new(0.3);
-            let twist = Twist { linear: direction * 0.2, angular: Vector3::zeros() };
+            let twist = SegmentMotion { linear: direction * 0.2, angular: Vector3::zeros() };
             for _ in 0..300 {
                 sole.step(1e-3, -5e-4, &twist, &settings);
             }
             let outcome = sole.rates(-5e-4, &twist, &settings);
             assert!(outcome.report.converged, "{:?}", outcome.report);
-            assert!(sole.memory.states().iter().all(|s| *s == State::Slip || *s == State::Open));
+            assert!(sole.memory.states().iter().all(|s| *s == PointState::Slip || *s == PointState::Open));
             let want = -0.4 * outcome.force.z * direction;
             let error = (outcome.force - Vector3::z() * outcome.force.z - want).norm() / want.norm();
             assert!(error < 1e-9, "{degrees} deg, {method:?}: {error:e}");
@@ -117,21 +118,21 @@ fn sticking_goes_over_to_sliding_at_the_friction_limit() {
     let (mu, way) = (0.5, 1e-3);
     let mut sole = Sole::new(0.3);
     for _ in 0..300 {
-        sole.step(1e-3, -way, &Twist::default(), &sharp(mu));
+        sole.step(1e-3, -way, &SegmentMotion::default(), &sharp(mu));
     }
-    let slow = Twist { linear: Vector3::new(1e-3, 0.0, 0.0), angular: Vector3::zeros() };
+    let slow = SegmentMotion { linear: Vector3::new(1e-3, 0.0, 0.0), angular: Vector3::zeros() };
     let (mut all_stick, mut all_slip) = (0, 0);
     for k in 0..8000 {
         let outcome = sole.step(1e-3, -way, &slow, &sharp(mu));
         assert!(outcome.report.converged);
         let load = mu * outcome.force.z;
         assert!(-outcome.force.x <= load * (1.0 + 1e-12));
-        if sole.memory.states().iter().all(|s| *s == State::Stick) {
+        if sole.memory.states().iter().all(|s| *s == PointState::Stick) {
             all_stick += 1;
             let creep = (0..36).map(|i| (slow.linear.x + sole.dd[3 * i]).abs()).fold(0.0, f64::max);
             assert!(creep < 1e-15, "creeps with {creep:e} m/s");
         }
-        if sole.memory.states().iter().all(|s| *s == State::Slip) {
+        if sole.memory.states().iter().all(|s| *s == PointState::Slip) {
             all_slip += 1;
             // Sideways nodes let go of their displacement over a way of sliding mu p/k_T, here 0.5 mm or 0.5 s: after 7 s
             // e^-14 of it is left, and all pull the same way.
@@ -148,14 +149,14 @@ fn sticking_goes_over_to_sliding_at_the_friction_limit() {
 /// On the edge of a board only the nodes above it carry; the moment shows where they are.
 #[test]
 fn an_edge_carries_where_it_is() {
-    for method in [Method::GaussSeidel, Method::Velocity, Method::Fastest] {
+    for method in [CouplingMethod::GaussSeidel, CouplingMethod::Velocity, CouplingMethod::Fastest] {
         let settings = Settings { method, ..sharp(0.7) };
         let mut sole = Sole::new(0.45);
         let edge = |x: f64| (x > 0.1).then_some(Ground { gap: -1e-3, normal: Vector3::z() });
         for _ in 0..200 {
-            sole.step_on(1e-3, &edge, &Twist::default(), &settings);
+            sole.step_on(1e-3, &edge, &SegmentMotion::default(), &settings);
         }
-        let outcome = sole.step_on(1e-3, &edge, &Twist::default(), &settings);
+        let outcome = sole.step_on(1e-3, &edge, &SegmentMotion::default(), &settings);
         assert!(outcome.report.converged, "{method:?}: {:?}", outcome.report);
         for (i, f) in sole.memory.forces().iter().enumerate() {
             let on = sole.pad.place(i).x > 0.1;
@@ -173,8 +174,10 @@ fn nodes_inside_of_a_high_pad_carry_no_force() {
     for bricks in [[3, 2, 2], [2, 2, 3]] {
         let mut sole = Sole::of_bricks(0.4, bricks);
         sole.d.iter_mut().zip(1..).for_each(|(d, k)| *d = 3e-4 * f64::from(k).sin());
-        let twist =
-            Twist { linear: Vector3::new(0.05, -0.02, -0.04), angular: Vector3::new(0.1, -0.2, 0.05) };
+        let twist = SegmentMotion {
+            linear: Vector3::new(0.05, -0.02, -0.04),
+            angular: Vector3::new(0.1, -0.2, 0.05),
+        };
         let outcome = sole.rates(-2e-4, &twist, &sharp(0.6));
         assert!(outcome.report.converged && outcome.force.z > 1.0, "{outcome:?}");
         let layer = sole.pad.layer();
@@ -197,7 +200,7 @@ fn bad_data_are_told() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for place in 0..4 {
             let mut sole = Sole::new(0.3);
-            let mut twist = Twist { linear: Vector3::new(0.0, 0.0, -0.1), angular: Vector3::zeros() };
+            let mut twist = SegmentMotion { linear: Vector3::new(0.0, 0.0, -0.1), angular: Vector3::zeros() };
             let mut ground = Ground { gap: -1e-3, normal: Vector3::z() };
             match place {
                 0 => sole.d[5] = bad,
@@ -210,7 +213,7 @@ fn bad_data_are_told() {
             assert!(!outcome.report.converged, "{bad} at {place}");
             // And the next call, with good data, is none the worse.
             sole.d.fill(0.0);
-            let outcome = sole.rates(-1e-3, &Twist::default(), &sharp(0.7));
+            let outcome = sole.rates(-1e-3, &SegmentMotion::default(), &sharp(0.7));
             assert!(outcome.report.converged && outcome.force.z > 0.0);
         }
     }

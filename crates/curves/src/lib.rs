@@ -1,4 +1,4 @@
-//! Curves of time: piecewise quintics, natural cubic splines, piecewise linear functions.
+//! Curves of time: piecewise quintics, piecewise linear functions; natural cubic splines as a reference.
 //!
 //! Everything here is a plain value of fixed capacity: it can live in shared memory, is copied without an
 //! allocation and is evaluated without one.
@@ -6,9 +6,8 @@
 mod least;
 mod path;
 mod polyline;
-mod spline;
+pub mod reference;
 
 pub use least::{hessian, least_acceleration};
 pub use path::{Cursor, Path, Sample, quintic};
 pub use polyline::Polyline;
-pub use spline::{Gradient, Spline, SplineSample};

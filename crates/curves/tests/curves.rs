@@ -1,6 +1,7 @@
 //! Quintics, splines and polylines: vectors of errata 2, smoothness at random knots, refusals.
 
-use curves::{Path, Polyline, Sample, Spline};
+use curves::reference::Spline;
+use curves::{Path, Polyline, Sample};
 
 /// Numbers in [0, 1) that are the same in every run.
 struct Random(u64);

@@ -13,7 +13,7 @@ use config::{BusAddress, Setup};
 use ipc::{Bell, IpcError, Mode, Run, Space, Waiter, Woken, Writer};
 use messages::topics::{Process, Topic};
 use messages::{BusCounters, CommandSource, CycleStats, Detail, Event, EventCode, Header};
-use realtime::{CycleMeter, Granted, Schedule, Stop, clock, prepare_thread};
+use realtime::{CycleMeter, Granted, Stop, ThreadSchedule, clock, prepare_thread};
 use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
@@ -74,8 +74,8 @@ impl Daemon {
         // Real time needs priority and core; in lockstep neither is asked for.
         let row = setup.system.process(process).cloned();
         let schedule = match (run.mode, &row) {
-            (Mode::RealTime, Some(row)) => Schedule { priority: row.priority, core: row.core },
-            _ => Schedule::ORDINARY,
+            (Mode::RealTime, Some(row)) => ThreadSchedule { priority: row.priority, core: row.core },
+            _ => ThreadSchedule::ORDINARY,
         };
         let granted = prepare_thread(&schedule);
         for missing in &granted.missing {

@@ -20,7 +20,7 @@ enum Mark {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Key {
+enum LegendKey {
     Line(Pen),
     Patch(Color),
     Dot(Color),
@@ -32,7 +32,7 @@ pub struct Chart {
     title: String,
     labels: [String; 2],
     marks: Vec<Mark>,
-    legend: Vec<(String, Key)>,
+    legend: Vec<(String, LegendKey)>,
     equal: bool,
     logarithmic: bool,
     height: f32,
@@ -120,14 +120,14 @@ impl Chart {
 
     /// A line drawn with any pen.
     pub fn styled(&mut self, name: &str, points: Vec<Point>, pen: Pen) -> &mut Self {
-        self.key(name, Key::Line(pen));
+        self.key(name, LegendKey::Line(pen));
         self.marks.push(Mark::Line { points, pen });
         self
     }
 
     /// A filled polygon.
     pub fn area(&mut self, name: &str, outline: Vec<Point>, fill: Color) -> &mut Self {
-        self.key(name, Key::Patch(fill));
+        self.key(name, LegendKey::Patch(fill));
         self.marks.push(Mark::Area { outline, fill });
         self
     }
@@ -146,7 +146,7 @@ impl Chart {
 
     /// Dots.
     pub fn dots(&mut self, name: &str, points: Vec<Point>, radius: f32, color: Color) -> &mut Self {
-        self.key(name, Key::Dot(color));
+        self.key(name, LegendKey::Dot(color));
         self.marks.push(Mark::Dots { points, radius, color });
         self
     }
@@ -164,7 +164,7 @@ impl Chart {
     }
 
     /// Each name stands once in the legend; an empty one not at all.
-    fn key(&mut self, name: &str, key: Key) {
+    fn key(&mut self, name: &str, key: LegendKey) {
         if !name.is_empty() && self.legend.iter().all(|(known, _)| known != name) {
             self.legend.push((name.into(), key));
         }
@@ -247,7 +247,7 @@ impl Chart {
         self.draw_legend(canvas, &view);
     }
 
-    fn view(&self, width: u32, top: f32) -> View {
+    fn view(&self, width: u32, top: f32) -> PlotView {
         let height = self.inner_height(width);
         let pixels = [[LEFT, top + TOP], [width as f32 - RIGHT, top + TOP + height]];
         let mut ranges = self.ranges();
@@ -260,10 +260,10 @@ impl Chart {
                 ranges[k] = [middle - scale * size[k] / 2.0, middle + scale * size[k] / 2.0];
             }
         }
-        View { ranges, pixels }
+        PlotView { ranges, pixels }
     }
 
-    fn draw_grid(&self, canvas: &mut Canvas, view: &View) {
+    fn draw_grid(&self, canvas: &mut Canvas, view: &PlotView) {
         let [[left, top], [right, bottom]] = view.pixels;
         let pen = Pen { color: LIGHT, width: 1.0, dashed: false };
         for (x, label) in self.ticks(view.ranges[0], 10) {
@@ -282,7 +282,7 @@ impl Chart {
         if self.logarithmic { powers(lo, hi, wanted) } else { ticks(lo, hi, wanted) }
     }
 
-    fn draw_mark(&self, canvas: &mut Canvas, view: &View, mark: &Mark) {
+    fn draw_mark(&self, canvas: &mut Canvas, view: &PlotView, mark: &Mark) {
         let place = |points: &[Point]| points.iter().map(|p| view.place(self.scaled(*p))).collect::<Vec<_>>();
         match mark {
             Mark::Line { points, pen } => canvas.line(&thin(&place(points)), *pen),
@@ -303,7 +303,7 @@ impl Chart {
         }
     }
 
-    fn draw_frame(&self, canvas: &mut Canvas, view: &View) {
+    fn draw_frame(&self, canvas: &mut Canvas, view: &PlotView) {
         let [[left, top], [right, bottom]] = view.pixels;
         let pen = Pen { color: GREY, width: 1.5, dashed: false };
         canvas.line(&[[left, top], [left, bottom], [right, bottom], [right, top], [left, top]], pen);
@@ -313,7 +313,7 @@ impl Chart {
     }
 
     /// Above the axes, from the right, so that it never hides data.
-    fn draw_legend(&self, canvas: &mut Canvas, view: &View) {
+    fn draw_legend(&self, canvas: &mut Canvas, view: &PlotView) {
         let [[_, top], [mut x, _]] = view.pixels;
         let y = top - 18.0;
         for (name, key) in self.legend.iter().rev() {
@@ -321,11 +321,11 @@ impl Chart {
             x -= text::width(name, LABEL.size, LABEL.weight) + 8.0;
             let middle = y - 7.0;
             match *key {
-                Key::Line(pen) => {
+                LegendKey::Line(pen) => {
                     canvas.line(&[[x - 34.0, middle], [x, middle]], Pen { width: pen.width.max(2.5), ..pen });
                 }
-                Key::Dot(color) => canvas.dot([x - 10.0, middle], 6.0, color),
-                Key::Patch(color) => {
+                LegendKey::Dot(color) => canvas.dot([x - 10.0, middle], 6.0, color),
+                LegendKey::Patch(color) => {
                     let (l, t, b) = (x - 30.0, middle - 9.0, middle + 9.0);
                     canvas.fill(&[[l, t], [x, t], [x, b], [l, b]], color);
                 }
@@ -336,12 +336,12 @@ impl Chart {
 }
 
 /// Units to pixels.
-pub(crate) struct View {
+pub(crate) struct PlotView {
     pub(crate) ranges: [[f64; 2]; 2],
     pub(crate) pixels: [Pixel; 2],
 }
 
-impl View {
+impl PlotView {
     pub(crate) fn place(&self, p: Point) -> Pixel {
         let share = |k: usize| ((p[k] - self.ranges[k][0]) / (self.ranges[k][1] - self.ranges[k][0])) as f32;
         let [[left, top], [right, bottom]] = self.pixels;

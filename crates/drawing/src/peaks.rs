@@ -1,7 +1,7 @@
 //! Peaks that are far outside of what a line does: they do not set the scale, and are not lost.
 
 use crate::canvas::{Anchor, Canvas, Letters};
-use crate::chart::{Point, TICK, View};
+use crate::chart::{PlotView, Point, TICK};
 use crate::color::Color;
 
 /// Share of the values that a scale need not show, at each end.
@@ -25,7 +25,11 @@ pub(crate) fn cut(all: [f64; 2], mut values: Vec<f64>, least: f64) -> [f64; 2] {
 
 /// Marks each stretch of a line beyond the axes with a triangle at the edge and the value furthest out, where there is
 /// room for it.
-pub(crate) fn draw<'a>(canvas: &mut Canvas, view: &View, lines: impl Iterator<Item = (&'a [Point], Color)>) {
+pub(crate) fn draw<'a>(
+    canvas: &mut Canvas,
+    view: &PlotView,
+    lines: impl Iterator<Item = (&'a [Point], Color)>,
+) {
     let [low, high] = view.ranges[1];
     let mut written = [f32::NEG_INFINITY; 2];
     for (points, color) in lines {

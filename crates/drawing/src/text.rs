@@ -38,7 +38,7 @@ pub(crate) fn outline(text: &str, size: f32, weight: Weight) -> Option<Path> {
     let font = weight.font();
     let (glyphs, outlines) = (font.charmap(), font.outline_glyphs());
     let metrics = GlyphMetrics::new(&font, Size::new(size), LocationRef::default());
-    let mut pen = Pen { path: PathBuilder::new(), x: 0.0 };
+    let mut pen = PathPen { path: PathBuilder::new(), x: 0.0 };
     for c in text.chars() {
         let id = glyphs.map(c).unwrap_or_default();
         if let Some(glyph) = outlines.get(id) {
@@ -50,12 +50,12 @@ pub(crate) fn outline(text: &str, size: f32, weight: Weight) -> Option<Path> {
     pen.path.finish()
 }
 
-struct Pen {
+struct PathPen {
     path: PathBuilder,
     x: f32,
 }
 
-impl OutlinePen for Pen {
+impl OutlinePen for PathPen {
     fn move_to(&mut self, x: f32, y: f32) {
         self.path.move_to(self.x + x, -y);
     }

@@ -29,7 +29,7 @@
 
 /// States of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum State {
+pub enum DriveState {
     /// The drive starts.
     NotReady,
     /// No voltage may be switched on.
@@ -76,7 +76,7 @@ pub const REFERENCED: u16 = 1 << 15;
 /// Why a drive has a fault: error codes of CiA 301 and 402.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
-pub enum Fault {
+pub enum DriveFault {
     /// Current above what the power stage allows.
     OverCurrent = 0x2310,
     /// Winding too hot.
@@ -87,7 +87,7 @@ pub enum Fault {
     FollowingError = 0x8611,
 }
 
-impl Fault {
+impl DriveFault {
     /// All of them.
     pub const ALL: [Self; 4] =
         [Self::OverCurrent, Self::OverTemperature, Self::Heartbeat, Self::FollowingError];
@@ -123,7 +123,7 @@ pub struct DriveInputs {
     /// True if the drive may go to Operation enabled: its angle is known, or it is to find it out.
     pub permit: bool,
     /// Fault in this cycle.
-    pub fault: Option<Fault>,
+    pub fault: Option<DriveFault>,
     /// The joint has come to rest.
     pub still: bool,
 }
@@ -131,68 +131,68 @@ pub struct DriveInputs {
 /// The drive's side.
 #[derive(Clone, Copy, Debug)]
 pub struct DriveStateMachine {
-    state: State,
+    state: DriveState,
     control: u16,
-    error: Option<Fault>,
+    error: Option<DriveFault>,
     supply: bool,
 }
 
 impl Default for DriveStateMachine {
     fn default() -> Self {
-        Self { state: State::NotReady, control: 0, error: None, supply: false }
+        Self { state: DriveState::NotReady, control: 0, error: None, supply: false }
     }
 }
 
 impl DriveStateMachine {
     /// The state.
-    pub fn state(&self) -> State {
+    pub fn state(&self) -> DriveState {
         self.state
     }
 
     /// The last fault, until it is reset.
-    pub fn error(&self) -> Option<Fault> {
+    pub fn error(&self) -> Option<DriveFault> {
         self.error
     }
 
     /// True if the power stage drives the motor; otherwise it has no torque, and a brake holds it if there is one.
     pub fn drives(&self) -> bool {
-        matches!(self.state, State::OperationEnabled | State::QuickStop | State::FaultReaction)
+        matches!(self.state, DriveState::OperationEnabled | DriveState::QuickStop | DriveState::FaultReaction)
     }
 
     /// True if the joint brakes on the ramp instead of following its targets.
     pub fn ramps(&self) -> bool {
-        matches!(self.state, State::QuickStop | State::FaultReaction)
+        matches!(self.state, DriveState::QuickStop | DriveState::FaultReaction)
     }
 
     /// One cycle.
-    pub fn step(&mut self, inputs: &DriveInputs) -> State {
+    pub fn step(&mut self, inputs: &DriveInputs) -> DriveState {
         let before = self.control;
         self.control = inputs.control.unwrap_or(self.control & !RESET);
         self.supply = inputs.supply;
         let reset = self.control & !before & RESET != 0;
-        let brakes = inputs.supply && inputs.fault.is_none_or(Fault::ramps);
+        let brakes = inputs.supply && inputs.fault.is_none_or(DriveFault::ramps);
         self.state = match (self.state, inputs.fault) {
-            (State::FaultReaction, _) if inputs.still || !brakes => State::Fault, // 14
-            (State::FaultReaction, _) => State::FaultReaction,
-            (State::Fault, None) if reset => {
+            (DriveState::FaultReaction, _) if inputs.still || !brakes => DriveState::Fault, // 14
+            (DriveState::FaultReaction, _) => DriveState::FaultReaction,
+            (DriveState::Fault, None) if reset => {
                 self.error = None;
-                State::SwitchOnDisabled // 15
+                DriveState::SwitchOnDisabled // 15
             }
-            (State::Fault, _) => State::Fault,
+            (DriveState::Fault, _) => DriveState::Fault,
             (_, Some(fault)) => {
                 self.error = Some(fault);
                 // 13, and 14 at once if nothing can brake, or nothing moves.
-                if self.drives() && brakes { State::FaultReaction } else { State::Fault }
+                if self.drives() && brakes { DriveState::FaultReaction } else { DriveState::Fault }
             }
-            (State::NotReady, None) => State::SwitchOnDisabled, // 0, 1: the self-test is passed
+            (DriveState::NotReady, None) => DriveState::SwitchOnDisabled, // 0, 1: the self-test is passed
             (state, None) => self.command(state, inputs),
         };
         self.state
     }
 
     /// The transition table without faults.
-    fn command(&self, state: State, inputs: &DriveInputs) -> State {
-        use State::{OperationEnabled, QuickStop, Ready, SwitchOnDisabled, SwitchedOn};
+    fn command(&self, state: DriveState, inputs: &DriveInputs) -> DriveState {
+        use DriveState::{OperationEnabled, QuickStop, Ready, SwitchOnDisabled, SwitchedOn};
         let word = self.control & 0x0F;
         let is = |wanted: u16, mask: u16| word & mask == wanted;
         let (shutdown, switch_on) = (is(SHUTDOWN, 0x07), is(SWITCH_ON, 0x0F));
@@ -224,30 +224,30 @@ impl DriveStateMachine {
 }
 
 /// Bits 0 to 3, 5 and 6 of a state's statusword; bit 5 is free in the upper four and 0 there.
-pub const fn status_of(state: State) -> u16 {
+pub const fn status_of(state: DriveState) -> u16 {
     match state {
-        State::NotReady => 0x00,
-        State::SwitchOnDisabled => 0x40,
-        State::Ready => 0x21,
-        State::SwitchedOn => 0x23,
-        State::OperationEnabled => 0x27,
-        State::QuickStop => 0x07,
-        State::FaultReaction => 0x0F,
-        State::Fault => 0x08,
+        DriveState::NotReady => 0x00,
+        DriveState::SwitchOnDisabled => 0x40,
+        DriveState::Ready => 0x21,
+        DriveState::SwitchedOn => 0x23,
+        DriveState::OperationEnabled => 0x27,
+        DriveState::QuickStop => 0x07,
+        DriveState::FaultReaction => 0x0F,
+        DriveState::Fault => 0x08,
     }
 }
 
 /// The state of a statusword; none if its bits name no state.
-pub const fn state_of(status: u16) -> Option<State> {
+pub const fn state_of(status: u16) -> Option<DriveState> {
     match (status & 0x4F, status & 0x6F) {
-        (0x00, _) => Some(State::NotReady),
-        (0x40, _) => Some(State::SwitchOnDisabled),
-        (0x0F, _) => Some(State::FaultReaction),
-        (0x08, _) => Some(State::Fault),
-        (_, 0x21) => Some(State::Ready),
-        (_, 0x23) => Some(State::SwitchedOn),
-        (_, 0x27) => Some(State::OperationEnabled),
-        (_, 0x07) => Some(State::QuickStop),
+        (0x00, _) => Some(DriveState::NotReady),
+        (0x40, _) => Some(DriveState::SwitchOnDisabled),
+        (0x0F, _) => Some(DriveState::FaultReaction),
+        (0x08, _) => Some(DriveState::Fault),
+        (_, 0x21) => Some(DriveState::Ready),
+        (_, 0x23) => Some(DriveState::SwitchedOn),
+        (_, 0x27) => Some(DriveState::OperationEnabled),
+        (_, 0x07) => Some(DriveState::QuickStop),
         _ => None,
     }
 }
@@ -271,13 +271,15 @@ pub enum Wanted {
 /// that the reset is an edge.
 pub fn controlword(status: u16, wanted: Wanted) -> u16 {
     match (state_of(status), wanted) {
-        (Some(State::Fault), Wanted::Reset) => FAULT_RESET,
-        (Some(State::Fault | State::FaultReaction), _) => DISABLE_VOLTAGE,
+        (Some(DriveState::Fault), Wanted::Reset) => FAULT_RESET,
+        (Some(DriveState::Fault | DriveState::FaultReaction), _) => DISABLE_VOLTAGE,
         (_, Wanted::Ready | Wanted::Reset) => SHUTDOWN,
-        (Some(State::OperationEnabled | State::QuickStop), Wanted::Stop) => QUICK_STOP,
+        (Some(DriveState::OperationEnabled | DriveState::QuickStop), Wanted::Stop) => QUICK_STOP,
         (_, Wanted::Stop) => SHUTDOWN,
-        (Some(State::Ready | State::SwitchedOn | State::OperationEnabled), _) => ENABLE_OPERATION,
-        (Some(State::QuickStop), _) => ENABLE_OPERATION,
+        (Some(DriveState::Ready | DriveState::SwitchedOn | DriveState::OperationEnabled), _) => {
+            ENABLE_OPERATION
+        }
+        (Some(DriveState::QuickStop), _) => ENABLE_OPERATION,
         (_, Wanted::Operation) => SHUTDOWN,
     }
 }

@@ -17,7 +17,7 @@ use crate::Motor;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointControl {
     /// The law.
-    pub law: Law,
+    pub law: ControlLaw,
     /// When it is computed.
     pub sampling: Sampling,
     /// Resolution.
@@ -36,7 +36,7 @@ pub struct Resolution {
 
 /// A law of joint control.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Law {
+pub enum ControlLaw {
     /// Position, speed and current, one inside of the other: Lola's servo drives (thesis 5.5.2).
     Cascade(Cascade),
     /// Angle of the motor to voltage: Johnnie, who has no current sensors (thesis 5.5.1).
@@ -69,7 +69,7 @@ pub enum Feedback {
 
 /// A side of a gear; of a rigid gear both see the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum GearSide {
     /// Joint.
     Link,
     /// Rotor.
@@ -110,13 +110,13 @@ impl Feedback {
     pub const WORDS: [&str; 3] = ["link", "motor", "link_motor"];
 
     /// Side of the angle sensor.
-    pub fn position(self) -> Side {
-        if self == Self::Motor { Side::Motor } else { Side::Link }
+    pub fn position(self) -> GearSide {
+        if self == Self::Motor { GearSide::Motor } else { GearSide::Link }
     }
 
     /// Side of the speed sensor.
-    pub fn speed(self) -> Side {
-        if self == Self::Link { Side::Link } else { Side::Motor }
+    pub fn speed(self) -> GearSide {
+        if self == Self::Link { GearSide::Link } else { GearSide::Motor }
     }
 }
 

@@ -21,7 +21,7 @@
 use nalgebra::linalg::Schur;
 use nalgebra::{Matrix4, SMatrix, SVector};
 
-use crate::control::{Feedback, Sampled, Side};
+use crate::control::{Feedback, GearSide, Sampled};
 
 /// The joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ pub struct Gains {
 
 /// The joint from one sample to the next while its torque is held.
 #[derive(Clone, Copy, Debug)]
-pub struct Held {
+pub struct HeldJoint {
     period: f64,
     free: Matrix4<f64>,
     by_torque: SVector<f64, 4>,
@@ -63,8 +63,8 @@ impl ElasticJoint {
         let Gains { position: kp, speed: kd } = gains;
         let free = [0.0, k * d, k * (j + m), j * d, j * m];
         // The torque moves the motor as J_J s^2 + K, the link as K.
-        let p = if feedback.position() == Side::Motor { j * kp } else { 0.0 };
-        let v = if feedback.speed() == Side::Motor { j * kd } else { 0.0 };
+        let p = if feedback.position() == GearSide::Motor { j * kp } else { 0.0 };
+        let v = if feedback.speed() == GearSide::Motor { j * kd } else { 0.0 };
         [k * kp, free[1] + k * kd, free[2] + p, free[3] + v, free[4]]
     }
 
@@ -99,7 +99,7 @@ impl ElasticJoint {
     }
 
     /// The joint sampled with `period` T \[s\].
-    pub fn held(&self, period: f64) -> Held {
+    pub fn held(&self, period: f64) -> HeldJoint {
         let Self { stiffness: k, link: j, rotor: m, friction: d } = *self;
         // States q_J, q_M, q_J', q_M', torque.
         let rates = SMatrix::<f64, 5, 5>::from_row_slice(&[
@@ -130,7 +130,7 @@ impl ElasticJoint {
             0.0,
         ]);
         let step = (rates * period).exp();
-        Held {
+        HeldJoint {
             period,
             free: step.fixed_view::<4, 4>(0, 0).into(),
             by_torque: step.fixed_view::<4, 1>(0, 4).into(),
@@ -138,10 +138,10 @@ impl ElasticJoint {
     }
 }
 
-impl Held {
+impl HeldJoint {
     /// \[1\] Factor by which the sampled loop grows from sample to sample: stable below 1; NaN if it is not found.
     pub fn spectral_radius(&self, feedback: Feedback, gains: Gains, sampled: Sampled) -> f64 {
-        let at = |side| usize::from(side == Side::Motor);
+        let at = |side| usize::from(side == GearSide::Motor);
         let (angle, seen) = (at(feedback.position()), at(feedback.speed()));
         // States q_J, q_M, q_J', q_M', the angle of the last sample, the torque computed there.
         let mut torque = SVector::<f64, 6>::zeros();

@@ -9,7 +9,7 @@
 //! | h | distance of the points, the same whole number everywhere | 2^-29 rad |
 //!
 //! a and r are as large as the largest number in its column allows, so that 31 bits and a sign are used. An angle between two
-//! points is met by linear interpolation, the weights in 30 bits. Its error is that of [`Table`](crate::lookup::Table),
+//! points is met by linear interpolation, the weights in 30 bits. Its error is that of [`LookupTable`](crate::lookup::LookupTable),
 //! at most h²/8 times the second derivative in each dimension, until the table is so fine that rounding is more:
 //! [`FixedTable::rounding`].
 
@@ -59,7 +59,7 @@ pub struct Reading {
 
 /// Why it says nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refused {
+pub enum OutOfTable {
     /// A joint angle lies outside of the table.
     Beyond {
         /// Which joint, as in [`Transmission::at`].
@@ -120,21 +120,21 @@ impl FixedTable {
     }
 
     /// Motor angle and ratios at joint angles `q` \[2^-29 rad\], joints as in [`Transmission::at`]. Integers only.
-    pub fn at(&self, q: [i32; 3]) -> Result<Reading, Refused> {
+    pub fn at(&self, q: [i32; 3]) -> Result<Reading, OutOfTable> {
         if !self.ankle {
-            let (i, s) = self.axes[0].cell(q[0]).ok_or(Refused::Beyond { joint: 0, angle: q[0] })?;
+            let (i, s) = self.axes[0].cell(q[0]).ok_or(OutOfTable::Beyond { joint: 0, angle: q[0] })?;
             let [angle, ratio, _] = mean(&self.rows[i], &self.rows[i + 1], s);
             return Ok(Reading { angle, ratio: [ratio, 0, 0] });
         }
-        let (i, s) = self.axes[0].cell(q[1]).ok_or(Refused::Beyond { joint: 1, angle: q[1] })?;
-        let (j, t) = self.axes[1].cell(q[2]).ok_or(Refused::Beyond { joint: 2, angle: q[2] })?;
+        let (i, s) = self.axes[0].cell(q[1]).ok_or(OutOfTable::Beyond { joint: 1, angle: q[1] })?;
+        let (j, t) = self.axes[1].cell(q[2]).ok_or(OutOfTable::Beyond { joint: 2, angle: q[2] })?;
         let n = self.axes[1].points;
         let (lower, upper) = (&self.rows[i * n + j..], &self.rows[(i + 1) * n + j..]);
         let [angle, a, b] = mean(&mean(&lower[0], &lower[1], t), &mean(&upper[0], &upper[1], t), s);
         let (share, bits) = self.knee;
         let driven = shifted(i64::from(share) * i64::from(q[0]), bits + 29 - self.bits[0]);
         let angle = i64::from(angle) + driven;
-        let angle = i32::try_from(angle).map_err(|_| Refused::Overflow { angle })?;
+        let angle = i32::try_from(angle).map_err(|_| OutOfTable::Overflow { angle })?;
         Ok(Reading { angle, ratio: [share, a, b] })
     }
 
@@ -145,8 +145,8 @@ impl FixedTable {
             *angle = whole_angle(q[k])?;
         }
         let found = self.at(angles).map_err(|refused| match refused {
-            Refused::Beyond { joint, .. } => OutOfDomain::Table { angle: q[joint] },
-            Refused::Overflow { .. } => OutOfDomain::Table { angle: q[0] },
+            OutOfTable::Beyond { joint, .. } => OutOfDomain::Table { angle: q[joint] },
+            OutOfTable::Overflow { .. } => OutOfDomain::Table { angle: q[0] },
         })?;
         let units = self.ratio_units();
         let ratio = [0, 1, 2].map(|k| f64::from(found.ratio[k]) * units[k]);
@@ -277,7 +277,7 @@ fn largest([lo, hi]: [f64; 2]) -> f64 {
     lo.abs().max(hi.abs())
 }
 
-impl fmt::Display for Refused {
+impl fmt::Display for OutOfTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Beyond { joint, angle } => {
@@ -291,4 +291,4 @@ impl fmt::Display for Refused {
     }
 }
 
-impl std::error::Error for Refused {}
+impl std::error::Error for OutOfTable {}

@@ -26,16 +26,18 @@ pub mod fixed_table;
 mod friction;
 mod gear;
 pub mod homing;
-mod inverse;
 mod knee;
 pub mod lookup;
 mod motor;
+mod reference;
 pub mod thermal;
 mod transmission;
 mod turn;
 
 pub use ankle::{Ankle, AnkleGeometry};
-pub use control::{Cascade, Feedback, JointControl, Law, Resolution, Sampled, Sampling, Side, VoltageLaw};
+pub use control::{
+    Cascade, ControlLaw, Feedback, GearSide, JointControl, Resolution, Sampled, Sampling, VoltageLaw,
+};
 pub use elasticity::Elasticity;
 pub use fixed_table::FixedTable;
 pub use friction::{Friction, HarmonicFriction, NoLoadTorque, ScrewFriction, Sliding};

@@ -8,7 +8,7 @@ use crate::{OutOfDomain, Transmission};
 
 /// Motor angle and ratios of a transmission on a grid.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct LookupTable {
     /// Grid of every dimension: lower end \[rad\], distance of the points \[rad\], number of points.
     grid: [(f64, f64, usize); 2],
     /// Angle \[rad\] and the ratios by the table's joints, the second joint's index running fastest.
@@ -19,7 +19,7 @@ pub struct Table {
     ankle: bool,
 }
 
-impl Table {
+impl LookupTable {
     /// Table over `ranges` \[rad\] with so many `points`, at least 2; of a transmission on one joint only the first of both is
     /// used, an ankle takes adduction and flexion.
     pub fn new(

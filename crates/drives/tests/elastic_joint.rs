@@ -1,6 +1,6 @@
 //! Stability of the single elastic joint against the determinants of the thesis, its roots, and tables of sampled loops.
 
-use drives::elastic_joint::{ElasticJoint, Gains, Held};
+use drives::elastic_joint::{ElasticJoint, Gains, HeldJoint};
 use drives::{Feedback, Sampled};
 
 const STANCE: ElasticJoint = ElasticJoint { stiffness: 3.1e4, link: 10.0, rotor: 1.2, friction: 0.0 };
@@ -125,7 +125,7 @@ fn grid(low: f64, high: f64) -> impl DoubleEndedIterator<Item = f64> + Clone {
     (0..=count).map(move |i| low * 1.016_f64.powi(i))
 }
 
-fn check(name: &str, held: &Held, feedback: Feedback, sampled: Sampled, ((most, at), range): Limits) {
+fn check(name: &str, held: &HeldJoint, feedback: Feedback, sampled: Sampled, ((most, at), range): Limits) {
     let k = STANCE.stiffness;
     let stable = |kp: f64, kd: f64| held.is_stable(feedback, gains(kp * k, kd), sampled);
     if at > 0.0 {

@@ -3,8 +3,8 @@
 
 mod linkages;
 
-use drives::fixed_table::{FixedTable, Reading, Refused, whole_angle};
-use drives::lookup::Table;
+use drives::fixed_table::{FixedTable, OutOfTable, Reading, whole_angle};
+use drives::lookup::LookupTable;
 use drives::{Ankle, AnkleGeometry, OutOfDomain, Transmission};
 use proptest::prelude::*;
 
@@ -127,7 +127,7 @@ fn agrees_with_floating_point() {
         let joints = transmission.joints();
         let pair = if joints == 3 { [ranges[1], ranges[2]] } else { [ranges[0]; 2] };
         let (fixed, real) =
-            (table(&transmission, ranges, 33), Table::new(&transmission, pair, [33; 2]).unwrap());
+            (table(&transmission, ranges, 33), LookupTable::new(&transmission, pair, [33; 2]).unwrap());
         let inside = places(joints, ranges.map(|[lo, hi]| [lo + 1e-6, hi - 1e-6]));
         for q in inside.into_iter().map(|q| q.map(|q| f64::from(q) * UNIT)) {
             let ((angle, ratio), (wanted, ratios)) = (fixed.at_angles(q).unwrap(), real.at(q).unwrap());
@@ -149,12 +149,12 @@ fn ends_of_the_ranges() {
         assert!((f64::from(found.angle) * knees.angle_unit() - exact.angle).abs() < 1e-6);
     }
     for q in [lo - 2, hi + 9, i32::MIN, i32::MAX] {
-        assert_eq!(knees.at([q, 0, 0]), Err(Refused::Beyond { joint: 0, angle: q }));
+        assert_eq!(knees.at([q, 0, 0]), Err(OutOfTable::Beyond { joint: 0, angle: q }));
     }
     let ankles = table(&Transmission::Ankle(linkages::ankle(1.0)), ANKLE, 9);
     for extreme in [i32::MIN, i32::MAX] {
-        assert_eq!(ankles.at([0, extreme, 0]), Err(Refused::Beyond { joint: 1, angle: extreme }));
-        assert_eq!(ankles.at([0, 0, extreme]), Err(Refused::Beyond { joint: 2, angle: extreme }));
+        assert_eq!(ankles.at([0, extreme, 0]), Err(OutOfTable::Beyond { joint: 1, angle: extreme }));
+        assert_eq!(ankles.at([0, 0, extreme]), Err(OutOfTable::Beyond { joint: 2, angle: extreme }));
     }
     for word in ["joint 2", "4.0000 rad", "outside of the look-up table"] {
         assert!(ankles.at([0, 0, i32::MAX]).unwrap_err().to_string().contains(word));
@@ -179,7 +179,7 @@ fn overflow_is_told() {
                     fitted += 1;
                 }
                 Err(refused) => {
-                    assert!(!fits && matches!(refused, Refused::Overflow { .. }), "{q:?}: {refused}");
+                    assert!(!fits && matches!(refused, OutOfTable::Overflow { .. }), "{q:?}: {refused}");
                     told += 1;
                 }
             }

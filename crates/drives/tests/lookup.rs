@@ -2,7 +2,7 @@
 
 mod linkages;
 
-use drives::lookup::Table;
+use drives::lookup::LookupTable;
 use drives::{OutOfDomain, Transmission};
 
 const KNEE: [[f64; 2]; 2] = [[-0.07, 2.09], [0.0; 2]];
@@ -10,7 +10,7 @@ const ANKLE: [[f64; 2]; 2] = [[-0.41, 0.41], [-0.85, 0.76]];
 
 /// Largest errors of motor angle \[rad\] and ratios \[1\] over a grid that shares no cell with the table.
 fn errors(transmission: &Transmission, ranges: [[f64; 2]; 2], points: usize) -> [f64; 2] {
-    let table = Table::new(transmission, ranges, [points; 2]).unwrap();
+    let table = LookupTable::new(transmission, ranges, [points; 2]).unwrap();
     let fine = 97;
     let at = |[lo, hi]: [f64; 2], i: usize| lo + (hi - lo) * i as f64 / fine as f64;
     let mut worst = [0.0_f64; 2];
@@ -56,7 +56,7 @@ fn error_of_the_angle_is_the_predicted_one() {
 #[test]
 fn edges() {
     let ankle = Transmission::Ankle(linkages::ankle(-1.0));
-    let table = Table::new(&ankle, ANKLE, [9, 9]).unwrap();
+    let table = LookupTable::new(&ankle, ANKLE, [9, 9]).unwrap();
     for q in [[0.0, -0.41, -0.85], [1.0, 0.41, 0.76], [-1.0, -0.41, 0.76]] {
         let (exact, (angle, ratio)) = (ankle.at(q, [0.0; 3]).unwrap(), table.at(q).unwrap());
         assert!((angle - exact.angle).abs() < 1e-9 && (ratio[2] - exact.ratio[2]).abs() < 1e-9);
@@ -64,5 +64,5 @@ fn edges() {
     assert_eq!(table.at([0.0, 0.42, 0.0]), Err(OutOfDomain::Table { angle: 0.42 }));
     assert_eq!(table.at([0.0, 0.0, f64::NAN]), Err(OutOfDomain::NotFinite));
     assert_eq!(table.size(), 243);
-    assert!(Table::new(&linkages::knee(1.0), [[0.0, 3.0], [0.0; 2]], [9, 1]).is_err());
+    assert!(LookupTable::new(&linkages::knee(1.0), [[0.0, 3.0], [0.0; 2]], [9, 1]).is_err());
 }

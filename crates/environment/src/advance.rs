@@ -4,13 +4,13 @@
 //! object, or would put the object where a node of the robot is; so what is planned happens late, in the same order and
 //! at the same speed, and never by a jump.
 
-use crate::query::{Environment, Event};
+use crate::query::{Environment, ObjectEvent};
 
 impl Environment {
     /// Moves every object to where its schedule has it at `time` \[s\], except those that `touched` says something
     /// touches, and those that would enclose one of the `nodes` \[m\] @world there. Returns what happened. An object
     /// that has to wait loses the whole step, so steps should be short: a bus cycle.
-    pub fn advance(&mut self, time: f64, touched: &[bool], nodes: &[[f64; 3]]) -> &[Event] {
+    pub fn advance(&mut self, time: f64, touched: &[bool], nodes: &[[f64; 3]]) -> &[ObjectEvent] {
         self.events.clear();
         let step = (time - self.time).max(0.0);
         self.time += step;
@@ -26,17 +26,17 @@ impl Environment {
             let held = object.present && touched.get(i).copied().unwrap_or(false);
             if held || (present && !object.moved_clear_of(nodes, pose)) {
                 if !object.refused {
-                    self.events.push(Event::Refused(i));
+                    self.events.push(ObjectEvent::Refused(i));
                 }
                 object.refused = true;
                 continue;
             }
             // Nothing is in the way any more.
             if std::mem::take(&mut object.refused) {
-                self.events.push(Event::Resumed(i));
+                self.events.push(ObjectEvent::Resumed(i));
             }
             if present != object.present {
-                self.events.push(if present { Event::Appeared(i) } else { Event::Vanished(i) });
+                self.events.push(if present { ObjectEvent::Appeared(i) } else { ObjectEvent::Vanished(i) });
             }
             (object.clock, object.present) = (clock, present);
         }

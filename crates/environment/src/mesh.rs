@@ -17,14 +17,13 @@ use nalgebra::Vector3;
 use crate::MeshError;
 use crate::bounds::Bounds;
 use crate::hierarchy::Hierarchy;
-use crate::point_triangle;
 use crate::topology::{self, MeshRepairs};
 use crate::triangle::{Nearest, Triangle};
 
 /// A closed surface with outward normals. Never changes after construction.
 #[derive(Clone, Debug)]
 pub struct Mesh {
-    triangles: Vec<Triangle>,
+    pub(crate) triangles: Vec<Triangle>,
     hierarchy: Hierarchy,
     bounds: Bounds,
     repairs: MeshRepairs,
@@ -83,19 +82,5 @@ impl Mesh {
     ) -> Option<Nearest> {
         let (triangle, point, feature) = self.hierarchy.nearest(&self.triangles, p, within, wanted)?;
         Some(self.triangles[triangle].signed(p, point, feature, triangle))
-    }
-
-    /// As [`Mesh::nearest`], looking at every triangle: what algorithm 2 of the thesis does.
-    pub fn nearest_by_search(&self, p: &Vector3<f64>) -> Option<Nearest> {
-        let mut best = None;
-        let mut nearest = f64::INFINITY;
-        for (i, triangle) in self.triangles.iter().enumerate() {
-            let (point, feature) = point_triangle::closest(p, &triangle.corners);
-            let d = (p - point).norm_squared();
-            if d < nearest {
-                (best, nearest) = (Some((i, point, feature)), d);
-            }
-        }
-        best.map(|(i, point, feature)| self.triangles[i].signed(p, point, feature, i))
     }
 }

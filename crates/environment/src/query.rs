@@ -37,7 +37,7 @@ pub struct Hit {
 
 /// Change of an object in [`crate::Environment::advance`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
+pub enum ObjectEvent {
     /// Its next change has to wait, because it is touched or would touch.
     Refused(usize),
     /// It goes on with its schedule.
@@ -52,7 +52,7 @@ pub enum Event {
 #[derive(Clone, Debug, Default)]
 pub struct Environment {
     pub(crate) objects: Vec<Object>,
-    pub(crate) events: Vec<Event>,
+    pub(crate) events: Vec<ObjectEvent>,
     /// \[s\]
     pub(crate) time: f64,
     /// \[1\] Normal of the ground, if it is tilted.

@@ -1,6 +1,6 @@
 //! Objects in time: what is planned happens, but never to an object that is touched.
 
-use environment::{Environment, Event, Mesh, Object, Pose, Schedule, Surface};
+use environment::{Environment, Mesh, Object, ObjectEvent, Pose, Schedule, Surface};
 
 fn at(x: f64) -> Pose {
     Pose::new([x, 0.0, 0.05], [0.0; 3])
@@ -21,12 +21,12 @@ fn appears_moves_and_vanishes() {
     let mut environment = cube(Schedule::new(1.0, 5.0, at(0.0), &[(2.0, at(0.0)), (4.0, at(1.0))]));
     assert_eq!(environment.query([0.0, 0.0, 0.05]).surface, Surface::Ground);
     assert_eq!(environment.advance(0.5, &[false], &[]), &[]);
-    assert_eq!(environment.advance(1.0, &[false], &[]), &[Event::Appeared(0)]);
+    assert_eq!(environment.advance(1.0, &[false], &[]), &[ObjectEvent::Appeared(0)]);
     assert_eq!(on_top(&environment, 0.0), Surface::Object(0));
     assert_eq!(environment.advance(3.0, &[false], &[]), &[]);
     assert!((environment.objects()[0].pose().position.x - 0.5).abs() < 1e-15);
     assert_eq!((on_top(&environment, 0.0), on_top(&environment, 0.5)), (Surface::Ground, Surface::Object(0)));
-    assert_eq!(environment.advance(5.0, &[false], &[]), &[Event::Vanished(0)]);
+    assert_eq!(environment.advance(5.0, &[false], &[]), &[ObjectEvent::Vanished(0)]);
     assert!(!environment.objects()[0].is_present());
 }
 
@@ -45,8 +45,8 @@ fn a_touched_object_waits() {
         last = x;
     }
     let (vanished, rest) = events.split_last().unwrap();
-    assert_eq!(rest, [(26, Event::Refused(0)), (36, Event::Resumed(0))]);
-    assert!(vanished.1 == Event::Vanished(0) && (60..=61).contains(&vanished.0), "{vanished:?}");
+    assert_eq!(rest, [(26, ObjectEvent::Refused(0)), (36, ObjectEvent::Resumed(0))]);
+    assert!(vanished.1 == ObjectEvent::Vanished(0) && (60..=61).contains(&vanished.0), "{vanished:?}");
 }
 
 /// Standing on something that does not change is no reason to refuse anything.
@@ -68,7 +68,10 @@ fn it_does_not_appear_around_a_foot_nor_run_into_it() {
         let nodes: &[[f64; 3]] = if i < 30 { &node } else { &[] };
         events.extend(environment.advance(0.0625 * f64::from(i), &[false], nodes).iter().map(|e| (i, *e)));
     }
-    assert_eq!(events, [(16, Event::Refused(0)), (30, Event::Resumed(0)), (30, Event::Appeared(0))]);
+    assert_eq!(
+        events,
+        [(16, ObjectEvent::Refused(0)), (30, ObjectEvent::Resumed(0)), (30, ObjectEvent::Appeared(0))]
+    );
 
     let mut environment = cube(Schedule::new(0.0, f64::INFINITY, at(-1.0), &[(1.0, at(1.0))]));
     for i in 0..100 {

@@ -2,7 +2,7 @@
 //! argument reads that candump log instead and prints what stands in it. Used by `tests/peers/candump.sh`.
 
 use fieldbus::candump;
-use fieldbus::capture::{Capture, Captured, ERROR, EXTENDED, FD_LENGTHS, Form, REMOTE};
+use fieldbus::capture::{Capture, Captured, ERROR, EXTENDED, FD_LENGTHS, FrameType, REMOTE};
 use fieldbus::text_log::{self, Strictness};
 use std::error::Error;
 use std::fmt::Write;
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Every length of classic, remote and CAN FD frames with short and long identifiers, and error frames.
 fn ours() -> Capture {
     let mut capture = Capture::default();
-    let mut add = |line: &str, id: u32, len: usize, form: Form| {
+    let mut add = |line: &str, id: u32, len: usize, form: FrameType| {
         let line = capture.line(line);
         let mut data = [0; 64];
         if id & (REMOTE | ERROR) != REMOTE {
@@ -37,18 +37,18 @@ fn ours() -> Capture {
     };
     for len in 0..=8 {
         for id in [0x123, 0x7ff, EXTENDED | 0x123, EXTENDED | 0x1fff_ffff] {
-            add("vcan0", id, len, Form::CLASSIC);
-            add("vcan1", id | REMOTE, len, Form::CLASSIC);
+            add("vcan0", id, len, FrameType::CLASSIC);
+            add("vcan1", id | REMOTE, len, FrameType::CLASSIC);
         }
     }
     for len in FD_LENGTHS {
         for flags in [0, 1, 2, 3] {
-            add("vcan0", 0x222, len, Form::Fd { flags });
-            add("vcan1", EXTENDED | 0x222, len, Form::Fd { flags });
+            add("vcan0", 0x222, len, FrameType::Fd { flags });
+            add("vcan1", EXTENDED | 0x222, len, FrameType::Fd { flags });
         }
     }
-    add("vcan0", ERROR | 0x40, 8, Form::CLASSIC);
-    add("vcan1", ERROR | 0x204, 8, Form::CLASSIC);
+    add("vcan0", ERROR | 0x40, 8, FrameType::CLASSIC);
+    add("vcan1", ERROR | 0x204, 8, FrameType::CLASSIC);
     capture
 }
 
@@ -58,8 +58,8 @@ fn listed(capture: &Capture) -> String {
     for f in &capture.frames {
         let is = |flag: u32| u8::from(f.id & flag != 0);
         let (fd, flags) = match f.form {
-            Form::Classic { .. } => (0, 0),
-            Form::Fd { flags } => (1, flags),
+            FrameType::Classic { .. } => (0, 0),
+            FrameType::Fd { flags } => (1, flags),
         };
         let data: String = f.payload().iter().map(|byte| format!("{byte:02x}")).collect();
         let _ = writeln!(

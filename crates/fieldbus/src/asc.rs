@@ -13,7 +13,8 @@
 //! frames and left out.
 
 use crate::capture::{
-    BASE_BITS, CLASSIC_BYTES, Capture, Captured, EXTENDED, EXTENDED_BITS, FD_LENGTHS, Form, REMOTE, Way,
+    BASE_BITS, CLASSIC_BYTES, Capture, CaptureDirection, Captured, EXTENDED, EXTENDED_BITS, FD_LENGTHS,
+    FrameType, REMOTE,
 };
 use crate::text_log::{self, BrokenLines, Format, bytes, error_frame, fixed, number};
 use std::borrow::Cow;
@@ -105,10 +106,10 @@ impl Asc {
         let len = CLASSIC_BYTES.min(code as usize);
         let frame = match (kind, length) {
             ("r" | "R", _) => {
-                Captured { id: id | REMOTE, len: len as u8, form: Form::CLASSIC, ..error_frame() }
+                Captured { id: id | REMOTE, len: len as u8, form: FrameType::CLASSIC, ..error_frame() }
             }
             ("d" | "D", Some(_)) => {
-                let form = Form::Classic { code: if code > 8 { code as u8 } else { 0 } };
+                let form = FrameType::Classic { code: if code > 8 { code as u8 } else { 0 } };
                 Captured { id, len: len as u8, data: bytes(words, len, self.base)?, form, ..error_frame() }
             }
             _ => return Err(format!("`{kind}`: d and a length, or r must stand behind the direction")),
@@ -145,12 +146,14 @@ impl Asc {
         let flags = words.nth(2).and_then(|word| number(word, 16)).unwrap_or(FLAG_FD);
         // Such lines hold classic frames, too.
         let (id, len, form) = match flags {
-            _ if flags & FLAG_REMOTE != 0 => (id | REMOTE, CLASSIC_BYTES.min(code as usize), Form::CLASSIC),
-            _ if flags & FLAG_FD != 0 => (id, len, Form::Fd { flags: 4 | switch | state << 1 }),
+            _ if flags & FLAG_REMOTE != 0 => {
+                (id | REMOTE, CLASSIC_BYTES.min(code as usize), FrameType::CLASSIC)
+            }
+            _ if flags & FLAG_FD != 0 => (id, len, FrameType::Fd { flags: 4 | switch | state << 1 }),
             _ if len > CLASSIC_BYTES => {
                 return Err(format!("{len} bytes of data in a classic frame, at most 8"));
             }
-            _ => (id, len, Form::CLASSIC),
+            _ => (id, len, FrameType::CLASSIC),
         };
         Ok(Some((channel, Captured { id, len: len as u8, data, form, way: Some(way), ..error_frame() })))
     }
@@ -168,10 +171,10 @@ impl Asc {
 }
 
 /// Direction; none for what was only asked to be sent.
-fn way(word: Option<&str>) -> Result<Option<Way>, String> {
+fn way(word: Option<&str>) -> Result<Option<CaptureDirection>, String> {
     match word.unwrap_or_default().to_ascii_lowercase().as_str() {
-        "rx" => Ok(Some(Way::Received)),
-        "tx" => Ok(Some(Way::Sent)),
+        "rx" => Ok(Some(CaptureDirection::Received)),
+        "tx" => Ok(Some(CaptureDirection::Sent)),
         "txrq" => Ok(None),
         other => Err(format!("`{other}` stands where Rx or Tx must")),
     }

@@ -5,7 +5,7 @@
 //! stand delimiters, acknowledgement, end of frame and the three bits before the next frame, never stuffed.
 
 use crate::capture::{
-    BASE_BITS, BIT_RATE_SWITCH, Captured, ERROR, EXTENDED, EXTENDED_BITS, FD_LENGTHS, Form, REMOTE,
+    BASE_BITS, BIT_RATE_SWITCH, Captured, ERROR, EXTENDED, EXTENDED_BITS, FD_LENGTHS, FrameType, REMOTE,
 };
 
 /// Checksum delimiter, acknowledgement and its delimiter, end of frame (7), intermission (3).
@@ -81,8 +81,8 @@ pub fn of(frame: &Captured) -> Bits {
         return Bits::default();
     }
     match frame.form {
-        Form::Classic { code } => Bits { nominal: classic(frame, code), data: 0 },
-        Form::Fd { flags } => fd(frame, flags),
+        FrameType::Classic { code } => Bits { nominal: classic(frame, code), data: 0 },
+        FrameType::Fd { flags } => fd(frame, flags),
     }
 }
 
@@ -138,7 +138,7 @@ fn fd(frame: &Captured, flags: u8) -> Bits {
 mod tests {
     use super::*;
 
-    fn frame(id: u32, data: &[u8], form: Form) -> Captured {
+    fn frame(id: u32, data: &[u8], form: FrameType) -> Captured {
         let mut bytes = [0; 64];
         bytes[..data.len()].copy_from_slice(data);
         Captured { time_ns: 0, line: 0, id, len: data.len() as u8, data: bytes, form, way: None }
@@ -168,7 +168,7 @@ mod tests {
             for (id, fixed, stuffed) in
                 [(random() & BASE_BITS, 47, 34), (random() & EXTENDED_BITS | EXTENDED, 67, 54)]
             {
-                let bits = of(&frame(id, &data, Form::CLASSIC)).nominal;
+                let bits = of(&frame(id, &data, FrameType::CLASSIC)).nominal;
                 let bare = fixed + 8 * n as u32;
                 assert!(
                     bits >= bare && bits <= bare + (stuffed + 8 * n as u32 - 1) / 4,
@@ -184,19 +184,19 @@ mod tests {
     /// the run, so that one stands behind every five of them: 6.
     #[test]
     fn a_frame_of_zeros_is_stuffed_as_counted_by_hand() {
-        assert_eq!(of(&frame(0, &[], Form::CLASSIC)).nominal, 47 + 6);
+        assert_eq!(of(&frame(0, &[], FrameType::CLASSIC)).nominal, 47 + 6);
     }
 
     #[test]
     fn an_fd_frame_of_64_bytes_has_the_bits_of_the_standard() {
         // Alternating bits: no stuff bits in the data. Identifier 555, bits 10101010101, behind dominant start: none.
-        let alternating = frame(0x555, &[0x55; 64], Form::Fd { flags: BIT_RATE_SWITCH });
+        let alternating = frame(0x555, &[0x55; 64], FrameType::Fd { flags: BIT_RATE_SWITCH });
         let bits = of(&alternating);
         // Start, identifier, 5 control bits up to the switch, tail; error state, length (1111), data, 25 checked + 7.
         assert_eq!(bits, Bits { nominal: 1 + 11 + 5 + TAIL, data: 1 + 4 + 512 + 32 });
-        let slow = of(&frame(0x555, &[0x55; 64], Form::Fd { flags: 0 }));
+        let slow = of(&frame(0x555, &[0x55; 64], FrameType::Fd { flags: 0 }));
         assert_eq!((slow.nominal, slow.data), (bits.nominal + bits.data, 0));
-        assert_eq!(of(&frame(0x555, &[0x55; 16], Form::Fd { flags: 1 })).data, 1 + 4 + 128 + 21 + 6);
+        assert_eq!(of(&frame(0x555, &[0x55; 16], FrameType::Fd { flags: 1 })).data, 1 + 4 + 128 + 21 + 6);
     }
 
     #[test]

@@ -25,13 +25,13 @@ pub fn parse(from: impl BufRead) -> io::Result<(Capture, BrokenLines)> {
 }
 
 /// Writes the lines of a recording.
-pub struct Writer<W: Write> {
+pub struct CandumpWriter<W: Write> {
     to: W,
     width: usize,
     text: String,
 }
 
-impl<W: Write> Writer<W> {
+impl<W: Write> CandumpWriter<W> {
     /// A writer for frames of these interfaces.
     pub fn new<S: AsRef<str>>(to: W, lines: &[S]) -> Self {
         let width = lines.iter().map(|name| name.as_ref().len()).max().unwrap_or(0);
@@ -63,7 +63,7 @@ impl<W: Write> Writer<W> {
 /// # Errors
 /// Writing failed.
 pub fn write(to: impl Write, capture: &Capture) -> io::Result<()> {
-    let mut writer = Writer::new(to, &capture.lines);
+    let mut writer = CandumpWriter::new(to, &capture.lines);
     for frame in &capture.frames {
         writer.write(&capture.lines[frame.line as usize], frame)?;
     }

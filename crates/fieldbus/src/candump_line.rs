@@ -10,7 +10,8 @@
 //! | way | ` R` or ` T` at the end, of `candump -x` |
 
 use crate::capture::{
-    BASE_BITS, CLASSIC_BYTES, Captured, ERROR, EXTENDED, EXTENDED_BITS, FD_LENGTHS, Form, REMOTE, Way,
+    BASE_BITS, CLASSIC_BYTES, CaptureDirection, Captured, ERROR, EXTENDED, EXTENDED_BITS, FD_LENGTHS,
+    FrameType, REMOTE,
 };
 use std::fmt::Write;
 
@@ -65,15 +66,15 @@ fn interface(word: &str) -> Parsed<&str> {
         .ok_or_else(|| format!("`{word}` is not the name of an interface (at most {LONGEST_NAME} letters)"))
 }
 
-fn way(word: &str) -> Parsed<Way> {
+fn way(word: &str) -> Parsed<CaptureDirection> {
     match word {
-        "R" => Ok(Way::Received),
-        "T" => Ok(Way::Sent),
+        "R" => Ok(CaptureDirection::Received),
+        "T" => Ok(CaptureDirection::Sent),
         _ => Err(format!("`{word}` stands behind the frame: only R (received) or T (sent) may")),
     }
 }
 
-type FrameParts = (u32, u8, [u8; 64], Form);
+type FrameParts = (u32, u8, [u8; 64], FrameType);
 
 /// `ID#DATA`, `ID#R4`, `ID##1DATA`.
 fn parse_frame(word: &str) -> Parsed<FrameParts> {
@@ -115,7 +116,7 @@ fn parse_fd(id: u32, text: &str) -> Parsed<FrameParts> {
     if !FD_LENGTHS.contains(&len) {
         return Err(format!("no CAN FD frame has {len} bytes (0 to 8, 12, 16, 20, 24, 32, 48, 64)"));
     }
-    Ok((id, len as u8, data, Form::Fd { flags: flags as u8 }))
+    Ok((id, len as u8, data, FrameType::Fd { flags: flags as u8 }))
 }
 
 fn parse_remote(id: u32, text: &str) -> Parsed<FrameParts> {
@@ -124,7 +125,7 @@ fn parse_remote(id: u32, text: &str) -> Parsed<FrameParts> {
     }
     let len = if text.is_empty() { Some(0) } else { hex_number(text) };
     match len {
-        Some(len) if len <= 8 && text.len() <= 1 => Ok((id | REMOTE, len as u8, [0; 64], Form::CLASSIC)),
+        Some(len) if len <= 8 && text.len() <= 1 => Ok((id | REMOTE, len as u8, [0; 64], FrameType::CLASSIC)),
         _ => Err(format!("`R{text}`: a remote frame asks for 0 to 8 bytes")),
     }
 }
@@ -141,7 +142,7 @@ fn parse_classic(id: u32, text: &str) -> Parsed<FrameParts> {
     if id & ERROR != 0 && len != CLASSIC_BYTES {
         return Err(format!("an error frame has 8 bytes, not {len}"));
     }
-    Ok((id, len as u8, data, Form::Classic { code }))
+    Ok((id, len as u8, data, FrameType::Classic { code }))
 }
 
 /// Bytes in hex digits, at most `most` of them.
@@ -180,8 +181,8 @@ pub fn write(text: &mut String, name: &str, width: usize, frame: &Captured) {
     let _ = write!(text, "({seconds:010}.{micros:06}) {name:>width$} ");
     write_frame(text, frame);
     match frame.way {
-        Some(Way::Received) => text.push_str(" R"),
-        Some(Way::Sent) => text.push_str(" T"),
+        Some(CaptureDirection::Received) => text.push_str(" R"),
+        Some(CaptureDirection::Sent) => text.push_str(" T"),
         None => {}
     }
 }
@@ -201,13 +202,13 @@ pub(crate) fn write_frame(text: &mut String, frame: &Captured) {
         }
         return;
     }
-    if let Form::Fd { flags } = frame.form {
+    if let FrameType::Fd { flags } = frame.form {
         let _ = write!(text, "#{:X}", flags & 0xf);
     }
     for byte in frame.payload() {
         let _ = write!(text, "{byte:02X}");
     }
-    if let Form::Classic { code: code @ 9..=15 } = frame.form {
+    if let FrameType::Classic { code: code @ 9..=15 } = frame.form {
         let _ = write!(text, "_{code:X}");
     }
 }

@@ -23,7 +23,7 @@ pub const FD_LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 
 
 /// Form of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum FrameType {
     /// CAN 2.0: up to 8 bytes. `code`: the length code on the wire if it was above 8 (9 to 15), else 0.
     Classic {
         /// Raw length code.
@@ -36,14 +36,14 @@ pub enum Form {
     },
 }
 
-impl Form {
+impl FrameType {
     /// An ordinary classic frame.
     pub const CLASSIC: Self = Self::Classic { code: 0 };
 }
 
 /// Which way a frame went through the interface that recorded it, if the recording says so (`candump -x`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum CaptureDirection {
     /// Came from the line.
     Received,
     /// Went to the line.
@@ -64,14 +64,14 @@ pub struct Captured {
     /// Payload, zeros behind its end.
     pub data: [u8; 64],
     /// Classic or FD.
-    pub form: Form,
+    pub form: FrameType,
     /// Its way, if known.
-    pub way: Option<Way>,
+    pub way: Option<CaptureDirection>,
 }
 
 impl Captured {
     /// A frame of a bus cycle: classic or with the flags of CAN FD.
-    pub fn of(frame: &Frame, time_ns: u64, form: Form) -> Self {
+    pub fn of(frame: &Frame, time_ns: u64, form: FrameType) -> Self {
         let len = frame.len.min(64) as u8;
         Self { time_ns, line: frame.line, id: frame.id, len, data: frame.data, form, way: None }
     }

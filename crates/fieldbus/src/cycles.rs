@@ -5,13 +5,13 @@
 
 use crate::capture::{Capture, Captured};
 use crate::owners::Owners;
-use codec::layout::{Layout, Message};
+use codec::layout::{BusMessage, FrameLayout};
 use messages::{BusFrames, Header};
 use std::collections::BTreeMap;
 
 /// Frames of one node in one cycle: indices in [`Capture::frames`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Exchange {
+pub struct NodeExchange {
     /// To the drives, SYNC last.
     pub told: Vec<u32>,
     /// From the drives.
@@ -22,7 +22,7 @@ pub struct Exchange {
 #[derive(Clone, Debug, Default)]
 pub struct Cycles {
     /// By node, then by tick.
-    nodes: Vec<BTreeMap<u64, Exchange>>,
+    nodes: Vec<BTreeMap<u64, NodeExchange>>,
     /// Frames to drives behind the last SYNC.
     pub unfinished: usize,
     /// Frames that the layout does not know; they stand among the answers.
@@ -46,14 +46,14 @@ impl Unwrapped {
 }
 
 /// Counter of a frame, and its bits.
-pub fn counter(message: &Message, frame: &Captured) -> Option<(u64, u32)> {
+pub fn counter(message: &BusMessage, frame: &Captured) -> Option<(u64, u32)> {
     let signal = message.counter()?;
     (u32::from(frame.len) == message.len).then(|| (signal.get(&frame.data) as u64, signal.bits))
 }
 
 impl Cycles {
     /// Sorts a recording.
-    pub fn of(layout: &Layout, owners: &Owners, capture: &Capture) -> Self {
+    pub fn of(layout: &FrameLayout, owners: &Owners, capture: &Capture) -> Self {
         let mut sorter = vec![Sorter::default(); layout.nodes.len()];
         let mut unknown = 0;
         for (i, frame) in capture.frames.iter().enumerate() {
@@ -87,7 +87,7 @@ impl Cycles {
     }
 
     /// Frames of a node in a cycle.
-    pub fn exchange(&self, node: usize, tick: u64) -> Option<&Exchange> {
+    pub fn exchange(&self, node: usize, tick: u64) -> Option<&NodeExchange> {
         self.nodes.get(node)?.get(&tick)
     }
 
@@ -101,7 +101,7 @@ impl Cycles {
         self.frames(capture, tick, |exchange| &exchange.told)
     }
 
-    fn frames(&self, capture: &Capture, tick: u64, which: impl Fn(&Exchange) -> &Vec<u32>) -> BusFrames {
+    fn frames(&self, capture: &Capture, tick: u64, which: impl Fn(&NodeExchange) -> &Vec<u32>) -> BusFrames {
         let mut frames = BusFrames { header: Header { tick, ..Header::default() }, ..BusFrames::default() };
         for node in 0..self.nodes.len() {
             for i in self.exchange(node, tick).map_or(&[][..], |exchange| which(exchange)) {
@@ -121,11 +121,11 @@ struct Sorter {
     told: Vec<u32>,
     /// Answers before the first SYNC.
     early: Vec<u32>,
-    ticks: BTreeMap<u64, Exchange>,
+    ticks: BTreeMap<u64, NodeExchange>,
 }
 
 impl Sorter {
-    fn take(&mut self, message: &Message, frame: &Captured, i: u32) {
+    fn take(&mut self, message: &BusMessage, frame: &Captured, i: u32) {
         if !message.to_drives {
             return self.answered(i);
         }
@@ -153,7 +153,7 @@ impl Sorter {
     }
 
     /// The first cycle may be asked for and answered more than once, until both ends are there: repetitions count once.
-    fn finish(mut self, capture: &Capture) -> BTreeMap<u64, Exchange> {
+    fn finish(mut self, capture: &Capture) -> BTreeMap<u64, NodeExchange> {
         if let Some(mut first) = self.ticks.first_entry() {
             let content = |i: u32| {
                 let frame = &capture.frames[i as usize];

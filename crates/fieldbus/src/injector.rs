@@ -12,8 +12,8 @@
 //!   of all heavily disturbed frames that CAN's checksum of 15 bits promises.
 //! - On other buses than CAN there are no such controllers; the faults of frames are the same.
 
-use codec::layout::Layout;
-use config::bus_fault::{BusFault, FaultKind, MOST_LATE, Way};
+use codec::layout::FrameLayout;
+use config::bus_fault::{BusFault, FaultKind, FrameDirection, MOST_LATE};
 use messages::bus::MAX_FRAMES;
 use messages::{BusFrames, ERROR_FLAG, Frame};
 
@@ -52,7 +52,7 @@ struct Active {
 
 /// The two bus controllers of a line, and what happens to it now.
 #[derive(Clone, Debug, Default)]
-struct Line {
+struct FaultyLine {
     near: ErrorCounters,
     far: ErrorCounters,
     /// Last message to lowlevel.
@@ -67,7 +67,7 @@ struct Line {
 
 /// A frame on its way to a later cycle.
 #[derive(Clone, Debug)]
-struct Held {
+struct DelayedFrame {
     due: u64,
     frame: Frame,
 }
@@ -76,12 +76,12 @@ struct Held {
 #[derive(Clone, Debug)]
 pub struct Injector {
     faults: Vec<Active>,
-    lines: Vec<Line>,
+    lines: Vec<FaultyLine>,
     /// \[1\] Cycles that 128 times 11 bits take.
     recovery: u64,
     random: u64,
     /// By way.
-    held: [Vec<Held>; 2],
+    held: [Vec<DelayedFrame>; 2],
     out: [BusFrames; 2],
     injected: Injected,
 }
@@ -92,7 +92,12 @@ impl Injector {
     ///
     /// # Errors
     /// A fault names a node that the layout does not have.
-    pub fn new(faults: &[BusFault], layout: &Layout, cycle: f64, seed: u64) -> Result<Option<Self>, String> {
+    pub fn new(
+        faults: &[BusFault],
+        layout: &FrameLayout,
+        cycle: f64,
+        seed: u64,
+    ) -> Result<Option<Self>, String> {
         let faults: Vec<Active> =
             faults.iter().map(|fault| Active::new(fault, layout, cycle)).collect::<Result<_, _>>()?;
         if faults.is_empty() {
@@ -102,7 +107,7 @@ impl Injector {
         let room = || Vec::with_capacity(MAX_FRAMES * latest);
         Ok(Some(Self {
             faults,
-            lines: vec![Line::default(); layout.nodes.len()],
+            lines: vec![FaultyLine::default(); layout.nodes.len()],
             recovery: (f64::from(RECOVERY_BITS) / BIT_RATE / cycle).ceil() as u64,
             random: seed,
             held: [room(), room()],
@@ -130,12 +135,12 @@ impl Injector {
     }
 
     /// Output at the other end for the frames sent in their header's cycle.
-    pub fn pass(&mut self, way: Way, frames: &BusFrames) -> &BusFrames {
+    pub fn pass(&mut self, way: FrameDirection, frames: &BusFrames) -> &BusFrames {
         let (tick, w) = (frames.header.tick, way as usize);
         let mut out = std::mem::take(&mut self.out[w]);
         out.header = frames.header;
         out.count = 0;
-        if way == Way::ToDrives {
+        if way == FrameDirection::ToDrives {
             self.begin(tick);
         }
         self.begin_bursts(way, tick);
@@ -144,7 +149,7 @@ impl Injector {
             self.send(way, tick, *frame, &mut out);
         }
         self.reorder(way, tick, &mut out);
-        if way == Way::FromDrives {
+        if way == FrameDirection::FromDrives {
             self.tell_errors(&mut out);
         }
         self.out[w] = out;
@@ -172,7 +177,7 @@ impl Injector {
     }
 
     /// The first fault of a kind on a line in this cycle.
-    fn any(&self, kind: FaultKind, way: Option<Way>, line: u32, tick: u64) -> Option<&BusFault> {
+    fn any(&self, kind: FaultKind, way: Option<FrameDirection>, line: u32, tick: u64) -> Option<&BusFault> {
         let holds = |f: &&Active| {
             f.fault.kind == kind
                 && (f.ticks[0]..f.ticks[1]).contains(&tick)
@@ -183,13 +188,13 @@ impl Injector {
     }
 
     /// Whether a fault of a kind strikes: its probability, and its cycles.
-    fn strikes(&mut self, kind: FaultKind, way: Way, line: u32, tick: u64) -> Option<u32> {
+    fn strikes(&mut self, kind: FaultKind, way: FrameDirection, line: u32, tick: u64) -> Option<u32> {
         let fault = self.any(kind, Some(way), line, tick)?;
         let (share, cycles) = (fault.share, fault.cycles);
         (self.chance() < share).then_some(cycles)
     }
 
-    fn send(&mut self, way: Way, tick: u64, mut frame: Frame, out: &mut BusFrames) {
+    fn send(&mut self, way: FrameDirection, tick: u64, mut frame: Frame, out: &mut BusFrames) {
         if self.is_lost(way, tick, frame.line) {
             self.injected.lost += 1;
             return;
@@ -215,7 +220,7 @@ impl Injector {
     }
 
     /// Whether a frame never arrives, and what the controllers of its line make of it.
-    fn is_lost(&mut self, way: Way, tick: u64, line: u32) -> bool {
+    fn is_lost(&mut self, way: FrameDirection, tick: u64, line: u32) -> bool {
         let i = line as usize;
         match self.lines.get(i) {
             None => return false,
@@ -236,7 +241,7 @@ impl Injector {
     }
 
     /// Losses without an error: single frames, or all of a line for some cycles.
-    fn vanishes(&mut self, way: Way, tick: u64, i: usize) -> bool {
+    fn vanishes(&mut self, way: FrameDirection, tick: u64, i: usize) -> bool {
         if tick < self.lines[i].burst[way as usize] {
             return true;
         }
@@ -246,7 +251,7 @@ impl Injector {
     }
 
     /// Losses of some cycles: one draw per line and cycle.
-    fn begin_bursts(&mut self, way: Way, tick: u64) {
+    fn begin_bursts(&mut self, way: FrameDirection, tick: u64) {
         for i in 0..self.lines.len() {
             let burst = self.any(FaultKind::Lost, Some(way), i as u32, tick).filter(|f| f.cycles > 0);
             let Some((share, cycles)) = burst.map(|f| (f.share, f.cycles)) else { continue };
@@ -268,17 +273,17 @@ impl Injector {
     }
 
     /// A frame that finds no room is lost.
-    fn hold(&mut self, way: Way, due: u64, frame: Frame) {
+    fn hold(&mut self, way: FrameDirection, due: u64, frame: Frame) {
         let held = &mut self.held[way as usize];
         if held.len() < held.capacity() {
-            held.push(Held { due, frame });
+            held.push(DelayedFrame { due, frame });
         } else {
             self.injected.lost += 1;
         }
     }
 
     /// What was held back comes before what is sent now, in the order it was sent.
-    fn deliver_held(&mut self, way: Way, tick: u64, out: &mut BusFrames) {
+    fn deliver_held(&mut self, way: FrameDirection, tick: u64, out: &mut BusFrames) {
         let Self { held, lines, injected, .. } = self;
         held[way as usize].retain(|held| {
             if held.due > tick {
@@ -293,7 +298,7 @@ impl Injector {
     }
 
     /// Swaps frames of the same line (Fisher and Yates).
-    fn reorder(&mut self, way: Way, tick: u64, out: &mut BusFrames) {
+    fn reorder(&mut self, way: FrameDirection, tick: u64, out: &mut BusFrames) {
         for line in 0..self.lines.len() as u32 {
             if self.strikes(FaultKind::Reordered, way, line, tick).is_none() {
                 continue;
@@ -344,7 +349,7 @@ impl Injector {
 }
 
 impl Active {
-    fn new(fault: &BusFault, layout: &Layout, cycle: f64) -> Result<Self, String> {
+    fn new(fault: &BusFault, layout: &FrameLayout, cycle: f64) -> Result<Self, String> {
         let line = |name: &String| match layout.nodes.iter().position(|node| node == name) {
             Some(i) => Ok(i as u32),
             None => Err(format!("no node `{name}` on the bus; there is {}", layout.nodes.join(", "))),
@@ -368,28 +373,28 @@ impl Active {
     }
 }
 
-impl Line {
+impl FaultyLine {
     /// Whether one of the two controllers has left the bus.
     fn is_off(&self) -> bool {
         self.near.state() == ErrorState::Off || self.far.state() == ErrorState::Off
     }
 
     /// A frame to a cable that ends nowhere.
-    fn not_acknowledged(&mut self, way: Way) {
+    fn not_acknowledged(&mut self, way: FrameDirection) {
         match way {
-            Way::ToDrives => {
+            FrameDirection::ToDrives => {
                 self.near.not_acknowledged();
                 self.erred[1] = true;
             }
-            Way::FromDrives => self.far.not_acknowledged(),
+            FrameDirection::FromDrives => self.far.not_acknowledged(),
         }
     }
 
     /// A frame on the wire, destroyed or not.
-    fn transfer(&mut self, way: Way, destroyed: bool) {
+    fn transfer(&mut self, way: FrameDirection, destroyed: bool) {
         let (sender, receiver) = match way {
-            Way::ToDrives => (&mut self.near, &mut self.far),
-            Way::FromDrives => (&mut self.far, &mut self.near),
+            FrameDirection::ToDrives => (&mut self.near, &mut self.far),
+            FrameDirection::FromDrives => (&mut self.far, &mut self.near),
         };
         if destroyed {
             sender.failed_to_send();

@@ -30,8 +30,8 @@ pub mod tap;
 pub mod text_log;
 pub mod trc;
 
-pub use capture::{Capture, Captured, Form, Way};
+pub use capture::{Capture, CaptureDirection, Captured, FrameType};
 pub use error_counters::ErrorCounters;
 pub use error_frame::{ErrorFrame, ErrorState};
 pub use injector::Injector;
-pub use lines::{End, Lines, Trouble};
+pub use lines::{BusEnd, BusLines, LineTrouble};

@@ -1,13 +1,13 @@
 //! The CAN lines of a robot: one end of them, over SocketCAN.
 //!
-//! After [`Lines::open`] nothing allocates and, but for [`Lines::wait`], nothing blocks.
+//! After [`BusLines::open`] nothing allocates and, but for [`BusLines::wait`], nothing blocks.
 
 use std::io::{self, ErrorKind};
 use std::os::fd::AsFd;
 use std::time::Duration;
 
 use crate::interface::{self, InterfaceError};
-use codec::layout::{Layout, MAX_NODES};
+use codec::layout::{FrameLayout, MAX_NODES};
 use messages::{BusFrames, ERROR_FLAG, Frame, MAX_FRAMES};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use socketcan::{
@@ -24,7 +24,7 @@ const BUFFER: usize = 1 << 20;
 
 /// Which end of the lines this is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum BusEnd {
     /// Lowlevel.
     Near,
     /// The drives.
@@ -33,7 +33,7 @@ pub enum End {
 
 /// Failures since the last check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Trouble {
+pub struct LineTrouble {
     /// \[1\] Frames that could not be sent.
     pub unsent: u32,
     /// Lines (bits) whose interface is down.
@@ -41,15 +41,15 @@ pub struct Trouble {
 }
 
 /// One end of all lines.
-pub struct Lines {
+pub struct BusLines {
     sockets: Vec<CanFdSocket>,
     /// Whether all lines share one interface: then the identifier says which line a frame is of.
-    shared: Option<Layout>,
+    shared: Option<FrameLayout>,
     fd: bool,
-    trouble: Trouble,
+    trouble: LineTrouble,
 }
 
-impl Lines {
+impl BusLines {
     /// Opens one interface per node of the layout, or one for all.
     ///
     /// # Errors
@@ -57,9 +57,9 @@ impl Lines {
     /// nor as many interfaces as nodes.
     pub fn open(
         interfaces: &[String],
-        layout: &Layout,
+        layout: &FrameLayout,
         fd: bool,
-        end: End,
+        end: BusEnd,
     ) -> Result<Self, Box<dyn std::error::Error>> {
         let nodes = layout.nodes.len();
         let shared = interfaces.len() == 1 && nodes > 1;
@@ -77,12 +77,12 @@ impl Lines {
         }
         let mut sockets = Vec::new();
         for (line, interface) in interfaces.iter().enumerate() {
-            let wanted = layout.messages.iter().filter(|m| m.to_drives == (end == End::Far));
+            let wanted = layout.messages.iter().filter(|m| m.to_drives == (end == BusEnd::Far));
             let ids: Vec<CanFilter> =
                 wanted.filter(|m| shared || m.node == line).map(|m| CanFilter::new(m.id, 0x7ff)).collect();
             sockets.push(open(interface, &ids, fd)?);
         }
-        Ok(Self { sockets, shared: shared.then(|| layout.clone()), fd, trouble: Trouble::default() })
+        Ok(Self { sockets, shared: shared.then(|| layout.clone()), fd, trouble: LineTrouble::default() })
     }
 
     /// Sends the frames of a cycle; what a line cannot take is counted.
@@ -170,7 +170,7 @@ impl Lines {
     }
 
     /// Failures since the last call.
-    pub fn take_trouble(&mut self) -> Trouble {
+    pub fn take_trouble(&mut self) -> LineTrouble {
         std::mem::take(&mut self.trouble)
     }
 

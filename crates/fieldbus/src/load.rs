@@ -4,7 +4,7 @@
 //! until the next frame. CAN FD (ISO 11898-1:2015): arbitration phase of 30 bits, stuffed the same way, at the nominal rate;
 //! data phase of control, data, fixed stuff bits and CRC of 17 or 21 bits at the data rate.
 
-use codec::layout::{Layout, Message};
+use codec::layout::{BusMessage, FrameLayout};
 
 /// \[bit/s\] Of arbitration, and of all of classic CAN, on the lines of these robots.
 pub const BIT_RATE: f64 = 1e6;
@@ -43,8 +43,8 @@ pub(crate) fn classic_bits(n: u32) -> u32 {
 }
 
 /// Longest time \[s\] that all frames of one cycle take on each line.
-pub fn cycle_time(layout: &Layout, rates: Rates) -> Vec<f64> {
-    let on = |node: usize| layout.messages.iter().filter(move |m: &&Message| m.node == node);
+pub fn cycle_time(layout: &FrameLayout, rates: Rates) -> Vec<f64> {
+    let on = |node: usize| layout.messages.iter().filter(move |m: &&BusMessage| m.node == node);
     (0..layout.nodes.len()).map(|node| on(node).map(|m| frame_time(m.len, rates)).sum()).collect()
 }
 

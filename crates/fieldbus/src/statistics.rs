@@ -15,7 +15,7 @@ pub struct BitRates {
 
 /// Frames of one identifier on one line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Row {
+pub struct IdentifierStatistics {
     /// Frames.
     pub count: u64,
     /// Payload \[B\].
@@ -37,7 +37,7 @@ pub struct Row {
     counter: Option<u64>,
 }
 
-impl Row {
+impl IdentifierStatistics {
     /// \[s\] Mean time between two frames; 0 as long as none is known.
     pub fn mean(&self) -> f64 {
         if self.periods > 0 { self.span / self.periods as f64 } else { 0.0 }
@@ -82,7 +82,7 @@ pub struct LineTotal {
 #[derive(Clone, Debug)]
 pub struct Statistics {
     rates: BitRates,
-    rows: BTreeMap<(u32, u32), Row>,
+    rows: BTreeMap<(u32, u32), IdentifierStatistics>,
     lines: BTreeMap<u32, LineTotal>,
     /// \[ns\] Time before the last step of the clock.
     before_ns: u64,
@@ -129,7 +129,7 @@ impl Statistics {
     }
 
     /// (line, identifier) and its frames, in this order.
-    pub fn rows(&self) -> impl Iterator<Item = (u32, u32, &Row)> {
+    pub fn rows(&self) -> impl Iterator<Item = (u32, u32, &IdentifierStatistics)> {
         self.rows.iter().map(|((line, id), row)| (*line, *id, row))
     }
 

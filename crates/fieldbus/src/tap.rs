@@ -3,7 +3,7 @@
 //! Each interface is read by a thread of its own, so that nobody waits for a quiet line. Time stamps are those of the
 //! kernel (SO_TIMESTAMPNS, the clock candump stamps with): when the frame passed the socket layer.
 
-use crate::capture::{CLASSIC_BYTES, Captured, Form};
+use crate::capture::{CLASSIC_BYTES, Captured, FrameType};
 use crate::interface::{self, ENOBUFS, InterfaceError};
 use socketcan::frame::{can_frame_default, canfd_frame_default};
 use socketcan::{
@@ -112,8 +112,8 @@ impl Ear {
 /// A frame of a socket as it is recorded.
 fn captured(frame: &CanAnyFrame, line: u32, time_ns: u64) -> Captured {
     let form = match frame {
-        CanAnyFrame::Fd(fd) => Form::Fd { flags: fd.flags().bits() },
-        _ => Form::CLASSIC,
+        CanAnyFrame::Fd(fd) => FrameType::Fd { flags: fd.flags().bits() },
+        _ => FrameType::CLASSIC,
     };
     let mut data = [0; 64];
     let payload = if frame.is_remote_frame() { &[] } else { frame.data() };
@@ -125,12 +125,12 @@ fn captured(frame: &CanAnyFrame, line: u32, time_ns: u64) -> Captured {
 /// A recorded frame as a socket takes it. A length code above 8 becomes 8: the socket has no place for it.
 fn for_socket(frame: &Captured) -> CanAnyFrame {
     match frame.form {
-        Form::Fd { flags } => {
+        FrameType::Fd { flags } => {
             let mut raw = canfd_frame_default();
             (raw.can_id, raw.len, raw.flags, raw.data) = (frame.id, frame.len, flags, frame.data);
             CanFdFrame::from(raw).into()
         }
-        Form::Classic { .. } => {
+        FrameType::Classic { .. } => {
             let mut raw = can_frame_default();
             (raw.can_id, raw.can_dlc) = (frame.id, frame.len);
             raw.data.copy_from_slice(&frame.data[..CLASSIC_BYTES]);

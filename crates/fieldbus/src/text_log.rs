@@ -3,7 +3,7 @@
 //! Reading is strict: a file with one broken line is refused as a whole, and the error names all of them, because
 //! traffic that is not complete must not move a robot. [`Strictness::Lenient`] leaves broken lines out and tells.
 
-use crate::capture::{Capture, Captured, ERROR, Form};
+use crate::capture::{Capture, Captured, ERROR, FrameType};
 use crate::{asc, candump, trc};
 use std::borrow::Cow;
 use std::fmt;
@@ -202,7 +202,7 @@ fn skip_line(from: &mut impl BufRead) -> io::Result<()> {
 
 /// An error frame of a tool that keeps no class of it.
 pub(crate) fn error_frame() -> Captured {
-    Captured { time_ns: 0, line: 0, id: ERROR, len: 8, data: [0; 64], form: Form::CLASSIC, way: None }
+    Captured { time_ns: 0, line: 0, id: ERROR, len: 8, data: [0; 64], form: FrameType::CLASSIC, way: None }
 }
 
 /// `12.0345` in units of `10^-digits`; what stands further behind the point is cut off.

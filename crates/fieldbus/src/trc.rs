@@ -12,7 +12,8 @@
 //! no frames and left out.
 
 use crate::capture::{
-    BASE_BITS, CLASSIC_BYTES, Capture, Captured, EXTENDED, EXTENDED_BITS, FD_LENGTHS, Form, REMOTE, Way,
+    BASE_BITS, CLASSIC_BYTES, Capture, CaptureDirection, Captured, EXTENDED, EXTENDED_BITS, FD_LENGTHS,
+    FrameType, REMOTE,
 };
 use crate::text_log::{self, BrokenLines, Format, bytes, error_frame, fixed, number};
 use std::borrow::Cow;
@@ -86,8 +87,8 @@ impl Trc {
         data: impl Iterator<Item = &'a str>,
     ) -> Result<Option<Captured>, String> {
         let way = match way {
-            Some("Rx") => Some(Way::Received),
-            Some("Tx") => Some(Way::Sent),
+            Some("Rx") => Some(CaptureDirection::Received),
+            Some("Tx") => Some(CaptureDirection::Sent),
             Some("Warng") => return Ok(None),
             Some(other) => return Err(format!("`{other}` stands where Rx or Tx must")),
             None => None,
@@ -112,13 +113,13 @@ impl Trc {
         }
         let (len, form) = match kind {
             _ if !fd && of('l').is_none() => {
-                (len.min(CLASSIC_BYTES), Form::Classic { code: if code > 8 { code } else { 0 } })
+                (len.min(CLASSIC_BYTES), FrameType::Classic { code: if code > 8 { code } else { 0 } })
             }
-            _ if !fd => (len, Form::CLASSIC),
-            "FD" => (len, Form::Fd { flags: 4 }),
-            "FB" => (len, Form::Fd { flags: 4 | 1 }),
-            "BI" => (len, Form::Fd { flags: 4 | 2 }),
-            _ => (len, Form::Fd { flags: 4 | 1 | 2 }),
+            _ if !fd => (len, FrameType::CLASSIC),
+            "FD" => (len, FrameType::Fd { flags: 4 }),
+            "FB" => (len, FrameType::Fd { flags: 4 | 1 }),
+            "BI" => (len, FrameType::Fd { flags: 4 | 2 }),
+            _ => (len, FrameType::Fd { flags: 4 | 1 | 2 }),
         };
         let most = if fd { 64 } else { CLASSIC_BYTES };
         if len > most || !FD_LENGTHS.contains(&len) {

@@ -4,7 +4,7 @@ use fieldbus::candump;
 use fieldbus::capture::{ERROR, EXTENDED, FD_LENGTHS, REMOTE};
 use fieldbus::statistics::{BitRates, Statistics};
 use fieldbus::text_log::{self, Strictness, TextLogError};
-use fieldbus::{Capture, Captured, Form, Way, candump_line};
+use fieldbus::{Capture, CaptureDirection, Captured, FrameType, candump_line};
 use proptest::prelude::*;
 use std::path::PathBuf;
 
@@ -45,10 +45,10 @@ fn lines_of_can_utils_come_back_byte_for_byte() {
     assert_eq!((ids[4], capture.frames[4].len), (0x123 | REMOTE, 8));
     assert_eq!(ids[7], 0x1fff_ffff | EXTENDED);
     assert_eq!(ids[8], 4 | ERROR);
-    assert_eq!(capture.frames[5].form, Form::Classic { code: 14 });
-    assert_eq!(capture.frames[6].form, Form::Fd { flags: 3 });
+    assert_eq!(capture.frames[5].form, FrameType::Classic { code: 14 });
+    assert_eq!(capture.frames[6].form, FrameType::Fd { flags: 3 });
     assert_eq!(capture.frames[7].payload(), (0..12).collect::<Vec<u8>>());
-    assert_eq!(capture.frames[9].way, Some(Way::Received));
+    assert_eq!(capture.frames[9].way, Some(CaptureDirection::Received));
     assert_eq!(capture.frames[0].time_ns, 1_436_509_052_249_713_000);
 }
 
@@ -211,11 +211,13 @@ fn an_empty_file_and_a_missing_one_are_told_apart() {
 fn captured() -> impl Strategy<Value = Captured> {
     let id = prop_oneof![0..0x800u32, (0..0x2000_0000u32).prop_map(|id| id | EXTENDED)];
     let classic = (id.clone(), 0..=8usize, prop_oneof![4 => Just(0u8), 1 => 9..=15u8])
-        .prop_map(|(id, n, code)| (id, n, Form::Classic { code: if n == 8 { code } else { 0 } }));
-    let remote = (id.clone(), 0..=8usize).prop_map(|(id, n)| (id | REMOTE, n, Form::CLASSIC));
-    let error = (0..0x2000_0000u32).prop_map(|id| (id | ERROR, 8, Form::CLASSIC));
-    let fd = (id, 0..16usize, 0..16u8).prop_map(|(id, n, flags)| (id, FD_LENGTHS[n], Form::Fd { flags }));
-    let way = prop_oneof![Just(None), Just(Some(Way::Received)), Just(Some(Way::Sent))];
+        .prop_map(|(id, n, code)| (id, n, FrameType::Classic { code: if n == 8 { code } else { 0 } }));
+    let remote = (id.clone(), 0..=8usize).prop_map(|(id, n)| (id | REMOTE, n, FrameType::CLASSIC));
+    let error = (0..0x2000_0000u32).prop_map(|id| (id | ERROR, 8, FrameType::CLASSIC));
+    let fd =
+        (id, 0..16usize, 0..16u8).prop_map(|(id, n, flags)| (id, FD_LENGTHS[n], FrameType::Fd { flags }));
+    let way =
+        prop_oneof![Just(None), Just(Some(CaptureDirection::Received)), Just(Some(CaptureDirection::Sent))];
     let kind = prop_oneof![3 => classic, 1 => remote, 1 => error, 3 => fd];
     let bytes = proptest::collection::vec(any::<u8>(), 64);
     (kind, bytes, 0..4_000_000_000_000_000u64, 0..3u32, way).prop_map(

@@ -1,7 +1,7 @@
 //! Faults between the two ends of the bus: each does what its name says, to the frames and lines it is for, and nothing else.
 
-use codec::layout::{Carries, Layout, Message, Signal};
-use config::bus_fault::{BusFault, FaultKind, Way};
+use codec::layout::{BusMessage, BusSignal, Carries, FrameLayout};
+use config::bus_fault::{BusFault, FaultKind, FrameDirection};
 use fieldbus::{ErrorFrame, ErrorState, Injector};
 use messages::{BusFrames, Frame};
 
@@ -14,8 +14,8 @@ const CYCLE: f64 = 1e-3;
 const FRAMES: u32 = 3;
 const LINES: u32 = 4;
 
-fn layout() -> Layout {
-    let counter = Signal {
+fn layout() -> FrameLayout {
+    let counter = BusSignal {
         name: "counter".into(),
         start: 0,
         bits: 8,
@@ -24,7 +24,7 @@ fn layout() -> Layout {
         offset: 0.0,
         carries: Carries::Counter,
     };
-    let message = |node: u32, k: u32, to_drives: bool| Message {
+    let message = |node: u32, k: u32, to_drives: bool| BusMessage {
         name: format!("m{node}_{k}"),
         id: if to_drives { 0x100 } else { 0x200 } + k,
         len: 8,
@@ -34,16 +34,16 @@ fn layout() -> Layout {
     };
     let each = |to_drives| (0..LINES).flat_map(move |n| (0..FRAMES).map(move |k| (n, k, to_drives)));
     let messages = each(true).chain(each(false)).map(|(n, k, to)| message(n, k, to)).collect();
-    Layout::new((0..LINES).map(|n| format!("node{n}")).collect(), messages)
+    FrameLayout::new((0..LINES).map(|n| format!("node{n}")).collect(), messages)
 }
 
 /// Frame that an end sends in cycle `tick`; its payload is a hash of its identity.
-fn sent(way: Way, tick: u64) -> BusFrames {
+fn sent(way: FrameDirection, tick: u64) -> BusFrames {
     let mut frames = BusFrames::default();
     frames.header.tick = tick;
     for line in 0..LINES {
         for k in 0..FRAMES {
-            let id = if way == Way::ToDrives { 0x100 } else { 0x200 } + k;
+            let id = if way == FrameDirection::ToDrives { 0x100 } else { 0x200 } + k;
             let mut frame = Frame { line, id, len: 8, ..Frame::default() };
             let content =
                 (tick * 31 + u64::from(line) * 7 + u64::from(k)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -60,7 +60,8 @@ fn injector(faults: &[BusFault]) -> Injector {
 
 /// Both ways of one cycle: what the drives got, what lowlevel got.
 fn cycle(injector: &mut Injector, tick: u64) -> [Vec<Frame>; 2] {
-    [Way::ToDrives, Way::FromDrives].map(|way| injector.pass(way, &sent(way, tick)).as_slice().to_vec())
+    [FrameDirection::ToDrives, FrameDirection::FromDrives]
+        .map(|way| injector.pass(way, &sent(way, tick)).as_slice().to_vec())
 }
 
 fn is_error(frame: &Frame) -> bool {
@@ -94,9 +95,9 @@ fn before_and_after_a_fault_frames_pass_untouched() {
                 (10..30).for_each(|tick| drop(cycle(&mut x, tick)));
             }
             let got = cycle(&mut x, tick);
-            assert!(same(&got[0], sent(Way::ToDrives, tick).as_slice()), "{kind:?} at {tick}");
+            assert!(same(&got[0], sent(FrameDirection::ToDrives, tick).as_slice()), "{kind:?} at {tick}");
             let data: Vec<Frame> = got[1].iter().copied().filter(|f| !is_error(f)).collect();
-            assert!(same(&data, sent(Way::FromDrives, tick).as_slice()), "{kind:?} at {tick}");
+            assert!(same(&data, sent(FrameDirection::FromDrives, tick).as_slice()), "{kind:?} at {tick}");
         }
     }
 }
@@ -121,15 +122,16 @@ fn the_same_seed_gives_the_same_bits_and_another_one_others() {
 #[test]
 fn losses_are_as_frequent_as_they_are_to_be() {
     for share in [0.001, 0.01, 0.1] {
-        let mut x = injector(&[BusFault { share, way: Some(Way::FromDrives), ..always(FaultKind::Lost) }]);
+        let mut x =
+            injector(&[BusFault { share, way: Some(FrameDirection::FromDrives), ..always(FaultKind::Lost) }]);
         let cycles = 20_000;
         for tick in 1..=cycles {
-            x.pass(Way::FromDrives, &sent(Way::FromDrives, tick));
+            x.pass(FrameDirection::FromDrives, &sent(FrameDirection::FromDrives, tick));
         }
         let n = (cycles * u64::from(LINES * FRAMES)) as f64;
         let spread = (n * share * (1.0 - share)).sqrt();
         assert!((x.injected().lost as f64 - n * share).abs() < 4.0 * spread, "{share}: {:?}", x.injected());
-        let got = x.pass(Way::ToDrives, &sent(Way::ToDrives, 1)).count;
+        let got = x.pass(FrameDirection::ToDrives, &sent(FrameDirection::ToDrives, 1)).count;
         assert_eq!(got, u64::from(LINES * FRAMES), "the other way is whole");
     }
 }
@@ -161,12 +163,12 @@ fn late_frames_come_so_many_cycles_later_before_the_new_ones() {
     for tick in 1..10 {
         cycle(&mut x, tick);
     }
-    let original = sent(Way::FromDrives, 10);
+    let original = sent(FrameDirection::FromDrives, 10);
     assert_eq!(cycle(&mut x, 10)[1].len(), 9);
     assert_eq!(cycle(&mut x, 12)[1].len(), 12);
     let got = cycle(&mut x, 13);
     assert!(same(&got[1][..3], &original.as_slice()[3..6]), "unchanged, and first");
-    assert!(same(&got[1][3..], sent(Way::FromDrives, 13).as_slice()));
+    assert!(same(&got[1][3..], sent(FrameDirection::FromDrives, 13).as_slice()));
 }
 
 #[test]
@@ -187,7 +189,7 @@ fn reordering_loses_and_changes_nothing() {
     let mut x = injector(&[always(FaultKind::Reordered)]);
     let mut moved = 0;
     for tick in 1..100 {
-        let (was, mut got) = (sent(Way::FromDrives, tick), cycle(&mut x, tick)[1].clone());
+        let (was, mut got) = (sent(FrameDirection::FromDrives, tick), cycle(&mut x, tick)[1].clone());
         moved += usize::from(!same(&got, was.as_slice()));
         got.sort_by_key(|f| (f.line, f.id));
         assert!(same(&got, was.as_slice()));
@@ -200,7 +202,7 @@ fn a_flip_is_one_bit_of_identifier_length_or_payload() {
     let mut x = injector(&[always(FaultKind::Flipped)]);
     let mut where_ = [0; 3];
     for tick in 1..200 {
-        let (was, got) = (sent(Way::FromDrives, tick), cycle(&mut x, tick)[1].clone());
+        let (was, got) = (sent(FrameDirection::FromDrives, tick), cycle(&mut x, tick)[1].clone());
         for (a, b) in was.as_slice().iter().zip(&got) {
             let data: u32 = a.data.iter().zip(&b.data).map(|(a, b)| (a ^ b).count_ones()).sum();
             let flips = [(a.id ^ b.id).count_ones(), u32::from(a.len != b.len), data];
@@ -290,12 +292,13 @@ fn nothing_is_allocated_in_a_cycle() {
         .filter(|fault| !matches!(fault.kind, FaultKind::Silent | FaultKind::Pulled))
         .collect();
     let mut x = injector(&faults);
-    let frames: Vec<[BusFrames; 2]> =
-        (1..100).map(|tick| [sent(Way::ToDrives, tick), sent(Way::FromDrives, tick)]).collect();
+    let frames: Vec<[BusFrames; 2]> = (1..100)
+        .map(|tick| [sent(FrameDirection::ToDrives, tick), sent(FrameDirection::FromDrives, tick)])
+        .collect();
     realtime::allocations::arm();
     for (i, [to, from]) in frames.iter().enumerate() {
-        x.pass(Way::ToDrives, to);
-        x.pass(Way::FromDrives, from);
+        x.pass(FrameDirection::ToDrives, to);
+        x.pass(FrameDirection::FromDrives, from);
         if i % 10 == 9 {
             x.reset(i as u64);
         }

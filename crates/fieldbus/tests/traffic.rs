@@ -1,6 +1,6 @@
 //! Recorded traffic by node, cycle and identifier.
 
-use codec::layout::{Carries, Layout, Message, Signal};
+use codec::layout::{BusMessage, BusSignal, Carries, FrameLayout};
 use fieldbus::cycles::{Cycles, Unwrapped};
 use fieldbus::owners::Owners;
 use fieldbus::statistics::{BitRates, Statistics};
@@ -8,8 +8,15 @@ use fieldbus::{Capture, candump};
 
 const COUNTER: u32 = 8;
 
-fn message(name: &str, id: u32, node: usize, to_drives: bool, len: u32, number: Option<Carries>) -> Message {
-    let signal = |start, bits, carries| Signal {
+fn message(
+    name: &str,
+    id: u32,
+    node: usize,
+    to_drives: bool,
+    len: u32,
+    number: Option<Carries>,
+) -> BusMessage {
+    let signal = |start, bits, carries| BusSignal {
         name: "x".into(),
         start,
         bits,
@@ -20,11 +27,11 @@ fn message(name: &str, id: u32, node: usize, to_drives: bool, len: u32, number: 
     };
     let mut signals = vec![signal(0, COUNTER, Carries::Counter)];
     signals.extend(number.map(|carries| signal(8, 16, carries)));
-    Message { name: name.into(), id, len, node, to_drives, signals }
+    BusMessage { name: name.into(), id, len, node, to_drives, signals }
 }
 
 /// Two nodes with targets and angles of their own and one SYNC, 0x80, for both.
-fn layout() -> Layout {
+fn layout() -> FrameLayout {
     let mut messages = Vec::new();
     for node in 0..2 {
         let id = node as u32;
@@ -32,7 +39,7 @@ fn layout() -> Layout {
         messages.push(message("sync", 0x80, node, true, 1, None));
         messages.push(message("from", 0x180 + id, node, false, 3, Some(Carries::Angle(node))));
     }
-    Layout::new(vec!["a".into(), "b".into()], messages)
+    FrameLayout::new(vec!["a".into(), "b".into()], messages)
 }
 
 fn capture(text: &str) -> Capture {

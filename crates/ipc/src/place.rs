@@ -10,7 +10,7 @@ const SHM: &str = "/dev/shm";
 
 /// One run directory and the names derived from it.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub(crate) struct RunPlace {
     pub(crate) dir: PathBuf,
     pub(crate) prefix: String,
 }
@@ -26,7 +26,7 @@ pub(crate) fn resolved(dir: &StdPath) -> PathBuf {
     dir.canonicalize().or_else(|_| std::path::absolute(dir)).unwrap_or_else(|_| dir.into())
 }
 
-impl Place {
+impl RunPlace {
     /// `dir` must exist. The prefix is a hash of its full path, so that a new supervisor finds what the last one left.
     pub(crate) fn of(dir: &StdPath) -> Result<Self, IpcError> {
         let dir = dir

@@ -1,7 +1,7 @@
 //! Readers of a topic: the newest record, or every one of them.
 
 use crate::error::{IpcError, because};
-use crate::slot::{self, HEAD, Head, HeadEntry, Numbered, RealTime, RingEntry, SLOTS, SlotService};
+use crate::slot::{self, HEAD, HeadEntry, Numbered, RealTime, RingEntry, SLOTS, SlotHead, SlotService};
 use iceoryx2::prelude::*;
 use messages::{Record, Topic};
 
@@ -21,7 +21,7 @@ impl<T: Record> Slot<T> {
             .map(|k| port.entry::<Numbered<T>>(&k))
             .collect::<Result<Vec<_>, _>>()
             .map_err(|e| because(what(), e))?;
-        let head = port.entry::<Head>(&HEAD).map_err(|e| because(what(), e))?;
+        let head = port.entry::<SlotHead>(&HEAD).map_err(|e| because(what(), e))?;
         Ok(Self { ring, head, _service: service })
     }
 
@@ -157,7 +157,7 @@ impl<T: Record> Reader<T> {
     fn find_writer(&mut self) -> bool {
         let mut found = false;
         for (k, slot) in self.slots.iter().enumerate() {
-            let Head { epoch, count } = *slot.head.get();
+            let SlotHead { epoch, count } = *slot.head.get();
             if epoch > self.epoch {
                 // A slot that was given back goes on counting, for its new writer too.
                 let seen = if k == self.slot { self.number } else { 0 };

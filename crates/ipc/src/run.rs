@@ -15,7 +15,7 @@
 //! ```
 
 use crate::IpcError;
-use crate::place::Place;
+use crate::place::RunPlace;
 use crate::run_dir::RunDir;
 use crate::space::Space;
 use messages::Process;
@@ -172,7 +172,7 @@ impl Run {
     /// # Errors
     /// The run directory is gone.
     pub fn box_of(&self, process: Process) -> Result<PathBuf, IpcError> {
-        Ok(Place::of(&self.dir)?.box_of(process))
+        Ok(RunPlace::of(&self.dir)?.box_of(process))
     }
 
     /// Enters the space of this run.

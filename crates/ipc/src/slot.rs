@@ -48,7 +48,7 @@ unsafe impl<T: Record> ZeroCopySend for Numbered<T> {}
 /// Progress of a slot.
 #[derive(Clone, Copy, Debug, ZeroCopySend)]
 #[repr(C)]
-pub(crate) struct Head {
+pub(crate) struct SlotHead {
     /// Which writer of the topic this is, from 1; 0: the slot was never written.
     pub(crate) epoch: u64,
     /// Records written into the slot so far.
@@ -56,7 +56,7 @@ pub(crate) struct Head {
 }
 
 pub(crate) type RingEntry<T> = EntryHandle<RealTime, u64, Numbered<T>>;
-pub(crate) type HeadEntry = EntryHandle<RealTime, u64, Head>;
+pub(crate) type HeadEntry = EntryHandle<RealTime, u64, SlotHead>;
 
 fn name(topic: &Topic, slot: usize) -> Result<ServiceName, IpcError> {
     format!("topic/{}/{slot}", topic.name).as_str().try_into().map_err(|e| because(topic.name, e))
@@ -87,7 +87,7 @@ pub(crate) fn create<T: Record>(
         .blackboard_creator::<u64>()
         .max_readers(MAX_READERS)
         .max_nodes(MAX_NODES)
-        .add(HEAD, Head { epoch: 0, count: 0 });
+        .add(HEAD, SlotHead { epoch: 0, count: 0 });
     for k in 0..topic.depth as u64 {
         creator = creator.add(k, Numbered { number: 0, record: T::empty() });
     }
@@ -124,7 +124,7 @@ fn attribute(text: &str) -> Result<iceoryx2::service::attribute::AttributeValue,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::place::Place;
+    use crate::place::RunPlace;
     use messages::topics::EVENTS_PLANNER;
     use messages::{Event, Header};
 
@@ -144,7 +144,7 @@ mod tests {
     fn another_layout_of_the_same_size_is_refused() {
         let dir = std::env::temp_dir().join(format!("gangwerk-ipc-{}-schema", std::process::id()));
         std::fs::create_dir_all(&dir).unwrap();
-        let place = Place::of(&dir).unwrap();
+        let place = RunPlace::of(&dir).unwrap();
         place.make_root().unwrap();
         let node = crate::space::node::<RealTime>(&place, "test").unwrap();
         let made = create::<Event>(&node, &EVENTS_PLANNER, 0).unwrap();

@@ -3,7 +3,7 @@
 use crate::bell::{self, Bell, Waiter};
 use crate::error::{IpcError, because};
 use crate::lock::Lock;
-use crate::place::Place;
+use crate::place::RunPlace;
 use crate::queue::{Plane, QueueReceiver, QueueSender, QueueWaiter};
 use crate::reader::Reader;
 use crate::run_dir::RunDir;
@@ -25,7 +25,7 @@ const CLEAR_PATIENCE: Duration = Duration::from_millis(200);
 
 /// One running robot's shared memory. Ports are made from it before a process arms; afterwards it only has to live.
 pub struct Space {
-    place: Place,
+    place: RunPlace,
     node: Node<RealTime>,
     commands: OnceCell<Node<Plane>>,
     process: Option<Process>,
@@ -37,7 +37,7 @@ pub struct Space {
 
 /// Lock of a place.
 struct Hold {
-    place: Place,
+    place: RunPlace,
     process: Option<Process>,
     _lock: Option<Lock>,
 }
@@ -68,7 +68,7 @@ impl Space {
 
     fn create_topics(dir: &StdPath, topics: &[Topic]) -> Result<Self, IpcError> {
         RunDir::make(dir)?;
-        let place = Place::of(dir)?;
+        let place = RunPlace::of(dir)?;
         // A run that is ending removes the directory under our feet: then it is made once more.
         let lock = Lock::take(&place.dir, SUPERVISOR).or_else(|e| {
             if place.dir.exists() {
@@ -85,7 +85,7 @@ impl Space {
         }
         place.wipe()?;
         let needed = needed(topics);
-        let free = Place::free()?;
+        let free = RunPlace::free()?;
         if free < needed {
             return Err(IpcError::NoRoom { needed, free });
         }
@@ -105,7 +105,7 @@ impl Space {
     /// For a process: enters the space in `dir`. Each process but the observer may enter once at a time.
     pub fn open(dir: &StdPath, process: Process) -> Result<Self, IpcError> {
         let _private = RunDir::open(dir)?;
-        let place = Place::of(dir)?;
+        let place = RunPlace::of(dir)?;
         if Lock::owner(&place.dir, SUPERVISOR).is_none() {
             let dir = place.dir.display();
             return Err(IpcError::Other(format!("no run in {dir}: start one with `gangwerk run SCENE`")));
@@ -196,7 +196,7 @@ impl Space {
 }
 
 /// A node of one process, which touches no signal handler and prints errors only.
-pub(crate) fn node<S: Service>(place: &Place, name: &str) -> Result<Node<S>, IpcError> {
+pub(crate) fn node<S: Service>(place: &RunPlace, name: &str) -> Result<Node<S>, IpcError> {
     set_log_level(LogLevel::Error);
     NodeBuilder::new()
         .name(&name.try_into().map_err(|e| because(name, e))?)
@@ -241,13 +241,13 @@ mod tests {
     use messages::Sensors;
     use messages::topics::SENSORS;
 
-    fn left(place: &Place) -> usize {
+    fn left(place: &RunPlace) -> usize {
         let names = std::fs::read_dir("/dev/shm").unwrap().map(|e| e.unwrap().file_name());
         names.filter(|name| name.to_string_lossy().starts_with(&place.prefix)).count()
     }
 
     /// Memory the objects really take \[B\].
-    fn size(place: &Place) -> u64 {
+    fn size(place: &RunPlace) -> u64 {
         use std::os::unix::fs::MetadataExt;
         let files = std::fs::read_dir("/dev/shm").unwrap().map(Result::unwrap);
         let own = files.filter(|f| f.file_name().to_string_lossy().starts_with(&place.prefix));

@@ -262,14 +262,14 @@ fn pass_credentials(socket: &UnixDatagram) -> io::Result<()> {
 
 /// Room for one set of credentials with its header, aligned as the kernel writes it.
 #[repr(C, align(8))]
-struct Control([u8; 64]);
+struct CredentialsBuffer([u8; 64]);
 
 /// One datagram: its length and where it came from.
 ///
 /// By hand, because the safe wrappers hold a process id to be never 0, and the kernel gives 0 for a sender that this
 /// process's namespace does not see.
 fn receive(socket: &UnixDatagram, bytes: &mut [u8]) -> Option<(usize, Datagram)> {
-    let mut control = Control([0; 64]);
+    let mut control = CredentialsBuffer([0; 64]);
     // SAFETY: an address and a message header are plain numbers and null pointers, for which zero is a value.
     let (mut address, mut header): (libc::sockaddr_un, libc::msghdr) = unsafe { std::mem::zeroed() };
     let mut part = libc::iovec { iov_base: bytes.as_mut_ptr().cast(), iov_len: bytes.len() };

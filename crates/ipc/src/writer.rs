@@ -1,7 +1,7 @@
 //! The one writer of a topic.
 
 use crate::error::{IpcError, because};
-use crate::slot::{self, HEAD, Head, Numbered, RealTime, SLOTS, SlotService};
+use crate::slot::{self, HEAD, Numbered, RealTime, SLOTS, SlotHead, SlotService};
 use iceoryx2::port::writer::{EntryHandleMut, EntryHandleMutError, WriterCreateError};
 use iceoryx2::prelude::*;
 use messages::{Record, Topic};
@@ -13,7 +13,7 @@ use messages::{Record, Topic};
 pub struct Writer<T: Record> {
     // Dropped in this order: the head unlocks last, so that a slot with a free head has a free ring.
     ring: Vec<EntryHandleMut<RealTime, u64, Numbered<T>>>,
-    head: EntryHandleMut<RealTime, u64, Head>,
+    head: EntryHandleMut<RealTime, u64, SlotHead>,
     epoch: u64,
     count: u64,
     _slot: SlotService,
@@ -27,7 +27,7 @@ impl<T: Record> Writer<T> {
         for k in 0..SLOTS {
             let service = slot::open::<T>(node, topic, k)?;
             let reader = service.reader_builder().create().map_err(|e| because(what(), e))?;
-            let seen = *reader.entry::<Head>(&HEAD).map_err(|e| because(what(), e))?.get();
+            let seen = *reader.entry::<SlotHead>(&HEAD).map_err(|e| because(what(), e))?.get();
             epoch = epoch.max(seen.epoch);
             if free.is_none() {
                 free = Self::lock(service, topic, seen.count)?;
@@ -48,7 +48,7 @@ impl<T: Record> Writer<T> {
             Err(WriterCreateError::ExceedsMaxSupportedWriters) => return Ok(None),
             Err(e) => return Err(because(what(), e)),
         };
-        let head = match port.entry::<Head>(&HEAD) {
+        let head = match port.entry::<SlotHead>(&HEAD) {
             Ok(head) => head,
             Err(EntryHandleMutError::HandleAlreadyExists) => return Ok(None),
             Err(e) => return Err(because(what(), e)),
@@ -71,6 +71,6 @@ impl<T: Record> Writer<T> {
         let mut numbered = Numbered { number: self.count, record: *record };
         numbered.record.header_mut().epoch = self.epoch;
         self.ring[(self.count % self.ring.len() as u64) as usize].update_with_copy(numbered);
-        self.head.update_with_copy(Head { epoch: self.epoch, count: self.count });
+        self.head.update_with_copy(SlotHead { epoch: self.epoch, count: self.count });
     }
 }

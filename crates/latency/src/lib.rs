@@ -6,4 +6,4 @@ pub mod raw;
 pub mod system;
 pub mod topics;
 
-pub use link::{End, LIMIT, Link, Opened, SIZE, spin};
+pub use link::{LIMIT, Link, LinkEnd, Opened, SIZE, spin};

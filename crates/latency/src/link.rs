@@ -13,7 +13,7 @@ pub const LIMIT: Duration = Duration::from_secs(2);
 
 /// Which of the two processes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum LinkEnd {
     /// It makes the way, asks, and measures.
     Near,
     /// It answers.

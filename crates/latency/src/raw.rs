@@ -10,7 +10,7 @@ use iceoryx2::port::subscriber::Subscriber;
 use iceoryx2::port::writer::EntryHandleMut;
 use iceoryx2::prelude::*;
 
-use crate::link::{End, LIMIT, Link, Opened, SIZE, message, spin, stamp, text};
+use crate::link::{LIMIT, Link, LinkEnd, Opened, SIZE, message, spin, stamp, text};
 
 type Plane = ipc::Service;
 type Payload = [u8; SIZE];
@@ -42,8 +42,8 @@ fn name(name: &str) -> Result<ServiceName, String> {
 }
 
 /// Names of what this end writes and reads.
-fn ways(end: End) -> [&'static str; 2] {
-    if end == End::Near { ["out", "back"] } else { ["back", "out"] }
+fn ways(end: LinkEnd) -> [&'static str; 2] {
+    if end == LinkEnd::Near { ["out", "back"] } else { ["back", "out"] }
 }
 
 struct Blackboard {
@@ -54,11 +54,11 @@ struct Blackboard {
 }
 
 /// One entry of a blackboard in each direction.
-pub fn blackboard(dir: &Path, end: End) -> Opened {
+pub fn blackboard(dir: &Path, end: LinkEnd) -> Opened {
     let node = node(dir)?;
     let service = |way: &str| {
         let builder = node.service_builder(&name(way)?);
-        if end == End::Near {
+        if end == LinkEnd::Near {
             return builder.blackboard_creator::<u64>().add(0, message(0)).create().map_err(text);
         }
         builder.blackboard_opener::<u64>().open().map_err(text)
@@ -90,7 +90,7 @@ impl Link for Blackboard {
     }
 }
 
-struct Samples {
+struct RawSamples {
     output: Publisher<Plane, Payload, ()>,
     input: Subscriber<Plane, Payload, ()>,
     bells: Option<(Notifier<Plane>, Listener<Plane>)>,
@@ -98,7 +98,7 @@ struct Samples {
 }
 
 /// Publish-subscribe in each direction, with an event for the wake-up or without.
-pub fn samples(dir: &Path, end: End, rings: bool) -> Opened {
+pub fn samples(dir: &Path, end: LinkEnd, rings: bool) -> Opened {
     let node = node(dir)?;
     let service = |way: &str| {
         node.service_builder(&name(way)?).publish_subscribe::<Payload>().open_or_create().map_err(text)
@@ -112,7 +112,7 @@ pub fn samples(dir: &Path, end: End, rings: bool) -> Opened {
     } else {
         None
     };
-    Ok(Box::new(Samples {
+    Ok(Box::new(RawSamples {
         output: output.publisher_builder().create().map_err(text)?,
         input: input.subscriber_builder().create().map_err(text)?,
         bells,
@@ -120,7 +120,7 @@ pub fn samples(dir: &Path, end: End, rings: bool) -> Opened {
     }))
 }
 
-impl Link for Samples {
+impl Link for RawSamples {
     fn send(&mut self, stamp: u64) -> Result<(), String> {
         self.output.send_copy(message(stamp)).map_err(text)?;
         self.bells.as_ref().map_or(Ok(()), |(bell, _)| bell.notify().map(drop).map_err(text))

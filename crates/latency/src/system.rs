@@ -10,13 +10,13 @@ use nix::mqueue::{MQ_OFlag, MqAttr, MqdT, mq_open, mq_receive, mq_send, mq_unlin
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::stat::Mode;
 
-use crate::link::{End, LIMIT, Link, Opened, SIZE, message, silent, stamp, text};
+use crate::link::{LIMIT, Link, LinkEnd, Opened, SIZE, message, silent, stamp, text};
 
-struct Queue {
+struct PosixQueue {
     output: MqdT,
     input: MqdT,
     names: [String; 2],
-    end: End,
+    end: LinkEnd,
     /// The other end has been heard.
     met: bool,
 }
@@ -25,7 +25,7 @@ struct Queue {
 const PART: usize = SIZE.div_ceil(2);
 
 /// POSIX message queues, two messages for each of ours.
-pub fn posix_queue(dir: &Path, end: End) -> Opened {
+pub fn posix_queue(dir: &Path, end: LinkEnd) -> Opened {
     let name = |way: &str| format!("/{}-{way}", dir.file_name().unwrap_or_default().to_string_lossy());
     let names = [name("out"), name("back")];
     let open = |name: &String, flags: MQ_OFlag| {
@@ -33,8 +33,8 @@ pub fn posix_queue(dir: &Path, end: End) -> Opened {
         let mode = Mode::S_IRUSR | Mode::S_IWUSR;
         mq_open(name.as_str(), flags | MQ_OFlag::O_CREAT, mode, Some(&attributes)).map_err(text)
     };
-    let [out, back] = if end == End::Near { [0, 1] } else { [1, 0] };
-    Ok(Box::new(Queue {
+    let [out, back] = if end == LinkEnd::Near { [0, 1] } else { [1, 0] };
+    Ok(Box::new(PosixQueue {
         output: open(&names[out], MQ_OFlag::O_WRONLY)?,
         input: open(&names[back], MQ_OFlag::O_RDONLY)?,
         names,
@@ -43,7 +43,7 @@ pub fn posix_queue(dir: &Path, end: End) -> Opened {
     }))
 }
 
-impl Link for Queue {
+impl Link for PosixQueue {
     fn send(&mut self, stamp: u64) -> Result<(), String> {
         message(stamp).chunks(PART).try_for_each(|part| mq_send(&self.output, part, 0).map_err(text))
     }
@@ -62,9 +62,9 @@ impl Link for Queue {
     }
 }
 
-impl Drop for Queue {
+impl Drop for PosixQueue {
     fn drop(&mut self) {
-        if self.end == End::Near {
+        if self.end == LinkEnd::Near {
             for name in &self.names {
                 let _ = mq_unlink(name.as_str());
             }
@@ -75,9 +75,9 @@ impl Drop for Queue {
 struct Datagrams(UnixDatagram, std::path::PathBuf);
 
 /// Unix datagram sockets.
-pub fn unix_socket(dir: &Path, end: End) -> Opened {
+pub fn unix_socket(dir: &Path, end: LinkEnd) -> Opened {
     let [near, far] = ["near", "far"].map(|name| dir.join(name));
-    let (own, other) = if end == End::Near { (near, far) } else { (far, near) };
+    let (own, other) = if end == LinkEnd::Near { (near, far) } else { (far, near) };
     let socket = UnixDatagram::bind(own).map_err(text)?;
     socket.set_read_timeout(Some(LIMIT)).map_err(text)?;
     Ok(Box::new(Datagrams(socket, other)))
@@ -96,23 +96,23 @@ impl Link for Datagrams {
 }
 
 /// The near end listens until the far one has come.
-struct Tcp(Option<TcpListener>, Option<TcpStream>);
+struct TcpLink(Option<TcpListener>, Option<TcpStream>);
 
 /// TCP over the loopback interface.
-pub fn tcp(dir: &Path, end: End) -> Opened {
+pub fn tcp(dir: &Path, end: LinkEnd) -> Opened {
     let file = dir.join("port");
-    if end == End::Near {
+    if end == LinkEnd::Near {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).map_err(text)?;
         let port = listener.local_addr().map_err(text)?.port();
         std::fs::write(file, port.to_string()).map_err(text)?;
-        return Ok(Box::new(Tcp(Some(listener), None)));
+        return Ok(Box::new(TcpLink(Some(listener), None)));
     }
     let port = std::fs::read_to_string(file).map_err(text)?.parse().map_err(text)?;
     let stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).map_err(text)?;
-    Ok(Box::new(Tcp(None, Some(stream))))
+    Ok(Box::new(TcpLink(None, Some(stream))))
 }
 
-impl Tcp {
+impl TcpLink {
     fn stream(&mut self) -> Result<&mut TcpStream, String> {
         if let Some(listener) = self.0.take() {
             self.1 = Some(listener.accept().map_err(text)?.0);
@@ -124,7 +124,7 @@ impl Tcp {
     }
 }
 
-impl Link for Tcp {
+impl Link for TcpLink {
     fn send(&mut self, stamp: u64) -> Result<(), String> {
         self.stream()?.write_all(&message(stamp)).map_err(text)
     }

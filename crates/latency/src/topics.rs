@@ -6,7 +6,7 @@ use ipc::{Bell, Reader, Space, Waiter, Woken, Writer};
 use messages::topics::{BUS_RX, BUS_TX};
 use messages::{BusFrames, Process};
 
-use crate::link::{End, LIMIT, Link, Opened, silent, spin, text};
+use crate::link::{LIMIT, Link, LinkEnd, Opened, silent, spin, text};
 
 /// The topics of the field bus, with or without their bells.
 struct Topics {
@@ -20,12 +20,12 @@ struct Topics {
 }
 
 /// Topics as the joint loop and the robot have them.
-pub fn open(dir: &Path, end: End, rings: bool) -> Opened {
+pub fn open(dir: &Path, end: LinkEnd, rings: bool) -> Opened {
     let (process, out, back) = match end {
-        End::Near => (Process::Lowlevel, &BUS_TX, &BUS_RX),
-        End::Far => (Process::SimBackend, &BUS_RX, &BUS_TX),
+        LinkEnd::Near => (Process::Lowlevel, &BUS_TX, &BUS_RX),
+        LinkEnd::Far => (Process::SimBackend, &BUS_RX, &BUS_TX),
     };
-    let made = (end == End::Near).then(|| Space::create(dir)).transpose().map_err(text)?;
+    let made = (end == LinkEnd::Near).then(|| Space::create(dir)).transpose().map_err(text)?;
     let space = Space::open(dir, process).map_err(text)?;
     Ok(Box::new(Topics {
         output: space.writer(out).map_err(text)?,

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use latency::{End, Opened, raw, system, topics};
+use latency::{LinkEnd, Opened, raw, system, topics};
 
-type Open = fn(&Path, End) -> Opened;
+type Open = fn(&Path, LinkEnd) -> Opened;
 
 const WAYS: [(&str, Open); 8] = [
     ("topic", |dir, end| topics::open(dir, end, false)),
@@ -35,10 +35,10 @@ fn every_way_brings_what_was_sent_and_tells_who_is_alone() {
 fn what_is_sent_arrives_once_and_in_order() {
     for (number, (name, open)) in WAYS.into_iter().enumerate() {
         let dir = place(number);
-        let mut near = open(&dir, End::Near).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let mut near = open(&dir, LinkEnd::Near).unwrap_or_else(|e| panic!("{name}: {e}"));
         std::thread::scope(|scope| {
             let far = || {
-                let mut far = open(&dir, End::Far).unwrap_or_else(|e| panic!("{name}: {e}"));
+                let mut far = open(&dir, LinkEnd::Far).unwrap_or_else(|e| panic!("{name}: {e}"));
                 far.send(1).unwrap();
                 for expected in 2..200 {
                     assert_eq!(far.receive(), Ok(expected), "{name}");
@@ -62,7 +62,7 @@ fn what_is_sent_arrives_once_and_in_order() {
 fn an_end_that_is_alone_is_told_so() {
     for (number, (name, open)) in WAYS.into_iter().enumerate().filter(|(_, (name, _))| *name != "TCP") {
         let dir = place(WAYS.len() + number);
-        let mut near = open(&dir, End::Near).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let mut near = open(&dir, LinkEnd::Near).unwrap_or_else(|e| panic!("{name}: {e}"));
         assert!(near.receive().is_err(), "{name}: nobody is there");
         drop(near);
         raw::clear(&dir);

@@ -29,7 +29,8 @@ pub enum Process {
 }
 
 impl Process {
-    /// All processes that `gangwerk run` starts.
+    /// All processes, in the order in which `gangwerk run` starts them: the logger before those whose first cycle it is to
+    /// have, the clock last.
     pub const ALL: [Self; 7] = [
         Self::Broker,
         Self::Logger,

@@ -8,7 +8,7 @@ use crate::space::{Mat3, Sym3, V3};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body {
     pub parent: usize,
-    pub kind: Kind,
+    pub kind: JointKernel,
     /// +1 or -1: the coordinate counts along or against the axis of `kind`.
     pub sign: f64,
     /// Origin in the parent's frame at zero coordinate.
@@ -40,7 +40,7 @@ impl Body {
 
 /// Joint of a body by its fastest kernel.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Kind {
+pub(crate) enum JointKernel {
     Base,
     X,
     Y,
@@ -51,7 +51,7 @@ pub(crate) enum Kind {
 
 /// A link by name: its body and body_from_link.
 #[derive(Clone, Debug)]
-pub(crate) struct Link {
+pub(crate) struct NamedLink {
     pub name: String,
     pub body: usize,
     pub pose: IsometryMatrix3<f64>,

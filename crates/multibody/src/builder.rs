@@ -2,7 +2,7 @@
 
 use nalgebra::{IsometryMatrix3, Rotation3, Unit, Vector3};
 
-use crate::body::{Body, Kind, Link};
+use crate::body::{Body, JointKernel, NamedLink};
 use crate::error::ModelError;
 use crate::inertia::Inertia;
 use crate::model::Model;
@@ -22,7 +22,7 @@ pub enum JointKind {
 /// Makes a [`Model`]. Joints are added parents first; the order of the movable ones is that of the coordinates.
 #[derive(Clone, Debug)]
 pub struct ModelBuilder {
-    links: Vec<Link>,
+    links: Vec<NamedLink>,
     inertias: Vec<Inertia>,
     joints: Vec<NewJoint>,
 }
@@ -44,7 +44,7 @@ struct NewJoint {
 impl ModelBuilder {
     /// Starts with the floating base.
     pub fn new(base_link: &str, inertia: Inertia) -> ModelBuilder {
-        let base = Link { name: base_link.into(), body: 0, pose: IsometryMatrix3::identity() };
+        let base = NamedLink { name: base_link.into(), body: 0, pose: IsometryMatrix3::identity() };
         ModelBuilder { links: vec![base], inertias: vec![inertia], joints: Vec::new() }
     }
 
@@ -72,7 +72,7 @@ impl ModelBuilder {
         let (axis, slides) = match kind {
             JointKind::Fixed => {
                 self.inertias[carrier] = self.inertias[carrier].with(&inertia.seen_from(&in_parent));
-                self.links.push(Link { name: child.into(), body: carrier, pose: in_parent });
+                self.links.push(NamedLink { name: child.into(), body: carrier, pose: in_parent });
                 return Ok(self);
             }
             JointKind::Revolute(axis) => (axis, false),
@@ -95,7 +95,7 @@ impl ModelBuilder {
             slides,
         });
         self.inertias.push(inertia.seen_from(&pose));
-        self.links.push(Link { name: child.into(), body, pose });
+        self.links.push(NamedLink { name: child.into(), body, pose });
         Ok(self)
     }
 
@@ -118,7 +118,7 @@ impl ModelBuilder {
         let inertia = &self.inertias[k];
         let i = Sym3::from_matrix(&inertia.moments_about_origin());
         let (parent, origin, (kind, sign)) = match k {
-            0 => (0, Vector3::zeros(), (Kind::Base, 1.0)),
+            0 => (0, Vector3::zeros(), (JointKernel::Base, 1.0)),
             _ => {
                 let j = &self.joints[k - 1];
                 (j.parent, j.origin, classify(j.axis.into_inner(), j.slides))
@@ -138,18 +138,18 @@ impl ModelBuilder {
 }
 
 /// Finds the fast form of a joint. An axis within rounding of a coordinate axis is taken as that axis.
-fn classify(e: Vector3<f64>, slides: bool) -> (Kind, f64) {
+fn classify(e: Vector3<f64>, slides: bool) -> (JointKernel, f64) {
     const ROUNDING: f64 = 1e-14;
     if slides {
-        return (Kind::Along(e.into()), 1.0);
+        return (JointKernel::Along(e.into()), 1.0);
     }
-    for (k, kind) in [Kind::X, Kind::Y, Kind::Z].into_iter().enumerate() {
+    for (k, kind) in [JointKernel::X, JointKernel::Y, JointKernel::Z].into_iter().enumerate() {
         let across = e[(k + 1) % 3].hypot(e[(k + 2) % 3]);
         if across < ROUNDING {
             return (kind, e[k].signum());
         }
     }
-    (Kind::About(V3::from(e)), 1.0)
+    (JointKernel::About(V3::from(e)), 1.0)
 }
 
 /// Rotation of a URDF's `rpy` \[rad\], with quarter turns that were written with all digits made exact.

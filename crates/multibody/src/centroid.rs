@@ -2,7 +2,7 @@
 
 use nalgebra::{Const, Dyn, Matrix, RawStorageMut, Vector3};
 
-use crate::body::Kind;
+use crate::body::JointKernel;
 use crate::data::Data;
 use crate::model::Model;
 use crate::space::{V3, ZERO};
@@ -37,7 +37,7 @@ impl Model {
         let k = joint + 1;
         let (p, com) = (&data.places[k], data.moments[k] * (1.0 / self.carried[k]));
         let rate = match self.bodies[k].kind {
-            Kind::Along(_) => p.e,
+            JointKernel::Along(_) => p.e,
             _ => p.e.cross(com - p.r),
         };
         (com.into(), rate.into())
@@ -88,7 +88,7 @@ impl Model {
         for (k, body) in self.bodies.iter().enumerate().skip(1) {
             let (p, m) = (&data.places[k], self.carried[k]);
             let column = match body.kind {
-                Kind::Along(_) => p.e * m,
+                JointKernel::Along(_) => p.e * m,
                 _ => p.e.cross(data.moments[k] - p.r * m),
             };
             set(jacobian, first + k - 1, column * per_mass);

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::body::{Body, Composite, Kind};
+use crate::body::{Body, Composite, JointKernel};
 use crate::gyro::Spin;
 use crate::model::Model;
 use crate::space::{Mat3, Sym3, Twin, V3, ZERO, v3};
@@ -118,7 +118,7 @@ impl Data {
     pub fn new(model: &Model) -> Data {
         let (nb, nv) = (model.bodies.len(), model.nv());
         let position = |b: &Body| {
-            let apart = b.r != ZERO || matches!(b.kind, Kind::Along(_));
+            let apart = b.r != ZERO || matches!(b.kind, JointKernel::Along(_));
             Position { c: 1.0, s: 0.0, r: b.r, apart }
         };
         let joints = model.bodies.iter().map(position).collect();
@@ -154,10 +154,10 @@ impl Data {
             model.bodies.iter().zip(&mut self.joints).skip(1).zip(turned).enumerate()
         {
             match body.kind {
-                Kind::Along(e) => joint.r = body.r + e * *q,
+                JointKernel::Along(e) => joint.r = body.r + e * *q,
                 kind => {
                     (joint.s, joint.c) = (s * body.sign, *c);
-                    if let Kind::About(e) = kind {
+                    if let JointKernel::About(e) = kind {
                         self.oblique[k + 1] = Mat3::about(e, joint.c, joint.s);
                     }
                 }
@@ -185,30 +185,30 @@ impl Articulated {
 /// Runs an expression with the joint's [`crate::turn::Turn`]; the kernel is compiled for each kind.
 macro_rules! with_turn {
     ($body:expr, $joint:expr, $oblique:expr, $t:ident => $run:expr) => {{
-        use $crate::body::Kind;
+        use $crate::body::JointKernel;
         use $crate::turn::{About, AboutX, AboutY, AboutZ, Along};
         match $body.kind {
-            Kind::X => {
+            JointKernel::X => {
                 let $t = AboutX($joint.c, $joint.s);
                 $run
             }
-            Kind::Y => {
+            JointKernel::Y => {
                 let $t = AboutY($joint.c, $joint.s);
                 $run
             }
-            Kind::Z => {
+            JointKernel::Z => {
                 let $t = AboutZ($joint.c, $joint.s);
                 $run
             }
-            Kind::About(e) => {
+            JointKernel::About(e) => {
                 let $t = About($oblique, e);
                 $run
             }
-            Kind::Along(e) => {
+            JointKernel::Along(e) => {
                 let $t = Along(e);
                 $run
             }
-            Kind::Base => {}
+            JointKernel::Base => {}
         }
     }};
 }

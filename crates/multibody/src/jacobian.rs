@@ -5,7 +5,7 @@
 
 use nalgebra::{Const, Dyn, Matrix, RawStorageMut};
 
-use crate::body::Kind;
+use crate::body::JointKernel;
 use crate::data::Data;
 use crate::model::{Frame, Model};
 use crate::space::{V3, ZERO};
@@ -53,7 +53,7 @@ impl Model {
             }
             on_path = body.parent;
             match body.kind {
-                Kind::Along(_) => set(jacobian, column, p.e, ZERO),
+                JointKernel::Along(_) => set(jacobian, column, p.e, ZERO),
                 _ => set(jacobian, column, p.e.cross(at - p.r), p.e),
             }
         }

@@ -13,7 +13,7 @@
 
 use nalgebra::{IsometryMatrix3, Vector3};
 
-use crate::body::Kind;
+use crate::body::JointKernel;
 use crate::data::{BodyMotion, BodyPlace, Data, with_turn};
 use crate::model::{Frame, Model};
 use crate::space::{Mat3, V3, ZERO};
@@ -151,7 +151,7 @@ impl Model {
         while k != 0 {
             let (p, body) = (&data.places[k], &self.bodies[k]);
             generalized[5 + k] += match body.kind {
-                Kind::Along(_) => p.e.dot(f),
+                JointKernel::Along(_) => p.e.dot(f),
                 _ => p.e.dot(n + (at - p.r).cross(f)),
             };
             k = body.parent;
@@ -171,14 +171,14 @@ fn base_motion(place: &BodyPlace, v: &[f64]) -> BodyMotion {
 
 /// A body's motion from that of its parent `p`, whose origin is -d away; e has the length of the joint's speed.
 #[inline(always)]
-fn carried_on(p: &BodyMotion, kind: Kind, d: V3, e: V3) -> BodyMotion {
+fn carried_on(p: &BodyMotion, kind: JointKernel, d: V3, e: V3) -> BodyMotion {
     let mut m = BodyMotion {
         w: p.w,
         v: p.v + p.w.cross(d),
         dw: p.dw,
         dv: p.dv + p.dw.cross(d) + p.w.cross(p.w.cross(d)),
     };
-    if let Kind::Along(_) = kind {
+    if let JointKernel::Along(_) = kind {
         m.v += e;
         m.dv += p.w.cross(e) * 2.0;
     } else {

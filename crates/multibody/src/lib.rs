@@ -21,7 +21,6 @@
 //! # Ok::<(), multibody::ModelError>(())
 //! ```
 
-mod articulated;
 mod body;
 mod builder;
 mod centroid;
@@ -38,6 +37,7 @@ mod kinematics;
 mod mass;
 mod model;
 mod reduced;
+mod reference;
 mod rotor;
 mod space;
 mod sparsity;
@@ -52,5 +52,5 @@ pub use data::Data;
 pub use error::ModelError;
 pub use inertia::Inertia;
 pub use kinematics::{Limbs, Twist};
-pub use model::{Frame, GRAVITY, Model};
+pub use model::{Frame, GRAVITY, GRAVITY_ACCELERATION, Model};
 pub use rotor::Rotor;

@@ -2,16 +2,18 @@
 
 use nalgebra::Vector3;
 
-use crate::body::{Body, Composite, Link, kernel_rotation};
+use crate::body::{Body, Composite, NamedLink, kernel_rotation};
 use crate::error::ModelError;
 use crate::gyro::Gyro;
 use crate::space::{Mat3, V3};
 use crate::sparsity::{Paths, Subtrees};
 
-/// \[m/s^2\] Gravity in the world frame.
-pub const GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
+/// \[m/s^2\] Gravity of all models, downwards.
+pub const GRAVITY_ACCELERATION: f64 = 9.81;
+/// \[m/s^2\] The same in the world frame.
+pub const GRAVITY: Vector3<f64> = Vector3::new(0.0, 0.0, -GRAVITY_ACCELERATION);
 
-pub(crate) const G: V3 = V3 { x: 0.0, y: 0.0, z: -9.81 };
+pub(crate) const G: V3 = V3 { x: 0.0, y: 0.0, z: -GRAVITY_ACCELERATION };
 
 /// A floating-base tree of rigid bodies.
 ///
@@ -28,7 +30,7 @@ pub struct Model {
     pub(crate) bodies: Vec<Body>,
     /// First moments and moments of inertia of the bodies by themselves, as the composite sweeps begin.
     pub(crate) own: Vec<Composite>,
-    pub(crate) links: Vec<Link>,
+    pub(crate) links: Vec<NamedLink>,
     pub(crate) joint_names: Vec<String>,
     /// \[kg\] Mass of the body and everything it carries.
     pub(crate) carried: Vec<f64>,
@@ -61,7 +63,7 @@ impl Frame {
 }
 
 impl Model {
-    pub(crate) fn new(bodies: Vec<Body>, links: Vec<Link>, joint_names: Vec<String>) -> Model {
+    pub(crate) fn new(bodies: Vec<Body>, links: Vec<NamedLink>, joint_names: Vec<String>) -> Model {
         let mut carried: Vec<f64> = bodies.iter().map(|b| b.m).collect();
         for k in (1..bodies.len()).rev() {
             carried[bodies[k].parent] += carried[k];

@@ -89,11 +89,6 @@ impl Model {
         &self.rotor_names
     }
 
-    /// Index of a rotor.
-    pub fn rotor_index(&self, name: &str) -> Option<usize> {
-        self.rotor_names.iter().position(|r| r == name)
-    }
-
     fn gyro(&self, rotor: &Rotor) -> Result<Gyro, String> {
         let link = self.links.iter().find(|l| l.name == rotor.link);
         let link = link.ok_or_else(|| format!("link `{}` does not exist; correct the name", rotor.link))?;

@@ -437,7 +437,7 @@ fn rotors_that_cannot_be_are_refused() {
     let twice = model.clone().with_rotors(&[motor(&[]), motor(&[])]).expect_err("two of a name");
     assert_eq!(twice, ModelError::Duplicate("motor".into()));
     let model = model.with_rotors(&[motor(&[0])]).expect("a good one");
-    assert_eq!(model.rotor_index("motor"), Some(0));
+    assert_eq!(model.rotor_names(), ["motor"]);
 }
 
 fn heavy() -> Inertia {

@@ -5,7 +5,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-struct Counts {
+struct AllocationCounts {
     armed: Cell<bool>,
     allocations: Cell<u64>,
     frees: Cell<u64>,
@@ -13,8 +13,8 @@ struct Counts {
 
 thread_local! {
     // Const and without a destructor: usable inside of an allocator.
-    static COUNTS: Counts =
-        const { Counts { armed: Cell::new(false), allocations: Cell::new(0), frees: Cell::new(0) } };
+    static COUNTS: AllocationCounts =
+        const { AllocationCounts { armed: Cell::new(false), allocations: Cell::new(0), frees: Cell::new(0) } };
 }
 
 /// The system allocator with a count per armed thread.
@@ -40,7 +40,7 @@ pub fn counted() -> [u64; 2] {
     COUNTS.with(|c| [c.allocations.get(), c.frees.get()])
 }
 
-fn count(which: impl Fn(&Counts) -> &Cell<u64>) {
+fn count(which: impl Fn(&AllocationCounts) -> &Cell<u64>) {
     let _ = COUNTS.try_with(|c| {
         if c.armed.get() {
             let cell = which(c);

@@ -52,7 +52,7 @@ pub struct BlackBox {
 
 /// One entry of a box that was left.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
+pub struct BlackBoxEntry {
     /// Kind, as the writer said.
     pub kind: u32,
     /// \[1\] Tick of the cycle.
@@ -65,7 +65,7 @@ pub struct Entry {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Left {
     /// The ring, oldest first.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<BlackBoxEntry>,
     /// \[1\] Cycles begun.
     pub cycles: u64,
     /// \[ns\] CLOCK_MONOTONIC when the last one began, and when the last whole one ended.
@@ -188,7 +188,7 @@ impl BlackBox {
     }
 }
 
-impl Entry {
+impl BlackBoxEntry {
     /// The record that was kept; zeros at its end were left out.
     pub fn record<T: Record>(&self) -> T {
         let mut record = T::empty();
@@ -238,7 +238,7 @@ impl Left {
             }
             let mut bytes = vec![0; n];
             map.read(size, at + HEAD as u64, &mut bytes);
-            entries.push(Entry {
+            entries.push(BlackBoxEntry {
                 kind: u32::from_le_bytes([e, f, g, h]),
                 tick: u64::from_le_bytes(tick),
                 bytes,

@@ -6,7 +6,7 @@
 
 /// Result of a finished cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum CycleVerdict {
     /// Finished before the next wake-up.
     InTime,
     /// So many wake-ups were missed and are skipped.
@@ -21,7 +21,7 @@ pub enum Verdict {
     },
 }
 
-impl Verdict {
+impl CycleVerdict {
     /// Whole periods skipped.
     pub const fn skipped(self) -> u64 {
         match self {
@@ -58,18 +58,22 @@ impl Period {
     }
 
     /// The cycle that began at [`Period::planned`] has finished at `now_ns`: plans the next wake-up.
-    pub fn finish(&mut self, now_ns: u64) -> Verdict {
+    pub fn finish(&mut self, now_ns: u64) -> CycleVerdict {
         let next = self.planned_ns.saturating_add(self.period_ns);
         let skipped = now_ns.saturating_sub(next).div_ceil(self.period_ns);
         self.planned_ns = next.saturating_add(skipped * self.period_ns);
         if skipped == 0 {
             self.bucket = self.bucket.saturating_sub(1);
-            return Verdict::InTime;
+            return CycleVerdict::InTime;
         }
         self.overruns += 1;
         self.skipped += skipped;
         self.bucket = (self.bucket + skipped).min(self.limit);
-        if self.bucket == self.limit { Verdict::TooMany { skipped } } else { Verdict::Overrun { skipped } }
+        if self.bucket == self.limit {
+            CycleVerdict::TooMany { skipped }
+        } else {
+            CycleVerdict::Overrun { skipped }
+        }
     }
 
     /// Cycles that did not finish before the next wake-up.
@@ -90,7 +94,7 @@ mod tests {
     const MS: u64 = 1_000_000;
 
     /// Runs cycles of the given lengths (in periods) against a mock clock; returns (wake-ups, verdicts).
-    fn run(start: u64, lengths: &[f64]) -> (Vec<u64>, Vec<Verdict>, Period) {
+    fn run(start: u64, lengths: &[f64]) -> (Vec<u64>, Vec<CycleVerdict>, Period) {
         let mut period = Period::new(start, MS, 8);
         let (mut wakes, mut verdicts) = (Vec::new(), Vec::new());
         let mut now = start;
@@ -108,7 +112,7 @@ mod tests {
     fn half_a_period_is_in_time() {
         let (wakes, verdicts, period) = run(12_345, &[0.5; 3]);
         assert_eq!(wakes, [0, MS, 2 * MS, 3 * MS]);
-        assert_eq!(verdicts, [Verdict::InTime; 3]);
+        assert_eq!(verdicts, [CycleVerdict::InTime; 3]);
         assert_eq!((period.overruns(), period.skipped()), (0, 0));
     }
 
@@ -116,14 +120,14 @@ mod tests {
     fn a_whole_period_is_just_in_time() {
         let (wakes, verdicts, _) = run(0, &[1.0, 1.0]);
         assert_eq!(wakes, [0, MS, 2 * MS]);
-        assert_eq!(verdicts, [Verdict::InTime; 2]);
+        assert_eq!(verdicts, [CycleVerdict::InTime; 2]);
     }
 
     #[test]
     fn one_and_a_half_periods_skip_one() {
         let (wakes, verdicts, period) = run(777, &[1.5, 0.5]);
         assert_eq!(wakes, [0, 2 * MS, 3 * MS]);
-        assert_eq!(verdicts, [Verdict::Overrun { skipped: 1 }, Verdict::InTime]);
+        assert_eq!(verdicts, [CycleVerdict::Overrun { skipped: 1 }, CycleVerdict::InTime]);
         assert_eq!((period.overruns(), period.skipped()), (1, 1));
     }
 
@@ -131,7 +135,7 @@ mod tests {
     fn three_point_two_periods_skip_three() {
         let (wakes, verdicts, period) = run(0, &[3.2, 0.1, 0.1]);
         assert_eq!(wakes, [0, 4 * MS, 5 * MS, 6 * MS]);
-        assert_eq!(verdicts[0], Verdict::Overrun { skipped: 3 });
+        assert_eq!(verdicts[0], CycleVerdict::Overrun { skipped: 3 });
         assert_eq!((period.overruns(), period.skipped()), (1, 3));
     }
 
@@ -139,7 +143,7 @@ mod tests {
     fn a_stall_of_ten_seconds_is_one_skip_and_no_burst() {
         let (wakes, verdicts, period) = run(5, &[10_000.4, 0.1, 0.1]);
         assert_eq!(wakes, [0, 10_001 * MS, 10_002 * MS, 10_003 * MS]);
-        assert_eq!(verdicts[0], Verdict::TooMany { skipped: 10_000 });
+        assert_eq!(verdicts[0], CycleVerdict::TooMany { skipped: 10_000 });
         assert_eq!((period.overruns(), period.skipped()), (1, 10_000));
     }
 
@@ -147,15 +151,15 @@ mod tests {
     fn the_bucket_fills_with_misses_and_empties_with_good_cycles() {
         // Every other cycle late: +1 -1, never full.
         let (_, verdicts, _) = run(0, &[1.5, 0.5].repeat(100));
-        assert!(verdicts.iter().all(|v| !matches!(v, Verdict::TooMany { .. })));
+        assert!(verdicts.iter().all(|v| !matches!(v, CycleVerdict::TooMany { .. })));
         // Two late ones for each good one: full at the limit of 8.
         let (_, verdicts, _) = run(0, &[1.5, 1.5, 0.5].repeat(10));
-        let full = verdicts.iter().position(|v| matches!(v, Verdict::TooMany { .. }));
+        let full = verdicts.iter().position(|v| matches!(v, CycleVerdict::TooMany { .. }));
         assert_eq!(full, Some(19), "1 2 1 | 2 3 2 | 3 4 3 | 4 5 4 | 5 6 5 | 6 7 6 | 7 8");
         // All late.
         let (_, verdicts, _) = run(0, &[1.5; 8]);
-        assert_eq!(verdicts[7], Verdict::TooMany { skipped: 1 });
-        assert_eq!(verdicts[6], Verdict::Overrun { skipped: 1 });
+        assert_eq!(verdicts[7], CycleVerdict::TooMany { skipped: 1 });
+        assert_eq!(verdicts[6], CycleVerdict::Overrun { skipped: 1 });
     }
 
     #[test]

@@ -16,14 +16,14 @@ const LOCKABLE: u64 = 1 << 30;
 
 /// Scheduling that a thread asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Schedule {
+pub struct ThreadSchedule {
     /// SCHED_FIFO priority 1..98; 0: the ordinary scheduler, and nothing is locked or touched.
     pub priority: u8,
     /// Core to be bound to; none: any.
     pub core: Option<usize>,
 }
 
-impl Schedule {
+impl ThreadSchedule {
     /// Scheduling for lockstep: none.
     pub const ORDINARY: Self = Self { priority: 0, core: None };
 }
@@ -71,7 +71,7 @@ impl Granted {
 /// Prepares the calling thread; before its ports are made, so that they are locked too.
 ///
 /// Threads it starts later are ordinary ones on the same core. Nothing fails here: what is missing is listed.
-pub fn prepare_thread(schedule: &Schedule) -> Granted {
+pub fn prepare_thread(schedule: &ThreadSchedule) -> Granted {
     let mut granted = Granted::default();
     if schedule.priority > 0 {
         granted.locked = lock_memory(&mut granted.missing);
@@ -90,7 +90,7 @@ pub fn prepare_thread(schedule: &Schedule) -> Granted {
 
 /// Prepares a second real-time thread of a process whose memory [`prepare_thread`] has locked already: its stack is touched,
 /// and it runs at `schedule`. Without a core it may run on any, also if the thread that started it is bound to one.
-pub fn prepare_side_thread(schedule: &Schedule) -> Granted {
+pub fn prepare_side_thread(schedule: &ThreadSchedule) -> Granted {
     let mut granted = Granted::default();
     if schedule.priority == 0 {
         return granted;

@@ -1,6 +1,6 @@
 //! What is granted is what the kernel says afterwards.
 
-use realtime::{Schedule, Stop, prepare_thread};
+use realtime::{Stop, ThreadSchedule, prepare_thread};
 
 fn status(key: &str) -> String {
     let text = std::fs::read_to_string("/proc/thread-self/status").unwrap();
@@ -9,7 +9,7 @@ fn status(key: &str) -> String {
 
 #[test]
 fn grants_are_true_or_named() {
-    let granted = prepare_thread(&Schedule { priority: 10, core: Some(0) });
+    let granted = prepare_thread(&ThreadSchedule { priority: 10, core: Some(0) });
     let locked: u64 = status("VmLck:").split_whitespace().next().unwrap().parse().unwrap();
     assert_eq!(granted.locked, locked > 0);
     // policy is field 41 of stat, priority field 40 (proc(5)), counted after the parenthesis of field 2.
@@ -24,14 +24,14 @@ fn grants_are_true_or_named() {
 
 #[test]
 fn what_cannot_be_granted_is_named() {
-    let granted = prepare_thread(&Schedule { priority: 0, core: Some(1000) });
+    let granted = prepare_thread(&ThreadSchedule { priority: 0, core: Some(1000) });
     assert_eq!(granted.core, None);
     assert!(granted.missing[0].contains("core 1000"), "{:?}", granted.missing);
 }
 
 #[test]
 fn ordinary_asks_for_nothing() {
-    let granted = prepare_thread(&Schedule::ORDINARY);
+    let granted = prepare_thread(&ThreadSchedule::ORDINARY);
     assert!(!granted.degraded() && !granted.locked && granted.priority == 0);
 }
 

@@ -8,7 +8,7 @@ use messages::topics::{ForType, with_type};
 use messages::{Joints, Record, TOPICS, Topic};
 use recording::traffic::{CanFrame, TrafficWriter};
 use recording::{
-    FootInfo, Link, LinkPoses, Pose, Recorder, RecordingError, RobotInfo, RunInfo, channel_name,
+    FootInfo, LinkFrame, LinkPoses, RecordedPose, Recorder, RecordingError, RobotInfo, RunInfo, channel_name,
 };
 use std::fmt::Write;
 use std::path::Path;
@@ -73,15 +73,15 @@ impl ForType<Result<(), RecordingError>> for WriteOne<'_> {
     }
 }
 
-struct Hopper([Link; 3]);
+struct Hopper([LinkFrame; 3]);
 impl LinkPoses for Hopper {
-    fn links(&self) -> &[Link] {
+    fn links(&self) -> &[LinkFrame] {
         &self.0
     }
-    fn poses(&mut self, base: &Pose, _: &Joints, out: &mut [Pose]) {
+    fn poses(&mut self, base: &RecordedPose, _: &Joints, out: &mut [RecordedPose]) {
         out[0] = *base;
-        out[1] = base.then(&Pose::moved([0.0, -0.1, -0.9]));
-        out[2] = base.then(&Pose::moved([0.0, 0.1, -0.9]));
+        out[1] = base.then(&RecordedPose::moved([0.0, -0.1, -0.9]));
+        out[2] = base.then(&RecordedPose::moved([0.0, 0.1, -0.9]));
     }
 }
 
@@ -103,7 +103,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         feet: [foot("right"), foot("left")],
         odom: [0.0; 3],
     };
-    let link = |name: &str, parent| Link { name: name.into(), parent, fixed: false };
+    let link = |name: &str, parent| LinkFrame { name: name.into(), parent, fixed: false };
     let hopper = Hopper([link("torso", None), link("right_foot", Some(0)), link("left_foot", Some(0))]);
     let mut recorder = Recorder::create(&directory.join("peers.mcap"), &robot, &RunInfo::default())?
         .with_links(Box::new(hopper));

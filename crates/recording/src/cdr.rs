@@ -11,11 +11,11 @@ const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 
 /// Writes a payload.
 #[derive(Clone, Debug, Default)]
-pub struct Encoder {
+pub struct CdrEncoder {
     bytes: Vec<u8>,
 }
 
-impl Encoder {
+impl CdrEncoder {
     /// An encoder that has not allocated yet.
     pub const fn new() -> Self {
         Self { bytes: Vec::new() }
@@ -82,7 +82,7 @@ impl Encoder {
     }
 }
 
-impl Visit for Encoder {
+impl Visit for CdrEncoder {
     fn f64(&mut self, value: f64) {
         self.put(value.to_le_bytes());
     }
@@ -102,13 +102,13 @@ impl Visit for Encoder {
 
 /// Reads a payload.
 #[derive(Clone, Debug)]
-pub struct Decoder<'a> {
+pub struct CdrDecoder<'a> {
     body: &'a [u8],
     at: usize,
     dry: bool,
 }
 
-impl<'a> Decoder<'a> {
+impl<'a> CdrDecoder<'a> {
     /// A decoder behind the encapsulation header; `None` if the payload does not begin with ours.
     pub fn new(payload: &'a [u8]) -> Option<Self> {
         let body = payload.strip_prefix(&ENCAPSULATION)?;
@@ -161,7 +161,7 @@ impl<'a> Decoder<'a> {
     }
 }
 
-impl Read for Decoder<'_> {
+impl Read for CdrDecoder<'_> {
     fn f64(&mut self) -> f64 {
         f64::from_le_bytes(self.take())
     }
@@ -178,7 +178,7 @@ impl Read for Decoder<'_> {
 
 /// The record of a payload; `None` if the payload is shorter or longer than the record.
 pub fn decode<T: Field>(payload: &[u8]) -> Option<T> {
-    let mut decoder = Decoder::new(payload)?;
+    let mut decoder = CdrDecoder::new(payload)?;
     let value = T::read(&mut decoder);
     (!decoder.ran_dry() && decoder.left() == 0).then_some(value)
 }

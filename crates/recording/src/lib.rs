@@ -29,8 +29,8 @@ pub mod traffic;
 
 pub use error::RecordingError;
 pub use hashes::payload_hashes;
-pub use links::{Link, LinkPoses, Pose};
-pub use log::{End, FrameTree, Log, Message, Transform};
+pub use links::{LinkFrame, LinkPoses, RecordedPose};
+pub use log::{FrameTree, Log, LogEnd, LogMessage, Transform};
 pub use recorder::{Recorder, STANDARD_RATE, Sink, channel_name};
 pub use rewrite::{Repaired, repair, rewrite};
 pub use robot::{FootInfo, RobotInfo, RunInfo, WallClock};

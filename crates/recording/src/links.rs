@@ -4,7 +4,7 @@ use messages::{Joints, Sensors};
 
 /// Position \[m\] and unit quaternion (x, y, z, w) of a frame in another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
+pub struct RecordedPose {
     /// \[m\]
     pub position: [f64; 3],
     /// \[1\] (x, y, z, w)
@@ -13,7 +13,7 @@ pub struct Pose {
 
 /// A link and the one it hangs on.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Link {
+pub struct LinkFrame {
     /// Name in the URDF.
     pub name: String,
     /// Index of the parent link, which comes before this one; none: the floating base.
@@ -25,10 +25,10 @@ pub struct Link {
 /// The kinematics behind `/tf`.
 pub trait LinkPoses: Send {
     /// All links, parents before their children.
-    fn links(&self) -> &[Link];
+    fn links(&self) -> &[LinkFrame];
 
     /// Pose of every link with the base at `base` and joints at these angles \[rad\], in the same order.
-    fn poses(&mut self, base: &Pose, joint_angle: &Joints, out: &mut [Pose]);
+    fn poses(&mut self, base: &RecordedPose, joint_angle: &Joints, out: &mut [RecordedPose]);
 
     /// Torque of every joint \[N m\], NaN where nothing is known of it; false: of none.
     fn torques(&mut self, _sensors: &Sensors, _out: &mut Joints) -> bool {
@@ -36,7 +36,7 @@ pub trait LinkPoses: Send {
     }
 }
 
-impl Pose {
+impl RecordedPose {
     /// The frame itself.
     pub const IDENTITY: Self = Self { position: [0.0; 3], orientation: [0.0, 0.0, 0.0, 1.0] };
 

@@ -1,10 +1,10 @@
 //! Reads a log, also one that ends in the middle because its writer was killed.
 
-use crate::cdr::{Decoder, decode};
+use crate::cdr::{CdrDecoder, decode};
 use crate::definition::definition;
 use crate::error::RecordingError;
 use crate::lengths;
-use crate::links::Pose;
+use crate::links::RecordedPose;
 use crate::recorder::channel_name;
 use crate::robot::{METADATA, RobotInfo, RunInfo, from_metadata};
 use crate::standard::{ODOM, TRUTH, WORLD};
@@ -32,7 +32,7 @@ pub struct Log {
 
 /// One message as it stands in the file.
 #[derive(Clone, Copy, Debug)]
-pub struct Message<'a> {
+pub struct LogMessage<'a> {
     /// Name of the channel.
     pub channel: &'a str,
     /// Definition of its type.
@@ -47,7 +47,7 @@ pub struct Message<'a> {
 
 /// Ending of the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum LogEnd {
     /// With its index, as it should.
     Complete,
     /// In the middle: its writer was killed or the file was cut. Holds the number of messages before the cut.
@@ -62,7 +62,7 @@ pub struct Transform {
     /// The frame.
     pub child: String,
     /// parent_from_child
-    pub pose: Pose,
+    pub pose: RecordedPose,
 }
 
 /// All frames of the robot in `odom` at one instant.
@@ -83,9 +83,9 @@ impl Log {
         let (mut about, mut urdf) = (None, None);
         walk(path, |seen| {
             match seen {
-                Seen::Metadata(name, map) if name == METADATA => about = Some(from_metadata(map)),
-                Seen::Message(m) if m.channel == ROBOT_DESCRIPTION.topic => {
-                    urdf = Decoder::new(m.payload).map(|mut d| d.string().to_string());
+                LogContent::Metadata(name, map) if name == METADATA => about = Some(from_metadata(map)),
+                LogContent::Message(m) if m.channel == ROBOT_DESCRIPTION.topic => {
+                    urdf = CdrDecoder::new(m.payload).map(|mut d| d.string().to_string());
                 }
                 _ => {}
             }
@@ -112,20 +112,20 @@ impl Log {
     /// The file cannot be read, or is damaged.
     pub fn each_attachment(&self, mut see: impl FnMut(&str, &[u8])) -> Result<(), RecordingError> {
         walk(&self.path, |seen| match seen {
-            Seen::Attachment(name, bytes) => {
+            LogContent::Attachment(name, bytes) => {
                 see(name, bytes);
                 ControlFlow::Continue(())
             }
-            Seen::Message(_) => ControlFlow::Break(()),
+            LogContent::Message(_) => ControlFlow::Break(()),
             _ => ControlFlow::Continue(()),
         })?;
         Ok(())
     }
 
     /// Shows every message in the order of the file.
-    pub fn each(&self, mut see: impl FnMut(Message<'_>)) -> Result<End, RecordingError> {
+    pub fn each(&self, mut see: impl FnMut(LogMessage<'_>)) -> Result<LogEnd, RecordingError> {
         walk(&self.path, |seen| {
-            if let Seen::Message(message) = seen {
+            if let LogContent::Message(message) = seen {
                 see(message);
             }
             ControlFlow::Continue(())
@@ -137,7 +137,7 @@ impl Log {
         &self,
         topic: &Topic,
         mut see: impl FnMut(&T),
-    ) -> Result<End, RecordingError> {
+    ) -> Result<LogEnd, RecordingError> {
         let (channel, ours) = (channel_name(topic.name), definition::<T>());
         let mut same_layout = true;
         let end = self.each(|message| {
@@ -195,7 +195,7 @@ impl Log {
 
 /// `tf2_msgs/TFMessage`.
 fn read_transforms(payload: &[u8]) -> Vec<Transform> {
-    let Some(mut d) = Decoder::new(payload) else { return Vec::new() };
+    let Some(mut d) = CdrDecoder::new(payload) else { return Vec::new() };
     let mut transforms = Vec::new();
     for _ in 0..d.u32() {
         let _stamp = (d.i32(), d.u32());
@@ -205,25 +205,25 @@ fn read_transforms(payload: &[u8]) -> Vec<Transform> {
         if d.ran_dry() {
             break;
         }
-        transforms.push(Transform { parent, child, pose: Pose { position, orientation } });
+        transforms.push(Transform { parent, child, pose: RecordedPose { position, orientation } });
     }
     transforms
 }
 
 /// Content of a file.
-pub(crate) enum Seen<'a> {
+pub(crate) enum LogContent<'a> {
     Metadata(&'a str, &'a std::collections::BTreeMap<String, String>),
     Attachment(&'a str, &'a [u8]),
     Schema(&'a SchemaHeader, &'a [u8]),
     Channel(&'a Channel),
-    Message(Message<'a>),
+    Message(LogMessage<'a>),
 }
 
 /// Walks over the file until its end, a cut, or a break.
 pub(crate) fn walk(
     path: &Path,
-    mut see: impl FnMut(Seen<'_>) -> ControlFlow<()>,
-) -> Result<End, RecordingError> {
+    mut see: impl FnMut(LogContent<'_>) -> ControlFlow<()>,
+) -> Result<LogEnd, RecordingError> {
     let mut file = std::fs::File::open(path).map_err(|e| RecordingError::Read(path.into(), e))?;
     let options = LinearReaderOptions::default()
         .with_validate_chunk_crcs(true)
@@ -250,7 +250,7 @@ pub(crate) fn walk(
             Err(McapError::UnexpectedEof) if bytes < mcap::MAGIC.len() as u64 => {
                 return Err(RecordingError::not_a_log(path, format!("it has only {bytes} bytes")));
             }
-            Err(McapError::UnexpectedEof) => return Ok(End::Truncated(messages)),
+            Err(McapError::UnexpectedEof) => return Ok(LogEnd::Truncated(messages)),
             Err(e) => return Err(RecordingError::Damaged(path.into(), messages, e.to_string())),
         };
         if !lengths::is_read(opcode) {
@@ -264,17 +264,17 @@ pub(crate) fn walk(
             .map_err(|e| RecordingError::Damaged(path.into(), messages, e.to_string()))?;
         let flow = match entry {
             Entry::Schema { header, data } => {
-                let flow = see(Seen::Schema(&header, &data));
+                let flow = see(LogContent::Schema(&header, &data));
                 schemas.insert(header.id, data.into_owned());
                 flow
             }
             Entry::Channel(channel) => {
-                let flow = see(Seen::Channel(&channel));
+                let flow = see(LogContent::Channel(&channel));
                 channels.insert(channel.id, (channel.topic, channel.schema_id));
                 flow
             }
-            Entry::Attachment { header, data, .. } => see(Seen::Attachment(&header.name, &data)),
-            Entry::Metadata(metadata) => see(Seen::Metadata(&metadata.name, &metadata.metadata)),
+            Entry::Attachment { header, data, .. } => see(LogContent::Attachment(&header.name, &data)),
+            Entry::Metadata(metadata) => see(LogContent::Metadata(&metadata.name, &metadata.metadata)),
             Entry::Message { header, data } => {
                 messages += 1;
                 let Some((channel, schema)) = channels.get(&header.channel_id) else {
@@ -282,7 +282,7 @@ pub(crate) fn walk(
                     return Err(RecordingError::Damaged(path.into(), messages, why));
                 };
                 let definition = schemas.get(schema).map_or(&[][..], Vec::as_slice);
-                see(Seen::Message(Message {
+                see(LogContent::Message(LogMessage {
                     channel,
                     definition,
                     number: header.sequence,
@@ -293,8 +293,8 @@ pub(crate) fn walk(
             _ => ControlFlow::Continue(()),
         };
         if flow.is_break() {
-            return Ok(End::Complete);
+            return Ok(LogEnd::Complete);
         }
     }
-    Ok(End::Complete)
+    Ok(LogEnd::Complete)
 }

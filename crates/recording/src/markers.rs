@@ -3,8 +3,8 @@
 use messages::record::{Visit, Wrench};
 use messages::{ControllerState, Sensors, SimState};
 
-use crate::cdr::Encoder;
-use crate::links::Pose;
+use crate::cdr::CdrEncoder;
+use crate::links::RecordedPose;
 use crate::odometry::{Planned, planning_frame};
 use crate::polygon::{Point, convex_hull, sole_corners};
 use crate::robot::RobotInfo;
@@ -23,7 +23,7 @@ const GREY: [f32; 4] = [0.6, 0.6, 0.6, 0.4];
 
 /// Numbers of `visualization_msgs/Marker`.
 #[derive(Clone, Copy)]
-enum Shape {
+enum MarkerShape {
     Cube = 1,
     Sphere = 2,
     LineStrip = 4,
@@ -33,7 +33,7 @@ enum Shape {
 struct Marker {
     frame: &'static str,
     name: String,
-    shape: Shape,
+    shape: MarkerShape,
     at: [f64; 3],
     size: [f64; 3],
     color: [f32; 4],
@@ -42,13 +42,13 @@ struct Marker {
 
 impl Marker {
     fn sphere(frame: &'static str, name: String, at: [f64; 3], size: f64, color: [f32; 4]) -> Self {
-        Self { frame, name, shape: Shape::Sphere, at, size: [size; 3], color, points: Vec::new() }
+        Self { frame, name, shape: MarkerShape::Sphere, at, size: [size; 3], color, points: Vec::new() }
     }
 
     fn lines(
         frame: &'static str,
         name: String,
-        shape: Shape,
+        shape: MarkerShape,
         color: [f32; 4],
         points: Vec<[f64; 3]>,
     ) -> Self {
@@ -57,11 +57,11 @@ impl Marker {
 
     /// Nothing to be seen of it at present.
     fn is_gone(&self) -> bool {
-        let lines = matches!(self.shape, Shape::LineStrip | Shape::LineList);
+        let lines = matches!(self.shape, MarkerShape::LineStrip | MarkerShape::LineList);
         lines && self.points.is_empty() || self.at.iter().any(|x| !x.is_finite())
     }
 
-    fn encode(&self, e: &mut Encoder, stamp_ns: u64) {
+    fn encode(&self, e: &mut CdrEncoder, stamp_ns: u64) {
         header(e, stamp_ns, self.frame);
         e.string(&self.name);
         // Id, shape, action: 0 shows, 2 takes away.
@@ -69,7 +69,7 @@ impl Marker {
             e.i32(number);
         }
         e.f64s(&self.at.map(|x| if x.is_finite() { x } else { 0.0 }));
-        e.f64s(&Pose::IDENTITY.orientation);
+        e.f64s(&RecordedPose::IDENTITY.orientation);
         e.f64s(&self.size);
         self.color.into_iter().for_each(|c| e.f32(c));
         e.stamp(0); // lifetime: for ever
@@ -90,14 +90,14 @@ impl Marker {
     }
 }
 
-fn encode(e: &mut Encoder, stamp_ns: u64, markers: &[Marker]) {
+fn encode(e: &mut CdrEncoder, stamp_ns: u64, markers: &[Marker]) {
     e.begin().count(markers.len());
     markers.iter().for_each(|marker| marker.encode(e, stamp_ns));
 }
 
 /// `visualization_msgs/MarkerArray`: what the robot believes.
 pub(crate) fn believed(
-    e: &mut Encoder,
+    e: &mut CdrEncoder,
     stamp_ns: u64,
     robot: &RobotInfo,
     (sensors, state): (&Sensors, &ControllerState),
@@ -119,7 +119,7 @@ pub(crate) fn believed(
     let ground = Marker {
         frame: WORLD,
         name: "ground".into(),
-        shape: Shape::Cube,
+        shape: MarkerShape::Cube,
         at: [0.0, 0.0, -0.005],
         size: [GROUND, GROUND, 0.01],
         color: GREY,
@@ -128,23 +128,23 @@ pub(crate) fn believed(
     let polygon = closed(&convex_hull(&corners)).into_iter().map(on_ground).collect();
     let markers = [
         ground,
-        Marker::lines(ODOM, "planned_steps".into(), Shape::LineList, PURPLE, steps),
+        Marker::lines(ODOM, "planned_steps".into(), MarkerShape::LineList, PURPLE, steps),
         Marker::sphere(ODOM, "centre_of_gravity".into(), frame.place(state.com), 0.05, BLUE),
         Marker::sphere(ODOM, "zero_moment_point".into(), on_ground(state.zmp), 0.03, VERMILION),
-        Marker::lines(ODOM, "support_polygon".into(), Shape::LineStrip, GREEN, polygon),
+        Marker::lines(ODOM, "support_polygon".into(), MarkerShape::LineStrip, GREEN, polygon),
     ];
     encode(e, stamp_ns, &markers);
 }
 
 /// The same of the simulated robot, under names of their own.
-pub(crate) fn truth(e: &mut Encoder, stamp_ns: u64, robot: &RobotInfo, state: &SimState) {
+pub(crate) fn truth(e: &mut CdrEncoder, stamp_ns: u64, robot: &RobotInfo, state: &SimState) {
     let name = |name: &str| format!("{TRUTH}{name}");
     let at = zero_moment_point(state).map_or([f64::NAN; 3], |[x, y]| [x, y, 0.0]);
     let polygon = closed(&support_polygon(robot, state)).into_iter().map(|[x, y]| [x, y, 0.0]).collect();
     let markers = [
         Marker::sphere(WORLD, name("centre_of_gravity"), state.com, 0.05, BLUE),
         Marker::sphere(WORLD, name("zero_moment_point"), at, 0.03, VERMILION),
-        Marker::lines(WORLD, name("support_polygon"), Shape::LineStrip, GREEN, polygon),
+        Marker::lines(WORLD, name("support_polygon"), MarkerShape::LineStrip, GREEN, polygon),
     ];
     encode(e, stamp_ns, &markers);
 }

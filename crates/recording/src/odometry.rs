@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, VecDeque};
 use messages::plan::Step;
 use messages::{ControllerState, Plan, Sensors};
 
-use crate::links::Pose;
+use crate::links::RecordedPose;
 
 /// Plans that are remembered: the stabilizer follows one of the newest.
 const PLANS: usize = 16;
@@ -75,23 +75,28 @@ fn keep<T: Copy>(waiting: &mut VecDeque<T>, new: &T) {
 }
 
 /// odom_from_planning
-pub(crate) fn planning_frame(state: &ControllerState, height: f64) -> Pose {
+pub(crate) fn planning_frame(state: &ControllerState, height: f64) -> RecordedPose {
     let [x, y, heading] = state.origin;
-    Pose { position: [x, y, height], orientation: about_z(heading) }
+    RecordedPose { position: [x, y, height], orientation: about_z(heading) }
 }
 
 /// odom_from_torso: the inclination is the inertial measurement unit's, heading and place are those that the stabilizer
 /// knows of the right sole, which is at `sole` in the torso frame.
-pub(crate) fn torso(sensors: &Sensors, state: &ControllerState, height: f64, sole: &Pose) -> Option<Pose> {
+pub(crate) fn torso(
+    sensors: &Sensors,
+    state: &ControllerState,
+    height: f64,
+    sole: &RecordedPose,
+) -> Option<RecordedPose> {
     let norm = sensors.imu.orientation.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let imu = Pose { position: [0.0; 3], orientation: sensors.imu.orientation.map(|x| x / norm) };
+    let imu = RecordedPose { position: [0.0; 3], orientation: sensors.imu.orientation.map(|x| x / norm) };
     let [x, y, z, heading] = state.feet[0];
     let seen = imu.then(sole);
     let turn = about_z(state.origin[2] + heading - seen.heading());
-    let turned = Pose { position: [0.0; 3], orientation: turn }.then(&imu);
+    let turned = RecordedPose { position: [0.0; 3], orientation: turn }.then(&imu);
     let at = planning_frame(state, height).place([x, y, z]);
     let lever = turned.place(sole.position);
-    let torso = Pose { position: std::array::from_fn(|k| at[k] - lever[k]), ..turned };
+    let torso = RecordedPose { position: std::array::from_fn(|k| at[k] - lever[k]), ..turned };
     let finite = torso.position.iter().chain(&torso.orientation).all(|x| x.is_finite());
     finite.then_some(torso)
 }

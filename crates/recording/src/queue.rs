@@ -10,7 +10,7 @@ const HORIZON: u64 = 100_000_000;
 
 /// One message.
 #[derive(Debug)]
-pub(crate) struct Message {
+pub(crate) struct QueuedMessage {
     /// Index of its channel.
     pub(crate) channel: usize,
     /// Number on its channel.
@@ -21,12 +21,12 @@ pub(crate) struct Message {
 
 /// Waiting messages, and the time of the log.
 #[derive(Debug, Default)]
-pub(crate) struct Queue {
+pub(crate) struct MessageQueue {
     clock: Option<WallClock>,
     /// By time of the log \[ns\], then as they came.
-    waiting: BTreeMap<(u64, u64), Message>,
+    waiting: BTreeMap<(u64, u64), QueuedMessage>,
     /// Written before the first bus cycle, whose time is theirs.
-    early: Vec<Message>,
+    early: Vec<QueuedMessage>,
     count: u64,
     /// \[ns\] Newest stamp; 0: no cycle so far.
     newest: u64,
@@ -34,7 +34,7 @@ pub(crate) struct Queue {
     last: Vec<u64>,
 }
 
-impl Queue {
+impl MessageQueue {
     pub(crate) fn new(clock: Option<WallClock>) -> Self {
         Self { clock, ..Self::default() }
     }
@@ -50,7 +50,7 @@ impl Queue {
     }
 
     /// Adds a message of this stamp. In real time one without a stamp is of the newest cycle, or of the first one to come.
-    pub(crate) fn add(&mut self, stamp_ns: u64, message: Message) {
+    pub(crate) fn add(&mut self, stamp_ns: u64, message: QueuedMessage) {
         self.newest = self.newest.max(stamp_ns);
         if self.clock.is_none() {
             return self.put(stamp_ns, message);
@@ -63,7 +63,7 @@ impl Queue {
         self.put(self.time(if stamp_ns == 0 { self.newest } else { stamp_ns }), message);
     }
 
-    fn put(&mut self, time: u64, message: Message) {
+    fn put(&mut self, time: u64, message: QueuedMessage) {
         self.last.resize(self.last.len().max(message.channel + 1), 0);
         let last = &mut self.last[message.channel];
         *last = time.max(*last);
@@ -72,7 +72,7 @@ impl Queue {
     }
 
     /// The next message that none can come before any more, and its time \[ns\].
-    pub(crate) fn next(&mut self) -> Option<(u64, Message)> {
+    pub(crate) fn next(&mut self) -> Option<(u64, QueuedMessage)> {
         let until = self.time(self.newest).saturating_sub(HORIZON);
         let entry = self.waiting.first_entry()?;
         let time = entry.key().0;
@@ -80,12 +80,12 @@ impl Queue {
     }
 
     /// The next message, whatever may still come.
-    pub(crate) fn drain(&mut self) -> Option<(u64, Message)> {
+    pub(crate) fn drain(&mut self) -> Option<(u64, QueuedMessage)> {
         self.waiting.pop_first().map(|((time, _), message)| (time, message))
     }
 
     /// The same at the end of a log, also of a run that never began a cycle.
-    pub(crate) fn end(&mut self) -> Option<(u64, Message)> {
+    pub(crate) fn end(&mut self) -> Option<(u64, QueuedMessage)> {
         let start = self.time(0);
         std::mem::take(&mut self.early).into_iter().for_each(|early| self.put(start, early));
         self.drain()
@@ -96,17 +96,17 @@ impl Queue {
 mod tests {
     use super::*;
 
-    fn message(channel: usize, sequence: u32) -> Message {
-        Message { channel, sequence, payload: Vec::new() }
+    fn message(channel: usize, sequence: u32) -> QueuedMessage {
+        QueuedMessage { channel, sequence, payload: Vec::new() }
     }
 
-    fn all(queue: &mut Queue) -> Vec<(u64, usize, u32)> {
+    fn all(queue: &mut MessageQueue) -> Vec<(u64, usize, u32)> {
         std::iter::from_fn(|| queue.end()).map(|(time, m)| (time, m.channel, m.sequence)).collect()
     }
 
     #[test]
     fn messages_come_out_by_time_and_each_channel_in_its_order() {
-        let mut queue = Queue::new(None);
+        let mut queue = MessageQueue::new(None);
         for (channel, stamp) in [(0, 10), (0, 20), (1, 10), (1, 15), (0, 0), (1, 30)] {
             queue.add(stamp, message(channel, stamp as u32));
         }
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn in_real_time_no_message_has_the_time_zero() {
         let clock = WallClock { unix_ns: 5000, monotonic_ns: 1000, host: String::new() };
-        let mut queue = Queue::new(Some(clock));
+        let mut queue = MessageQueue::new(Some(clock));
         for (channel, stamp) in [(0, 0), (1, 0), (0, 1200), (1, 0), (0, 1300), (1, 0)] {
             queue.add(stamp, message(channel, stamp as u32));
         }
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn a_message_waits_until_none_can_come_before_it() {
-        let mut queue = Queue::new(None);
+        let mut queue = MessageQueue::new(None);
         queue.add(1, message(0, 1));
         queue.add(HORIZON, message(0, 2));
         assert!(queue.next().is_none());

@@ -10,12 +10,12 @@
 //! Chunks are put together in memory and written at once, so that what is in the file is always the beginning of a
 //! valid log: a crash costs the chunk that was not yet written, see [`Recorder::flush`].
 
-use crate::cdr::Encoder;
+use crate::cdr::CdrEncoder;
 use crate::definition::{definition, interface};
 use crate::error::RecordingError;
-use crate::links::{LinkPoses, Pose};
+use crate::links::{LinkPoses, RecordedPose};
 use crate::odometry::{self, Odometry};
-use crate::queue::{Message, Queue};
+use crate::queue::{MessageQueue, QueuedMessage};
 use crate::robot::{METADATA, RobotInfo, RunInfo, to_metadata};
 use crate::standard::{self, ODOM, TRUTH, WORLD};
 use crate::standard_definitions::{
@@ -47,11 +47,11 @@ pub struct Recorder {
     mcap: mcap::Writer<Box<dyn Sink>>,
     robot: RobotInfo,
     links: Option<Box<dyn LinkPoses>>,
-    poses: Vec<Pose>,
+    poses: Vec<RecordedPose>,
     channels: Vec<Channel>,
-    encoder: Encoder,
+    encoder: CdrEncoder,
     words: Words,
-    queue: Queue,
+    queue: MessageQueue,
     odometry: Odometry,
     described: bool,
     /// \[ns\] Bus cycle: how much later than its stamp the simulated state is what it says.
@@ -89,9 +89,9 @@ impl Recorder {
             links: None,
             poses: Vec::new(),
             channels: Vec::new(),
-            encoder: Encoder::new(),
+            encoder: CdrEncoder::new(),
             words: Words { joints: robot.joints.clone(), ..Words::default() },
-            queue: Queue::new(run.clock.clone()),
+            queue: MessageQueue::new(run.clock.clone()),
             odometry: Odometry::default(),
             described: false,
             cycle_ns: run.cycle_ns,
@@ -103,7 +103,7 @@ impl Recorder {
 
     /// Also writes the pose of every link as `/tf`. Without it there is the true torso alone.
     pub fn with_links(mut self, links: Box<dyn LinkPoses>) -> Self {
-        self.poses = vec![Pose::IDENTITY; links.links().len()];
+        self.poses = vec![RecordedPose::IDENTITY; links.links().len()];
         self.links = Some(links);
         self
     }
@@ -211,7 +211,7 @@ impl Recorder {
         self.put(ROBOT_DESCRIPTION.topic, 0);
         let links = match &mut self.links {
             Some(links) => {
-                links.poses(&Pose::IDENTITY, &[0.0; MAX_JOINTS], &mut self.poses);
+                links.poses(&RecordedPose::IDENTITY, &[0.0; MAX_JOINTS], &mut self.poses);
                 links.links()
             }
             None => &[],
@@ -258,10 +258,10 @@ impl Recorder {
         markers::believed(&mut self.encoder, time, &self.robot, (sensors, state), &plan);
         self.put(MARKERS.topic, stamp);
         let Some(links) = &mut self.links else { return };
-        links.poses(&Pose::IDENTITY, &sensors.joint_angle, &mut self.poses);
+        links.poses(&RecordedPose::IDENTITY, &sensors.joint_angle, &mut self.poses);
         let foot = &self.robot.feet[0];
         let Some(at) = links.links().iter().position(|link| link.name == foot.link) else { return };
-        let sole = self.poses[at].then(&Pose::moved(foot.sole));
+        let sole = self.poses[at].then(&RecordedPose::moved(foot.sole));
         let Some(torso) = odometry::torso(sensors, state, plan.height, &sole) else { return };
         links.poses(&torso, &sensors.joint_angle, &mut self.poses);
         standard::tf(&mut self.encoder, time, ODOM, "", links.links(), &self.poses);
@@ -275,7 +275,7 @@ impl Recorder {
             return;
         }
         let time = self.queue.time(stamp);
-        let torso = Pose { position: state.position, orientation: state.orientation };
+        let torso = RecordedPose { position: state.position, orientation: state.orientation };
         match &mut self.links {
             Some(links) => {
                 links.poses(&torso, &state.joint_angle, &mut self.poses);
@@ -296,10 +296,11 @@ impl Recorder {
         let Some(at) = self.channels.iter().position(|c| c.topic == topic) else { return };
         let sequence = self.channels[at].sequence;
         self.channels[at].sequence = sequence.wrapping_add(1);
-        self.queue.add(stamp_ns, Message { channel: at, sequence, payload: self.encoder.payload().into() });
+        self.queue
+            .add(stamp_ns, QueuedMessage { channel: at, sequence, payload: self.encoder.payload().into() });
     }
 
-    fn write_to_file(&mut self, time: u64, message: &Message) -> Result<(), RecordingError> {
+    fn write_to_file(&mut self, time: u64, message: &QueuedMessage) -> Result<(), RecordingError> {
         let header = MessageHeader {
             channel_id: self.channels[message.channel].id,
             sequence: message.sequence,

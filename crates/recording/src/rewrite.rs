@@ -1,7 +1,7 @@
 //! A log once more, message by message: with an index if it had none, because its writer died.
 
 use crate::error::RecordingError;
-use crate::log::{End, Seen, walk};
+use crate::log::{LogContent, LogEnd, walk};
 use crate::recorder::{Sink, options};
 use mcap::records::{MessageHeader, Metadata};
 use std::collections::{BTreeMap, HashMap};
@@ -26,8 +26,8 @@ pub fn repair(path: &Path) -> Result<Repaired, RecordingError> {
     let new = path.with_extension("repair");
     let done = rewrite(path, &new, |_, _| true);
     let found = match &done {
-        Ok((End::Complete, _)) => None,
-        Ok((End::Truncated(_), _)) => Some("it ended in the middle".to_owned()),
+        Ok((LogEnd::Complete, _)) => None,
+        Ok((LogEnd::Truncated(_), _)) => Some("it ended in the middle".to_owned()),
         Err(e) => Some(e.to_string()),
     };
     let messages = match done {
@@ -55,7 +55,7 @@ pub fn rewrite(
     from: &Path,
     to: &Path,
     mut edit: impl FnMut(&str, &mut Vec<u8>) -> bool,
-) -> Result<(End, u64), RecordingError> {
+) -> Result<(LogEnd, u64), RecordingError> {
     let file = std::fs::File::create(to).map_err(|e| RecordingError::Create(to.into(), e))?;
     let sink: Box<dyn Sink> = Box::new(BufWriter::new(file));
     let mut mcap = options().create(sink).map_err(RecordingError::write)?;
@@ -64,10 +64,10 @@ pub fn rewrite(
     let (mut payload, mut messages, mut failed) = (Vec::new(), 0, None);
     let end = walk(from, |seen| {
         let written = match seen {
-            Seen::Metadata(name, map) => {
+            LogContent::Metadata(name, map) => {
                 mcap.write_metadata(&Metadata { name: name.into(), metadata: map.clone() })
             }
-            Seen::Attachment(name, bytes) => mcap.attach(&mcap::Attachment {
+            LogContent::Attachment(name, bytes) => mcap.attach(&mcap::Attachment {
                 log_time: 0,
                 create_time: 0,
                 name: name.into(),
@@ -75,16 +75,16 @@ pub fn rewrite(
                 data: bytes.into(),
             }),
             // Numbers of schemas and channels are given anew by the writer.
-            Seen::Schema(header, data) => mcap
+            LogContent::Schema(header, data) => mcap
                 .add_schema(&header.name, &header.encoding, data)
                 .map(|id| _ = schemas.insert(header.id, id)),
-            Seen::Channel(channel) => {
+            LogContent::Channel(channel) => {
                 let schema = schemas.get(&channel.schema_id).copied().unwrap_or(0);
                 let metadata: &BTreeMap<String, String> = &channel.metadata;
                 mcap.add_channel(schema, &channel.topic, &channel.message_encoding, metadata)
                     .map(|id| _ = channels.insert(channel.topic.clone(), id))
             }
-            Seen::Message(message) => {
+            LogContent::Message(message) => {
                 messages += 1;
                 payload.clear();
                 payload.extend_from_slice(message.payload);

@@ -3,7 +3,7 @@
 use messages::record::Visit;
 use messages::{Event, EventCode, Words};
 
-use crate::cdr::Encoder;
+use crate::cdr::CdrEncoder;
 
 /// Numbers of `rcl_interfaces/Log`.
 #[derive(Clone, Copy)]
@@ -15,7 +15,7 @@ enum Level {
 }
 
 /// `rcl_interfaces/Log` of an event that `process` told.
-pub(crate) fn log(e: &mut Encoder, stamp_ns: u64, process: &str, event: &Event, words: &Words) {
+pub(crate) fn log(e: &mut CdrEncoder, stamp_ns: u64, process: &str, event: &Event, words: &Words) {
     let code = EventCode::from_number(event.code);
     e.begin().stamp(stamp_ns);
     e.u8(code.map_or(Level::Warn, level) as u8);

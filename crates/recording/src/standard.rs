@@ -1,7 +1,7 @@
 //! Standard ROS 2 messages made from our records: what viewers know how to show.
 
-use crate::cdr::Encoder;
-use crate::links::{Link, Pose};
+use crate::cdr::CdrEncoder;
+use crate::links::{LinkFrame, RecordedPose};
 use crate::robot::{RobotInfo, SIDES};
 use messages::{Joints, MAX_JOINTS, Sensors};
 
@@ -12,14 +12,14 @@ pub(crate) const ODOM: &str = "odom";
 /// In front of the names of the simulated robot's true frames and markers.
 pub(crate) const TRUTH: &str = "truth/";
 
-pub(crate) fn header(e: &mut Encoder, stamp_ns: u64, frame: &str) {
+pub(crate) fn header(e: &mut CdrEncoder, stamp_ns: u64, frame: &str) {
     e.stamp(stamp_ns);
     e.string(frame);
 }
 
 /// `sensor_msgs/JointState`: link side; efforts \[N m\] only where motor currents tell them.
 pub(crate) fn joint_state(
-    e: &mut Encoder,
+    e: &mut CdrEncoder,
     stamp_ns: u64,
     robot: &RobotInfo,
     sensors: &Sensors,
@@ -41,7 +41,7 @@ pub(crate) fn joint_state(
 }
 
 /// `sensor_msgs/Imu`; covariances of zero mean "unknown".
-pub(crate) fn imu(e: &mut Encoder, stamp_ns: u64, sensors: &Sensors) {
+pub(crate) fn imu(e: &mut CdrEncoder, stamp_ns: u64, sensors: &Sensors) {
     header(e.begin(), stamp_ns, "imu");
     e.f64s(&sensors.imu.orientation);
     e.f64s(&[0.0; 9]);
@@ -52,14 +52,14 @@ pub(crate) fn imu(e: &mut Encoder, stamp_ns: u64, sensors: &Sensors) {
 }
 
 /// `geometry_msgs/WrenchStamped` of one foot, in its sensor frame.
-pub(crate) fn foot_wrench(e: &mut Encoder, stamp_ns: u64, sensors: &Sensors, foot: usize) {
+pub(crate) fn foot_wrench(e: &mut CdrEncoder, stamp_ns: u64, sensors: &Sensors, foot: usize) {
     header(e.begin(), stamp_ns, &sensor_frame(foot));
     e.f64s(&sensors.foot_wrench[foot].force);
     e.f64s(&sensors.foot_wrench[foot].moment);
 }
 
 /// `std_msgs/String`.
-pub(crate) fn text(e: &mut Encoder, text: &str) {
+pub(crate) fn text(e: &mut CdrEncoder, text: &str) {
     e.begin().string(text);
 }
 
@@ -72,7 +72,7 @@ fn sole_frame(foot: usize) -> &'static str {
     ["r_sole", "l_sole"][foot]
 }
 
-fn transform(e: &mut Encoder, stamp_ns: u64, parent: &str, child: &str, pose: &Pose) {
+fn transform(e: &mut CdrEncoder, stamp_ns: u64, parent: &str, child: &str, pose: &RecordedPose) {
     header(e, stamp_ns, parent);
     e.string(child);
     e.f64s(&pose.position);
@@ -80,7 +80,14 @@ fn transform(e: &mut Encoder, stamp_ns: u64, parent: &str, child: &str, pose: &P
 }
 
 /// `tf2_msgs/TFMessage`: `base` to the torso, and every link that moves to its parent. Names begin with `prefix`.
-pub(crate) fn tf(e: &mut Encoder, stamp_ns: u64, base: &str, prefix: &str, links: &[Link], poses: &[Pose]) {
+pub(crate) fn tf(
+    e: &mut CdrEncoder,
+    stamp_ns: u64,
+    base: &str,
+    prefix: &str,
+    links: &[LinkFrame],
+    poses: &[RecordedPose],
+) {
     let moving = || links.iter().zip(poses).filter(|(link, _)| !link.fixed);
     e.begin().count(moving().count());
     for (link, pose) in moving() {
@@ -96,20 +103,26 @@ pub(crate) fn tf(e: &mut Encoder, stamp_ns: u64, base: &str, prefix: &str, links
 }
 
 /// The torso alone.
-pub(crate) fn tf_of_torso(e: &mut Encoder, stamp_ns: u64, base: &str, name: &str, torso: &Pose) {
+pub(crate) fn tf_of_torso(e: &mut CdrEncoder, stamp_ns: u64, base: &str, name: &str, torso: &RecordedPose) {
     e.begin().count(1);
     transform(e, stamp_ns, base, name, torso);
 }
 
 /// `tf2_msgs/TFMessage` of all frames that never move, of the robot as it believes to be and of the true one. `poses` are
 /// those of the links in any state.
-pub(crate) fn tf_static(e: &mut Encoder, stamp_ns: u64, robot: &RobotInfo, links: &[Link], poses: &[Pose]) {
+pub(crate) fn tf_static(
+    e: &mut CdrEncoder,
+    stamp_ns: u64,
+    robot: &RobotInfo,
+    links: &[LinkFrame],
+    poses: &[RecordedPose],
+) {
     let fixed = fixed_frames(robot, links);
     let still: Vec<_> = links.iter().zip(poses).filter(|(link, _)| link.fixed).collect();
     e.begin().count(1 + 2 * (fixed.len() + still.len()));
     let [x, y, heading] = robot.odom;
     let (sin, cos) = (0.5 * heading).sin_cos();
-    let odom = Pose { position: [x, y, 0.0], orientation: [0.0, 0.0, sin, cos] };
+    let odom = RecordedPose { position: [x, y, 0.0], orientation: [0.0, 0.0, sin, cos] };
     transform(e, stamp_ns, WORLD, ODOM, &odom);
     for prefix in ["", TRUTH] {
         for (link, pose) in &still {
@@ -119,14 +132,14 @@ pub(crate) fn tf_static(e: &mut Encoder, stamp_ns: u64, robot: &RobotInfo, links
         }
         for (parent, child, position) in &fixed {
             let (parent, child) = (format!("{prefix}{parent}"), format!("{prefix}{child}"));
-            transform(e, stamp_ns, &parent, &child, &Pose::moved(*position));
+            transform(e, stamp_ns, &parent, &child, &RecordedPose::moved(*position));
         }
     }
 }
 
 /// (parent link, frame, position in the link \[m\]) of every frame that is not a link; those of unknown links are
 /// left out, so that the tree stays connected.
-fn fixed_frames<'a>(robot: &'a RobotInfo, links: &[Link]) -> Vec<(&'a str, String, [f64; 3])> {
+fn fixed_frames<'a>(robot: &'a RobotInfo, links: &[LinkFrame]) -> Vec<(&'a str, String, [f64; 3])> {
     let mut frames = vec![(robot.torso.as_str(), "imu".to_string(), robot.imu)];
     for (i, foot) in robot.feet.iter().enumerate() {
         frames.push((&foot.link, sole_frame(i).into(), foot.sole));

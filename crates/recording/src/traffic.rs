@@ -2,10 +2,10 @@
 //!
 //! The message is `gangwerk_msgs/msg/CanFrame`. `can_msgs/msg/Frame` of ROS 2 has no room for CAN FD.
 
-use crate::cdr::{Decoder, Encoder};
+use crate::cdr::{CdrDecoder, CdrEncoder};
 use crate::definition::PACKAGE;
 use crate::error::RecordingError;
-use crate::log::{End, Seen, walk};
+use crate::log::{LogContent, LogEnd, walk};
 use crate::recorder::{Sink, options};
 use crate::standard_definitions::TIME;
 use mcap::records::{MessageHeader, Metadata};
@@ -56,7 +56,7 @@ pub struct TrafficWriter {
     mcap: mcap::Writer<Box<dyn Sink>>,
     schema: u16,
     channels: Vec<(String, u16, u32)>,
-    encoder: Encoder,
+    encoder: CdrEncoder,
 }
 
 fn definition() -> String {
@@ -84,7 +84,7 @@ impl TrafficWriter {
         let schema = mcap
             .add_schema(&format!("{PACKAGE}/msg/CanFrame"), "ros2msg", definition().as_bytes())
             .map_err(RecordingError::write)?;
-        Ok(Self { mcap, schema, channels: Vec::new(), encoder: Encoder::new() })
+        Ok(Self { mcap, schema, channels: Vec::new(), encoder: CdrEncoder::new() })
     }
 
     /// Writes one frame.
@@ -139,11 +139,11 @@ impl TrafficWriter {
 ///
 /// # Errors
 /// The file cannot be read, is no MCAP file, damaged, or holds no frames.
-pub fn read_traffic(path: &Path, mut see: impl FnMut(&CanFrame<'_>)) -> Result<End, RecordingError> {
+pub fn read_traffic(path: &Path, mut see: impl FnMut(&CanFrame<'_>)) -> Result<LogEnd, RecordingError> {
     let ours = definition();
     let (mut frames, mut broken) = (0u64, None);
     let end = walk(path, |seen| {
-        if let Seen::Message(message) = seen
+        if let LogContent::Message(message) = seen
             && message.definition == ours.as_bytes()
         {
             match decode(message.payload) {
@@ -163,7 +163,7 @@ pub fn read_traffic(path: &Path, mut see: impl FnMut(&CanFrame<'_>)) -> Result<E
 
 /// A frame without its data, and its data.
 fn decode(payload: &[u8]) -> Option<(CanFrame<'_>, Vec<u8>)> {
-    let mut d = Decoder::new(payload)?;
+    let mut d = CdrDecoder::new(payload)?;
     let (seconds, nanoseconds) = (d.i32(), d.u32());
     let stamp_ns = u64::try_from(seconds).ok()? * 1_000_000_000 + u64::from(nanoseconds);
     let line = d.string();

@@ -4,7 +4,7 @@ use messages::record::{Field, Read, Visit, Zero};
 use messages::topics::{ForType, with_type};
 use messages::{Event, Frame, Header, Record, TOPICS, Topic, record};
 use proptest::prelude::*;
-use recording::cdr::{Decoder, Encoder, decode};
+use recording::cdr::{CdrDecoder, CdrEncoder, decode};
 use recording::definition::definition;
 
 record! {
@@ -45,7 +45,7 @@ const MIXED_BYTES: [u8; 52] = [
 
 #[test]
 fn scalars_are_aligned_to_their_size() {
-    assert_eq!(Encoder::new().encode(&MIXED), MIXED_BYTES);
+    assert_eq!(CdrEncoder::new().encode(&MIXED), MIXED_BYTES);
     assert_eq!(decode::<Mixed>(&MIXED_BYTES), Some(MIXED));
 }
 
@@ -59,13 +59,13 @@ fn strings_sequences_and_times() {
         0, 0, 0, 0, 0, 0, 0, 0x40,        // 2.0
         3, 0, 0, 0, 4, 0, 0, 0,           // 3 s, 4 ns
     ];
-    let mut e = Encoder::new();
+    let mut e = CdrEncoder::new();
     e.begin().string("abc");
     e.count(1);
     e.f64(2.0);
     e.stamp(3_000_000_004);
     assert_eq!(e.payload(), expected);
-    let mut d = Decoder::new(e.payload()).unwrap();
+    let mut d = CdrDecoder::new(e.payload()).unwrap();
     assert_eq!((d.string(), d.u32(), d.f64(), d.i32(), d.u32()), ("abc", 1, 2.0, 3, 4));
     assert_eq!((d.left(), d.ran_dry()), (0, false));
 }
@@ -83,7 +83,7 @@ fn payloads_of_the_wrong_length_are_refused() {
 
 #[test]
 fn a_string_longer_than_its_payload_is_empty() {
-    let mut d = Decoder::new(&[0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff, b'a', 0]).unwrap();
+    let mut d = CdrDecoder::new(&[0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff, b'a', 0]).unwrap();
     assert_eq!(d.string(), "");
     assert!(d.ran_dry());
 }
@@ -166,7 +166,7 @@ struct RoundTrip(u64);
 impl ForType<()> for RoundTrip {
     fn call<T: Record>(self, topic: &'static Topic) {
         let record = T::read(&mut Counting(self.0));
-        let mut encoder = Encoder::new();
+        let mut encoder = CdrEncoder::new();
         let payload = encoder.encode(&record);
         let back = decode::<T>(payload).unwrap_or_else(|| panic!("{}: not decoded", topic.name));
         assert_eq!(bits(&back), bits(&record), "{}", topic.name);
@@ -186,7 +186,7 @@ proptest! {
     #[test]
     fn no_payload_panics(bytes: Vec<u8>) {
         let _ = decode::<Event>(&bytes);
-        let _ = Decoder::new(&bytes).map(|mut d| (d.string().len(), d.u8(), d.string().len()));
+        let _ = CdrDecoder::new(&bytes).map(|mut d| (d.string().len(), d.u8(), d.string().len()));
     }
 }
 
@@ -194,6 +194,6 @@ proptest! {
 fn zero_and_padding_of_the_largest_part() {
     let frame = Frame::ZERO;
     let header = Header { tick: 1, stamp_ns: 2, epoch: 3 };
-    assert_eq!(Encoder::new().encode(&frame).len(), 4 + 3 * 4 + 64);
-    assert_eq!(decode::<Header>(Encoder::new().encode(&header)), Some(header));
+    assert_eq!(CdrEncoder::new().encode(&frame).len(), 4 + 3 * 4 + 64);
+    assert_eq!(decode::<Header>(CdrEncoder::new().encode(&header)), Some(header));
 }

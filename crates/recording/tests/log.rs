@@ -4,8 +4,8 @@ use messages::record::Wrench;
 use messages::topics::{CONTROLLER_STATE, EVENTS_CONTROLLER, PLAN, SENSORS, SIM_STATE, STATS_CONTROLLER};
 use messages::{ControllerState, CycleStats, Event, EventCode, Joints, Plan, Sensors, SimState};
 use recording::{
-    End, FootInfo, Link, LinkPoses, Log, Pose, Recorder, RecordingError, RobotInfo, RunInfo, WallClock,
-    payload_hashes,
+    FootInfo, LinkFrame, LinkPoses, Log, LogEnd, RecordedPose, Recorder, RecordingError, RobotInfo, RunInfo,
+    WallClock, payload_hashes,
 };
 use std::path::{Path, PathBuf};
 
@@ -38,22 +38,22 @@ fn run() -> RunInfo {
     RunInfo { scene: "test".into(), config_hash: 0xabc, software: "0.1.0".into(), ..RunInfo::default() }
 }
 
-struct TwoSticks([Link; 3]);
+struct TwoSticks([LinkFrame; 3]);
 impl TwoSticks {
     fn new() -> Self {
-        let link = |name: &str, parent| Link { name: name.into(), parent, fixed: false };
+        let link = |name: &str, parent| LinkFrame { name: name.into(), parent, fixed: false };
         Self([link("torso", None), link("right_foot", Some(0)), link("left_foot", Some(0))])
     }
 }
 impl LinkPoses for TwoSticks {
-    fn links(&self) -> &[Link] {
+    fn links(&self) -> &[LinkFrame] {
         &self.0
     }
-    fn poses(&mut self, torso: &Pose, _: &Joints, out: &mut [Pose]) {
+    fn poses(&mut self, torso: &RecordedPose, _: &Joints, out: &mut [RecordedPose]) {
         out.copy_from_slice(&[
             *torso,
-            torso.then(&Pose::moved([0.0, -0.1, -0.9])),
-            torso.then(&Pose::moved([0.0, 0.1, -0.9])),
+            torso.then(&RecordedPose::moved([0.0, -0.1, -0.9])),
+            torso.then(&RecordedPose::moved([0.0, 0.1, -0.9])),
         ]);
     }
 }
@@ -132,7 +132,7 @@ fn standard_messages_are_thinned_and_verbatim_ones_are_not() {
     let mut counts = std::collections::BTreeMap::new();
     let end =
         Log::open(&path).unwrap().each(|m| *counts.entry(m.channel.to_string()).or_insert(0) += 1).unwrap();
-    assert_eq!(end, End::Complete);
+    assert_eq!(end, LogEnd::Complete);
     for channel in ["/joint_states", "/imu/data", "/foot/right/wrench", "/foot/left/wrench"] {
         assert_eq!(counts[channel], CYCLES / 10, "{channel}");
     }
@@ -213,7 +213,7 @@ fn a_log_cut_anywhere_gives_all_whole_messages_before_the_cut() {
             assert_eq!(*s, whole[records]);
             records += 1;
         });
-        assert!(matches!(end, Ok(End::Truncated(_))), "{n}: {end:?}");
+        assert!(matches!(end, Ok(LogEnd::Truncated(_))), "{n}: {end:?}");
         assert!(records >= last, "{n}: {records} < {last}");
         last = records;
     }
@@ -282,7 +282,7 @@ fn what_was_flushed_survives_a_recorder_that_is_never_finished() {
     std::mem::forget(recorder); // as SIGKILL would
     let log = Log::open(&path).unwrap();
     assert_eq!(log.records::<Sensors>(&SENSORS).unwrap().len(), 50);
-    assert!(matches!(log.each(|_| {}).unwrap(), End::Truncated(_)));
+    assert!(matches!(log.each(|_| {}).unwrap(), LogEnd::Truncated(_)));
 }
 
 #[test]

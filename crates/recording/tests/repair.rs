@@ -2,7 +2,7 @@
 
 use messages::topics::SENSORS;
 use messages::{Header, Sensors};
-use recording::{End, Log, Recorder, RecordingError, RobotInfo, RunInfo, repair};
+use recording::{Log, LogEnd, Recorder, RecordingError, RobotInfo, RunInfo, repair};
 use std::path::{Path, PathBuf};
 
 fn file(name: &str) -> PathBuf {
@@ -25,7 +25,7 @@ fn cut(name: &str, bytes: u64) -> (PathBuf, u64) {
     let mut before = 0;
     if let Ok(log) = Log::open(&path) {
         let end = log.each(|_| before += 1);
-        assert!(bytes == 0 || !matches!(end, Ok(End::Complete)));
+        assert!(bytes == 0 || !matches!(end, Ok(LogEnd::Complete)));
     }
     (path, before)
 }
@@ -38,7 +38,7 @@ fn a_cut_log_keeps_every_whole_message_and_gets_its_index() {
         assert!(done.found.is_some() && done.messages == before && before > 1000, "{done:?}, {before}");
         let log = Log::open(&path).unwrap();
         let mut after = 0;
-        assert_eq!(log.each(|_| after += 1).unwrap(), End::Complete);
+        assert_eq!(log.each(|_| after += 1).unwrap(), LogEnd::Complete);
         assert_eq!(after, before);
         let summary = mcap::Summary::read(&std::fs::read(&path).unwrap()).unwrap().unwrap();
         assert_eq!(summary.stats.unwrap().message_count, before);

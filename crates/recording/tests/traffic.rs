@@ -1,7 +1,7 @@
 //! Frames of CAN lines survive a log.
 
 use recording::traffic::{CanFrame, TrafficWriter, read_traffic};
-use recording::{End, RecordingError};
+use recording::{LogEnd, RecordingError};
 use std::path::PathBuf;
 
 fn place(name: &str) -> PathBuf {
@@ -38,7 +38,7 @@ fn frames_of_several_lines_are_read_back_as_written() {
     let end = read_traffic(&path, |f| {
         read.push((f.stamp_ns, f.line.to_owned(), f.id, [f.form, f.flags, f.way, f.len], f.data.to_vec()));
     });
-    assert_eq!(end.unwrap(), End::Complete);
+    assert_eq!(end.unwrap(), LogEnd::Complete);
     let written: Vec<_> = frames()
         .into_iter()
         .map(|(t, line, id, bytes, data)| (t, line.to_owned(), id, bytes, data))
@@ -56,7 +56,7 @@ fn a_file_without_frames_and_a_cut_one_are_told() {
     let bytes = std::fs::read(&path).unwrap();
     std::fs::write(&path, &bytes[..bytes.len() - 8]).unwrap();
     let mut count = 0;
-    assert_eq!(read_traffic(&path, |_| count += 1).unwrap(), End::Truncated(4));
+    assert_eq!(read_traffic(&path, |_| count += 1).unwrap(), LogEnd::Truncated(4));
     assert_eq!(count, 4, "what was whole is there");
     std::fs::write(&path, b"(1.0) vcan0 123#00").unwrap();
     assert!(matches!(read_traffic(&path, |_| {}), Err(RecordingError::NotALog(..))));

@@ -7,8 +7,8 @@
 #[path = "../tests/veth/mod.rs"]
 mod veth;
 
-use realtime::{Histogram, Period, Schedule, clock, prepare_thread};
-use sercos::{Event, Stage};
+use realtime::{Histogram, Period, ThreadSchedule, clock, prepare_thread};
+use sercos::{RingEvent, Stage};
 use std::error::Error;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let capture = options.capture.as_ref().map(|file| record(&veth, file)).transpose()?;
     let stop = Arc::new(AtomicBool::new(false));
     let slaves = veth.slaves(&stop, || {
-        prepare_thread(&Schedule { priority: PRIORITY[1], core: None });
+        prepare_thread(&ThreadSchedule { priority: PRIORITY[1], core: None });
     });
     let beside = cyclictest(options.seconds);
     let result = run(&veth, &options);
@@ -116,7 +116,7 @@ fn report_cyclictest(child: Child) -> Result<(), Box<dyn Error>> {
 
 fn run(veth: &Veth, options: &Options) -> Result<(), Box<dyn Error>> {
     let mut near = veth.master(true);
-    prepare_thread(&Schedule { priority: PRIORITY[0], core: None });
+    prepare_thread(&ThreadSchedule { priority: PRIORITY[0], core: None });
     let mut period = Period::new(clock::now() + CYCLE, CYCLE, 1000);
     let mut lateness = Histogram::new();
     let mut round = Histogram::new();
@@ -149,7 +149,7 @@ fn run(veth: &Veth, options: &Options) -> Result<(), Box<dyn Error>> {
             veth.set(FAR[1], "up");
         }
         while let Some(event) = near.master_mut().take_event() {
-            if matches!(event, Event::RingBroken(..) | Event::RingClosed) {
+            if matches!(event, RingEvent::RingBroken(..) | RingEvent::RingClosed) {
                 println!("event {event:?} in cycle {running}");
             }
         }

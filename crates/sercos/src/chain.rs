@@ -7,8 +7,8 @@
 //! A telegram that enters at one end goes through all slaves at once. In CP4 the ATs may be held back until the
 //! simulated robot has answered the commands of the same cycle; hardware fills them with what it has.
 
-use crate::header::{Header, Kind, Phase};
-use crate::slave::{Side, Slave};
+use crate::header::{CommunicationPhase, TelegramHeader, TelegramKind};
+use crate::slave::{PortSide, Slave};
 use crate::telegram::Telegram;
 
 /// ATs that can wait: four of each channel.
@@ -17,34 +17,34 @@ const HELD: usize = 8;
 const WAYS: usize = 4;
 
 /// All slaves.
-pub struct Chain {
+pub struct SlaveChain {
     slaves: Vec<Slave>,
     cables: Vec<bool>,
     hold: bool,
-    held: [(Side, Telegram); HELD],
+    held: [(PortSide, Telegram); HELD],
     waiting: usize,
     current: Telegram,
-    ways: Box<[Way; WAYS]>,
+    ways: Box<[PendingTelegram; WAYS]>,
 }
 
 /// A telegram that still has to leave this slave on this side.
 #[derive(Clone, Copy)]
-struct Way {
+struct PendingTelegram {
     slave: usize,
-    leaves: Side,
+    leaves: PortSide,
     telegram: Telegram,
 }
 
-impl Chain {
-    /// These slaves, all cables plugged. With `hold`, ATs of CP4 wait for [`Chain::release`].
+impl SlaveChain {
+    /// These slaves, all cables plugged. With `hold`, ATs of CP4 wait for [`SlaveChain::release`].
     pub fn new(slaves: Vec<Slave>, hold: bool) -> Self {
         let cables = vec![true; slaves.len() + 1];
-        let way = Way { slave: 0, leaves: Side::Left, telegram: Telegram::EMPTY };
+        let way = PendingTelegram { slave: 0, leaves: PortSide::Left, telegram: Telegram::EMPTY };
         Self {
             slaves,
             cables,
             hold,
-            held: [(Side::Left, Telegram::EMPTY); HELD],
+            held: [(PortSide::Left, Telegram::EMPTY); HELD],
             waiting: 0,
             current: Telegram::EMPTY,
             ways: Box::new([way; WAYS]),
@@ -68,10 +68,10 @@ impl Chain {
         }
         self.cables[i] = plugged;
         if let Some(slave) = self.slaves.get_mut(i) {
-            slave.set_link(Side::Left, plugged);
+            slave.set_link(PortSide::Left, plugged);
         }
         if i > 0 {
-            self.slaves[i - 1].set_link(Side::Right, plugged);
+            self.slaves[i - 1].set_link(PortSide::Right, plugged);
         }
     }
 
@@ -81,12 +81,12 @@ impl Chain {
     }
 
     /// A frame came in at this end; `out` takes what leaves the chain.
-    pub fn take(&mut self, end: Side, frame: &[u8], out: &mut impl FnMut(Side, &[u8])) {
-        let header = Header::read(frame);
+    pub fn take(&mut self, end: PortSide, frame: &[u8], out: &mut impl FnMut(PortSide, &[u8])) {
+        let header = TelegramHeader::read(frame);
         if let Ok(header) = header
             && self.hold
-            && header.phase == Phase::Cp4
-            && header.kind == Kind::At
+            && header.phase == CommunicationPhase::Cp4
+            && header.kind == TelegramKind::At
             && !header.switching
             && self.waiting < HELD
         {
@@ -103,22 +103,22 @@ impl Chain {
 
     /// Whether the ATs that wait are of another cycle than this beat.
     fn is_stale(&self, beat: &[u8]) -> bool {
-        let cycle = |frame: &[u8]| Header::read(frame).ok().and_then(|h| h.cycle);
+        let cycle = |frame: &[u8]| TelegramHeader::read(frame).ok().and_then(|h| h.cycle);
         self.waiting > 0 && cycle(self.held[0].1.bytes()) != cycle(beat)
     }
 
     /// The slaves have answered: lets the ATs go.
-    pub fn release(&mut self, out: &mut impl FnMut(Side, &[u8])) {
+    pub fn release(&mut self, out: &mut impl FnMut(PortSide, &[u8])) {
         for i in 0..std::mem::take(&mut self.waiting) {
             let (end, telegram) = self.held[i]; // a copy: the slaves write into their own
             self.run(end, telegram.bytes(), out);
         }
     }
 
-    fn run(&mut self, end: Side, frame: &[u8], out: &mut impl FnMut(Side, &[u8])) {
+    fn run(&mut self, end: PortSide, frame: &[u8], out: &mut impl FnMut(PortSide, &[u8])) {
         let (mut slave, cable) = match end {
-            Side::Left => (0, 0),
-            Side::Right => (self.slaves.len() - 1, self.slaves.len()),
+            PortSide::Left => (0, 0),
+            PortSide::Right => (self.slaves.len() - 1, self.slaves.len()),
         };
         if !self.cables[cable] {
             return;
@@ -131,13 +131,13 @@ impl Chain {
             let mut leaves = match (exits.left, exits.right) {
                 (true, true) => {
                     if let Some(way) = self.ways.get_mut(open) {
-                        *way = Way { slave, leaves: from.other(), telegram: self.current };
+                        *way = PendingTelegram { slave, leaves: from.other(), telegram: self.current };
                         open += 1;
                     }
                     Some(from)
                 }
-                (true, false) => Some(Side::Left),
-                (false, true) => Some(Side::Right),
+                (true, false) => Some(PortSide::Left),
+                (false, true) => Some(PortSide::Right),
                 (false, false) => None,
             };
             loop {
@@ -161,10 +161,10 @@ impl Chain {
         }
     }
 
-    fn neighbour(&self, slave: usize, side: Side) -> Option<usize> {
+    fn neighbour(&self, slave: usize, side: PortSide) -> Option<usize> {
         match side {
-            Side::Left => slave.checked_sub(1),
-            Side::Right => Some(slave + 1).filter(|next| *next < self.slaves.len()),
+            PortSide::Left => slave.checked_sub(1),
+            PortSide::Right => Some(slave + 1).filter(|next| *next < self.slaves.len()),
         }
     }
 }

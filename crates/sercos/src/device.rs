@@ -36,9 +36,9 @@ pub enum Idle {
 
 /// Device control, C-DEV: a word for each slave in an MDT.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Control(pub u16);
+pub struct DeviceControl(pub u16);
 
-impl Control {
+impl DeviceControl {
     const TOGGLE: u16 = 1 << 14;
     const RING: u16 = 1 << 11;
     const VALID: u16 = 1 << 8;
@@ -95,7 +95,7 @@ impl Status {
         Self(self.0 & !(1 << 9) | u16::from(error) << 9)
     }
 
-    /// Bit 14: acknowledges [`Control::toggle`].
+    /// Bit 14: acknowledges [`DeviceControl::toggle`].
     pub fn toggle(self) -> bool {
         self.0 & 1 << 14 != 0
     }

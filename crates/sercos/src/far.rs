@@ -1,8 +1,8 @@
 //! Simulated slaves on real interfaces: a chain whose ends are the far ends of the master's cables.
 
-use crate::chain::Chain;
-use crate::header::{Header, MAX_FRAME};
-use crate::slave::{Side, Slave};
+use crate::chain::SlaveChain;
+use crate::header::{MAX_FRAME, TelegramHeader};
+use crate::slave::{PortSide, Slave};
 use crate::socket::{Socket, SocketError};
 
 const ROOM: usize = MAX_FRAME + 8;
@@ -12,7 +12,7 @@ const SILENT: u32 = 2;
 
 /// A chain of slaves with its two ends.
 pub struct Far {
-    chain: Chain,
+    chain: SlaveChain,
     ends: [Option<Socket>; 2],
     buffer: Box<[u8; ROOM]>,
     /// For each end: beats at the other one since its own last beat.
@@ -33,18 +33,18 @@ impl Far {
     ) -> Result<Self, SocketError> {
         let ends = [Some(Socket::open(first)?), second.map(Socket::open).transpose()?];
         let mut far =
-            Self { chain: Chain::new(slaves, hold), ends, buffer: Box::new([0; ROOM]), silent: [0; 2] };
+            Self { chain: SlaveChain::new(slaves, hold), ends, buffer: Box::new([0; ROOM]), silent: [0; 2] };
         far.look_at_links();
         Ok(far)
     }
 
     /// The slaves.
-    pub fn chain(&self) -> &Chain {
+    pub fn chain(&self) -> &SlaveChain {
         &self.chain
     }
 
     /// The slaves.
-    pub fn chain_mut(&mut self) -> &mut Chain {
+    pub fn chain_mut(&mut self) -> &mut SlaveChain {
         &mut self.chain
     }
 
@@ -63,11 +63,11 @@ impl Far {
         // Turn by turn: the telegrams of both channels go round at the same time.
         for _ in 0..BURST {
             let mut any = false;
-            for (end, side) in [(0, Side::Left), (1, Side::Right)] {
+            for (end, side) in [(0, PortSide::Left), (1, PortSide::Right)] {
                 let Some(socket) = &self.ends[end] else { continue };
                 let Some(frame) = socket.receive(&mut self.buffer[..]) else { continue };
                 any = true;
-                if Header::read(frame).is_ok_and(|h| h.is_beat()) {
+                if TelegramHeader::read(frame).is_ok_and(|h| h.is_beat()) {
                     self.silent[end] = 0;
                     self.silent[1 - end] += 1;
                 }
@@ -100,7 +100,7 @@ impl Far {
 }
 
 /// Frames that the kernel does not take are lost, as on a pulled cable: the master counts them.
-fn send(ends: &[Option<Socket>; 2], side: Side, frame: &[u8]) {
+fn send(ends: &[Option<Socket>; 2], side: PortSide, frame: &[u8]) {
     if let Some(socket) = &ends[side as usize] {
         socket.send(frame);
     }

@@ -33,7 +33,7 @@ const EVERYBODY: Mac = [0xFF; 6];
 
 /// The two directions around the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channel {
+pub enum RingChannel {
     /// Primary: sent by the master's first port.
     P,
     /// Secondary: sent by the master's second port.
@@ -42,7 +42,7 @@ pub enum Channel {
 
 /// Writer of the data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum TelegramKind {
     /// Master data telegram.
     Mdt,
     /// Acknowledge telegram: sent empty by the master, filled by the slaves it passes.
@@ -51,7 +51,7 @@ pub enum Kind {
 
 /// Communication phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Phase {
+pub enum CommunicationPhase {
     /// Stations in their order.
     Cp0,
     /// Service channels and device control for everybody.
@@ -64,7 +64,7 @@ pub enum Phase {
     Cp4,
 }
 
-impl Phase {
+impl CommunicationPhase {
     /// All phases in their order.
     pub const ALL: [Self; 5] = [Self::Cp0, Self::Cp1, Self::Cp2, Self::Cp3, Self::Cp4];
 
@@ -76,17 +76,17 @@ impl Phase {
 
 /// Head of a telegram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Header {
+pub struct TelegramHeader {
     /// Hardware address of the master's port.
     pub source: Mac,
     /// Direction.
-    pub channel: Channel,
+    pub channel: RingChannel,
     /// Kind.
-    pub kind: Kind,
+    pub kind: TelegramKind,
     /// @range 0..3 Number among those of its kind.
     pub number: u8,
     /// Phase; while switching, the one to come.
-    pub phase: Phase,
+    pub phase: CommunicationPhase,
     /// A switch of the phase is in progress.
     pub switching: bool,
     /// @range 0..7 Cycle counter, if the master counts.
@@ -110,7 +110,7 @@ pub enum Malformed {
     Number(u8),
 }
 
-impl Header {
+impl TelegramHeader {
     /// Reads the head of a frame.
     ///
     /// # Errors
@@ -134,14 +134,14 @@ impl Header {
         if usize::from(number) >= TELEGRAMS {
             return Err(Malformed::Number(number));
         }
-        let known = Phase::ALL.get(usize::from(phase & 0x0F));
+        let known = CommunicationPhase::ALL.get(usize::from(phase & 0x0F));
         let mut source = [0; 6];
         source.copy_from_slice(&frame[6..12]);
         // Type byte: channel, telegram, cycle valid, number; phase byte: switching, cycle, phase.
         Ok(Self {
             source,
-            channel: if kind & 0x80 == 0 { Channel::P } else { Channel::S },
-            kind: if kind & 0x40 == 0 { Kind::Mdt } else { Kind::At },
+            channel: if kind & 0x80 == 0 { RingChannel::P } else { RingChannel::S },
+            kind: if kind & 0x40 == 0 { TelegramKind::Mdt } else { TelegramKind::At },
             number,
             phase: *known.ok_or(Malformed::Phase(phase & 0x0F))?,
             switching: phase & 0x80 != 0,
@@ -154,8 +154,8 @@ impl Header {
         frame[..6].copy_from_slice(&EVERYBODY);
         frame[6..12].copy_from_slice(&self.source);
         frame[12..14].copy_from_slice(&ETHERTYPE.to_be_bytes());
-        frame[14] = u8::from(self.channel == Channel::S) << 7
-            | u8::from(self.kind == Kind::At) << 6
+        frame[14] = u8::from(self.channel == RingChannel::S) << 7
+            | u8::from(self.kind == TelegramKind::At) << 6
             | u8::from(self.cycle.is_some()) << 5
             | self.number & 0x0F;
         frame[15] = u8::from(self.switching) << 7 | (self.cycle.unwrap_or(0) & 7) << 4 | self.phase as u8;
@@ -165,6 +165,6 @@ impl Header {
 
     /// Whether this is the head of MDT0, the master's beat: the MST.
     pub(crate) fn is_beat(&self) -> bool {
-        self.kind == Kind::Mdt && self.number == 0
+        self.kind == TelegramKind::Mdt && self.number == 0
     }
 }

@@ -107,7 +107,7 @@ impl Element {
 
 /// Shape of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub enum ValueShape {
     /// Two bytes.
     Word,
     /// Four bytes.
@@ -122,22 +122,22 @@ pub struct Attribute(pub u32);
 
 impl Attribute {
     /// Attribute of a parameter that can be written in the phases that `cp2`, `cp3`, `cp4` say.
-    pub const fn new(shape: Shape, command: bool, cp2: bool, cp3: bool, cp4: bool) -> Self {
+    pub const fn new(shape: ValueShape, command: bool, cp2: bool, cp3: bool, cp4: bool) -> Self {
         let length = match shape {
-            Shape::Word => 1,
-            Shape::Long => 2,
-            Shape::Words => 5,
+            ValueShape::Word => 1,
+            ValueShape::Long => 2,
+            ValueShape::Words => 5,
         };
         let protected = (!cp2 as u32) << 28 | (!cp3 as u32) << 29 | (!cp4 as u32) << 30;
         Self(1 | length << 16 | (command as u32) << 19 | protected)
     }
 
     /// Shape of the value, if it is one that is known here.
-    pub fn shape(self) -> Option<Shape> {
+    pub fn shape(self) -> Option<ValueShape> {
         match self.0 >> 16 & 7 {
-            1 => Some(Shape::Word),
-            2 => Some(Shape::Long),
-            5 => Some(Shape::Words),
+            1 => Some(ValueShape::Word),
+            2 => Some(ValueShape::Long),
+            5 => Some(ValueShape::Words),
             _ => None,
         }
     }
@@ -148,9 +148,9 @@ impl Attribute {
     }
 
     /// Whether it must not be written in CP`phase`.
-    pub fn protected_in(self, phase: crate::Phase) -> bool {
+    pub fn protected_in(self, phase: crate::CommunicationPhase) -> bool {
         match phase {
-            crate::Phase::Cp0 | crate::Phase::Cp1 => true,
+            crate::CommunicationPhase::Cp0 | crate::CommunicationPhase::Cp1 => true,
             phase => self.0 >> (26 + phase as u32) & 1 != 0,
         }
     }

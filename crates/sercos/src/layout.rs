@@ -3,7 +3,7 @@
 //! MDT0 and AT0 begin with the hot-plug field. Then follow, each in the order of the stations, and in the next telegram
 //! when one is full: all service channels, all device controls or states, all connections.
 
-use crate::header::{Kind, MAX_DATA, MIN_DATA, TELEGRAMS};
+use crate::header::{MAX_DATA, MIN_DATA, TELEGRAMS, TelegramKind};
 use std::fmt;
 
 /// Hot-plug field at the begin of MDT0 and AT0 \[B\].
@@ -30,48 +30,50 @@ pub struct Station {
 
 /// A place in the data of a telegram.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Place {
+pub struct DataPlace {
     /// @range 0..3 Number of the telegram.
     pub telegram: usize,
     /// \[B\] @range 0..1493 Behind the headers.
     pub offset: usize,
 }
 
-impl Place {
+impl DataPlace {
     /// The word that names the place: bits 13-12 telegram, bit 11 kind (1 MDT), bits 10-0 offset.
-    pub fn word(self, kind: Kind) -> u16 {
-        (self.telegram as u16 & 3) << 12 | u16::from(kind == Kind::Mdt) << 11 | self.offset as u16 & 0x7FF
+    pub fn word(self, kind: TelegramKind) -> u16 {
+        (self.telegram as u16 & 3) << 12
+            | u16::from(kind == TelegramKind::Mdt) << 11
+            | self.offset as u16 & 0x7FF
     }
 
     /// The place that a word names, and in which kind of telegram.
-    pub fn read(word: u16) -> (Kind, Self) {
-        let kind = if word & 1 << 11 == 0 { Kind::At } else { Kind::Mdt };
+    pub fn read(word: u16) -> (TelegramKind, Self) {
+        let kind = if word & 1 << 11 == 0 { TelegramKind::At } else { TelegramKind::Mdt };
         (kind, Self { telegram: usize::from(word >> 12 & 3), offset: usize::from(word & 0x7FF) })
     }
 }
 
 /// Places of one station.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Places {
+pub struct StationPlaces {
     /// Service channel in the MDT.
-    pub mdt_service: Place,
+    pub mdt_service: DataPlace,
     /// Service channel in the AT.
-    pub at_service: Place,
+    pub at_service: DataPlace,
     /// Device control.
-    pub control: Place,
+    pub control: DataPlace,
     /// Device status.
-    pub status: Place,
+    pub status: DataPlace,
     /// Connection with the data for the slave.
-    pub command: Place,
+    pub command: DataPlace,
     /// Connection with the data of the slave.
-    pub feedback: Place,
+    pub feedback: DataPlace,
 }
 
 /// Places of all stations.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Layout {
+pub struct TelegramLayout {
     /// In the order of the stations.
-    pub places: Vec<Places>,
+    pub places: Vec<StationPlaces>,
     /// Data of each MDT \[B\]; 0: not sent.
     pub mdt: [usize; TELEGRAMS],
     /// Data of each AT \[B\]; 0: not sent.
@@ -88,7 +90,7 @@ pub enum LayoutError {
     /// The address of two stations.
     Twice(u16),
     /// More data than four telegrams hold.
-    Full(Kind),
+    Full(TelegramKind),
 }
 
 impl fmt::Display for LayoutError {
@@ -102,7 +104,7 @@ impl fmt::Display for LayoutError {
                 write!(f, "sercos: two stations have the address {address}; give each its own")
             }
             Self::Full(kind) => {
-                let kind = if *kind == Kind::Mdt { "commands" } else { "feedback" };
+                let kind = if *kind == TelegramKind::Mdt { "commands" } else { "feedback" };
                 write!(
                     f,
                     "sercos: the {kind} of all stations do not fit into {TELEGRAMS} telegrams of {MAX_DATA} bytes; \
@@ -116,25 +118,25 @@ impl fmt::Display for LayoutError {
 impl std::error::Error for LayoutError {}
 
 /// Fills telegrams from the begin.
-struct Filling {
-    kind: Kind,
+struct TelegramFilling {
+    kind: TelegramKind,
     lengths: [usize; TELEGRAMS],
     telegram: usize,
 }
 
-impl Filling {
-    fn new(kind: Kind) -> Self {
+impl TelegramFilling {
+    fn new(kind: TelegramKind) -> Self {
         Self { kind, lengths: [HOT_PLUG, 0, 0, 0], telegram: 0 }
     }
 
-    fn take(&mut self, len: usize) -> Result<Place, LayoutError> {
+    fn take(&mut self, len: usize) -> Result<DataPlace, LayoutError> {
         if self.lengths[self.telegram] + len > MAX_DATA {
             self.telegram += 1;
         }
         if self.telegram >= TELEGRAMS || len > MAX_DATA {
             return Err(LayoutError::Full(self.kind));
         }
-        let place = Place { telegram: self.telegram, offset: self.lengths[self.telegram] };
+        let place = DataPlace { telegram: self.telegram, offset: self.lengths[self.telegram] };
         self.lengths[self.telegram] += len;
         Ok(place)
     }
@@ -144,7 +146,7 @@ impl Filling {
     }
 }
 
-impl Layout {
+impl TelegramLayout {
     /// Places for these stations.
     ///
     /// # Errors
@@ -161,8 +163,9 @@ impl Layout {
                 return Err(LayoutError::Twice(station.address));
             }
         }
-        let (mut mdt, mut at) = (Filling::new(Kind::Mdt), Filling::new(Kind::At));
-        let mut places = vec![Places::default(); stations.len()];
+        let (mut mdt, mut at) =
+            (TelegramFilling::new(TelegramKind::Mdt), TelegramFilling::new(TelegramKind::At));
+        let mut places = vec![StationPlaces::default(); stations.len()];
         // Service channels first, then device words, then connections.
         for place in &mut places {
             place.mdt_service = mdt.take(SERVICE)?;

@@ -19,14 +19,16 @@
 
 mod phases;
 
-use crate::device::{Connection, Control, Status};
-use crate::header::{CYCLES, Channel, Header, Kind, Mac, Malformed, Phase, TELEGRAMS};
-use crate::layout::{CONNECTION, Layout, Places, Station};
+use crate::device::{Connection, DeviceControl, Status};
+use crate::header::{
+    CYCLES, CommunicationPhase, Mac, Malformed, RingChannel, TELEGRAMS, TelegramHeader, TelegramKind,
+};
+use crate::layout::{CONNECTION, Station, StationPlaces, TelegramLayout};
 use crate::programme::{Timing, requests};
-use crate::ring::{Repair, Seen};
-use crate::service::{Client, Request};
+use crate::ring::{ReceivedTelegrams, Repair};
+use crate::service::{ServiceClient, ServiceRequest};
 use crate::telegram::{Telegram, cp0, cp12, early_len, set_long, set_word, word};
-use crate::trouble::{Event, Trouble};
+use crate::trouble::{RingEvent, StartTrouble};
 use std::collections::VecDeque;
 
 /// Cycles of CP0 without the expected ring after which the master gives up.
@@ -43,7 +45,7 @@ const EVENTS: usize = 32;
 
 /// Parameters of a master.
 #[derive(Clone, Debug)]
-pub struct Setup {
+pub struct MasterSetup {
     /// Cycle time \[ns\].
     pub cycle: u32,
     /// Cycles in a row in which a station's data, or the data for a station, may be missing.
@@ -60,16 +62,16 @@ pub struct Setup {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// CP0 to CP3.
-    Starting(Phase),
+    Starting(CommunicationPhase),
     /// CP4.
     Running,
     /// Given up.
-    Failed(Trouble),
+    Failed(StartTrouble),
 }
 
 /// Counters of the master.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct MasterCounts {
     /// Cycles begun.
     pub cycles: u64,
     /// Frames that are no telegrams.
@@ -86,7 +88,7 @@ pub struct Counts {
     pub open: u64,
 }
 
-enum State {
+enum MasterState {
     /// CP0: cycles, and how many of them the addresses have been the same.
     Identify {
         cycles: u32,
@@ -104,17 +106,17 @@ enum State {
     /// CP2, CP3: requests.
     Ask,
     Run,
-    Failed(Trouble),
+    Failed(StartTrouble),
 }
 
 /// One station as the master sees it.
 struct Node {
     station: Station,
     topology: u16,
-    control: Control,
+    control: DeviceControl,
     status: Option<Status>,
-    service: Client,
-    requests: [Vec<Request>; 2],
+    service: ServiceClient,
+    requests: [Vec<ServiceRequest>; 2],
     asked: usize,
     busy: bool,
     command: Box<[u8]>,
@@ -128,10 +130,10 @@ struct Node {
 
 /// The master of one ring or line.
 pub struct Master {
-    setup: Setup,
-    layout: Layout,
-    phase: Phase,
-    state: State,
+    setup: MasterSetup,
+    layout: TelegramLayout,
+    phase: CommunicationPhase,
+    state: MasterState,
     nodes: Vec<Node>,
     cycle: u8,
     sent: Box<[[Telegram; 2 * TELEGRAMS]; 2]>,
@@ -143,17 +145,17 @@ pub struct Master {
     /// Ports at which any acknowledge telegram of ours came in, late ones included: in this cycle and in the last one.
     heard: [bool; 2],
     heard_before: [bool; 2],
-    seen: [Seen; 2],
+    seen: [ReceivedTelegrams; 2],
     found: Vec<u16>,
     repair: Repair,
     states: Vec<Option<Status>>,
-    controls: Vec<Control>,
+    controls: Vec<DeviceControl>,
     open: u32,
     broken: bool,
     /// Cycles in a row in which stations that were passed through took no part.
     absent: u32,
-    counts: Counts,
-    events: VecDeque<Event>,
+    counts: MasterCounts,
+    events: VecDeque<RingEvent>,
 }
 
 impl Master {
@@ -161,18 +163,19 @@ impl Master {
     ///
     /// # Errors
     /// A cycle time or stations that Sercos III cannot have.
-    pub fn new(setup: Setup) -> Result<Self, Trouble> {
-        Trouble::check_cycle_time(setup.cycle)?;
-        let layout = Layout::new(&setup.stations).map_err(Trouble::Layout)?;
+    pub fn new(setup: MasterSetup) -> Result<Self, StartTrouble> {
+        StartTrouble::check_cycle_time(setup.cycle)?;
+        let layout = TelegramLayout::new(&setup.stations).map_err(StartTrouble::Layout)?;
         let timing = Timing { cycle: setup.cycle, losses: setup.losses, beat_losses: setup.beat_losses };
         // All requests of start-up are known beforehand: nothing allocates once a cycle has begun.
         let node = |(i, station): (usize, &Station)| Node {
             station: *station,
             topology: 0,
-            control: Control::default(),
+            control: DeviceControl::default(),
             status: None,
-            service: Client::new(SERVICE_TIME / setup.cycle),
-            requests: [Phase::Cp2, Phase::Cp3].map(|p| requests(p, timing, &setup.stations, &layout, i)),
+            service: ServiceClient::new(SERVICE_TIME / setup.cycle),
+            requests: [CommunicationPhase::Cp2, CommunicationPhase::Cp3]
+                .map(|p| requests(p, timing, &setup.stations, &layout, i)),
             asked: 0,
             busy: false,
             command: vec![0; station.command].into(),
@@ -186,11 +189,11 @@ impl Master {
         let nodes: Vec<_> = setup.stations.iter().enumerate().map(node).collect();
         let count = nodes.len();
         let mut events = VecDeque::with_capacity(EVENTS);
-        events.push_back(Event::Phase(Phase::Cp0));
+        events.push_back(RingEvent::Phase(CommunicationPhase::Cp0));
         Ok(Self {
             layout,
-            phase: Phase::Cp0,
-            state: State::Identify { cycles: 0, stable: 0 },
+            phase: CommunicationPhase::Cp0,
+            state: MasterState::Identify { cycles: 0, stable: 0 },
             nodes,
             cycle: 0,
             sent: Box::new([[Telegram::EMPTY; 2 * TELEGRAMS]; 2]),
@@ -200,15 +203,15 @@ impl Master {
             got: [[false; TELEGRAMS]; 2],
             heard: [false; 2],
             heard_before: [false; 2],
-            seen: [Seen::default(); 2],
+            seen: [ReceivedTelegrams::default(); 2],
             found: Vec::with_capacity(cp0::SLAVES),
             repair: Repair::new(count),
             states: vec![None; count],
-            controls: vec![Control::default(); count],
+            controls: vec![DeviceControl::default(); count],
             open: 0,
             broken: false,
             absent: 0,
-            counts: Counts::default(),
+            counts: MasterCounts::default(),
             events,
             setup,
         })
@@ -217,19 +220,19 @@ impl Master {
     /// Progress.
     pub fn stage(&self) -> Stage {
         match self.state {
-            State::Failed(trouble) => Stage::Failed(trouble),
-            State::Run => Stage::Running,
+            MasterState::Failed(trouble) => Stage::Failed(trouble),
+            MasterState::Run => Stage::Running,
             _ => Stage::Starting(self.phase),
         }
     }
 
     /// Counts.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> MasterCounts {
         self.counts
     }
 
     /// Something worth a line in the log.
-    pub fn take_event(&mut self) -> Option<Event> {
+    pub fn take_event(&mut self) -> Option<RingEvent> {
         self.events.pop_front()
     }
 
@@ -268,18 +271,18 @@ impl Master {
     /// them is in NRT.
     pub fn restart(&mut self) {
         let silence = (u32::from(self.setup.beat_losses) + 2).max(PAUSE / self.setup.cycle);
-        (self.phase, self.state) = (Phase::Cp0, State::Pause(silence));
+        (self.phase, self.state) = (CommunicationPhase::Cp0, MasterState::Pause(silence));
         (self.open, self.broken, self.absent) = (0, false, 0);
         self.found.clear();
         self.repair.reset();
         for node in &mut self.nodes {
-            node.control = Control::default();
+            node.control = DeviceControl::default();
             node.status = None;
-            node.service = Client::new(SERVICE_TIME / self.setup.cycle);
+            node.service = ServiceClient::new(SERVICE_TIME / self.setup.cycle);
             node.feedback_control = Connection::default();
             node.fresh = false;
         }
-        self.tell(Event::Restart);
+        self.tell(RingEvent::Restart);
     }
 
     /// Begins a cycle: writes its telegrams.
@@ -288,11 +291,11 @@ impl Master {
         self.cycle = (self.cycle + 1) % CYCLES;
         self.got = Default::default();
         self.heard_before = std::mem::take(&mut self.heard);
-        self.seen = [Seen::default(); 2];
+        self.seen = [ReceivedTelegrams::default(); 2];
         self.in_use = 0;
         match self.state {
-            State::Failed(_) | State::Pause(_) => {}
-            State::Announce(_) => self.add(Kind::Mdt, 0, crate::header::MIN_DATA),
+            MasterState::Failed(_) | MasterState::Pause(_) => {}
+            MasterState::Announce(_) => self.add(TelegramKind::Mdt, 0, crate::header::MIN_DATA),
             _ => self.write_telegrams(),
         }
     }
@@ -305,25 +308,25 @@ impl Master {
 
     /// Takes a frame that came in at port 1 (0) or port 2 (1).
     pub fn take(&mut self, port: usize, frame: &[u8]) {
-        let header = match Header::read(frame) {
+        let header = match TelegramHeader::read(frame) {
             Ok(header) => header,
             Err(Malformed::Foreign) => return self.counts.foreign += 1,
             Err(_) => return self.counts.malformed += 1,
         };
         let ours = self.setup.ports.contains(&Some(header.source));
-        self.heard[port] |= ours && header.kind == Kind::At;
+        self.heard[port] |= ours && header.kind == TelegramKind::At;
         if !ours || header.cycle != Some(self.cycle) || header.phase != self.phase || header.switching {
             self.counts.late += u64::from(!header.switching);
             return;
         }
-        if header.kind == Kind::Mdt {
+        if header.kind == TelegramKind::Mdt {
             return;
         }
         let number = usize::from(header.number);
         if number == 0 {
             match header.channel {
-                Channel::P => self.seen[port].p = true,
-                Channel::S => self.seen[port].s = true,
+                RingChannel::P => self.seen[port].p = true,
+                RingChannel::S => self.seen[port].s = true,
             }
         }
         // What an idle port lets out comes from the far side of an end: the end's own line has the data.
@@ -341,14 +344,14 @@ impl Master {
             let here = (0..self.nodes.len()).filter(|&i| of(i).telegram == number);
             here.filter(|&i| Status(word(data, of(i).offset)).valid()).count()
         };
-        self.phase > Phase::Cp0
+        self.phase > CommunicationPhase::Cp0
             && valid(&frame[crate::header::HEADER..]) > valid(self.received[port][number].data())
     }
 
     /// Whether nothing more is to be waited for: every telegram is back at both ports of a closed ring; of an open one, at
     /// the ports where telegrams came in the last cycle.
     pub fn is_complete(&self) -> bool {
-        if self.in_use == 0 || matches!(self.state, State::Announce(_)) {
+        if self.in_use == 0 || matches!(self.state, MasterState::Announce(_)) {
             return true;
         }
         let all = |port: usize| self.got[port][..self.ats].iter().all(|got| *got);
@@ -365,20 +368,20 @@ impl Master {
     /// Ends the cycle: looks at what came in.
     pub fn end(&mut self) -> Stage {
         match self.state {
-            State::Identify { cycles, stable } => self.identify(cycles + 1, stable),
-            State::Announce(left) if left > 0 => self.state = State::Announce(left - 1),
-            State::Announce(_) => self.state = State::Pause(PAUSE / self.setup.cycle),
-            State::Pause(left) if left > 0 => self.state = State::Pause(left - 1),
-            State::Pause(_) => self.enter_next(),
-            State::Validate { cycles, valid } => self.validate(cycles + 1, valid),
-            State::Ask => self.ask(),
-            State::Run => self.run(),
-            State::Failed(_) => {}
+            MasterState::Identify { cycles, stable } => self.identify(cycles + 1, stable),
+            MasterState::Announce(left) if left > 0 => self.state = MasterState::Announce(left - 1),
+            MasterState::Announce(_) => self.state = MasterState::Pause(PAUSE / self.setup.cycle),
+            MasterState::Pause(left) if left > 0 => self.state = MasterState::Pause(left - 1),
+            MasterState::Pause(_) => self.enter_next(),
+            MasterState::Validate { cycles, valid } => self.validate(cycles + 1, valid),
+            MasterState::Ask => self.ask(),
+            MasterState::Run => self.run(),
+            MasterState::Failed(_) => {}
         }
         self.stage()
     }
 
-    fn tell(&mut self, event: Event) {
+    fn tell(&mut self, event: RingEvent) {
         if self.events.len() < EVENTS {
             self.events.push_back(event);
         }
@@ -386,15 +389,15 @@ impl Master {
 
     // Telegrams.
 
-    fn add(&mut self, kind: Kind, number: usize, len: usize) {
-        for (port, channel) in [Channel::P, Channel::S].into_iter().enumerate() {
-            let header = Header {
+    fn add(&mut self, kind: TelegramKind, number: usize, len: usize) {
+        for (port, channel) in [RingChannel::P, RingChannel::S].into_iter().enumerate() {
+            let header = TelegramHeader {
                 source: self.setup.ports[port].unwrap_or_default(),
                 channel,
                 kind,
                 number: number as u8,
                 phase: self.phase,
-                switching: matches!(self.state, State::Announce(_)),
+                switching: matches!(self.state, MasterState::Announce(_)),
                 cycle: Some(self.cycle),
             };
             self.sent[port][self.in_use].begin(&header, len);
@@ -404,21 +407,21 @@ impl Master {
 
     fn write_telegrams(&mut self) {
         let lengths = |kind| match (self.phase, kind) {
-            (Phase::Cp3 | Phase::Cp4, Kind::Mdt) => self.layout.mdt,
-            (Phase::Cp3 | Phase::Cp4, Kind::At) => self.layout.at,
-            (Phase::Cp0, kind) => [early_len(kind, self.phase), 0, 0, 0],
+            (CommunicationPhase::Cp3 | CommunicationPhase::Cp4, TelegramKind::Mdt) => self.layout.mdt,
+            (CommunicationPhase::Cp3 | CommunicationPhase::Cp4, TelegramKind::At) => self.layout.at,
+            (CommunicationPhase::Cp0, kind) => [early_len(kind, self.phase), 0, 0, 0],
             (_, kind) => [early_len(kind, self.phase), early_len(kind, self.phase), 0, 0],
         };
-        let (mdt, at) = (lengths(Kind::Mdt), lengths(Kind::At));
+        let (mdt, at) = (lengths(TelegramKind::Mdt), lengths(TelegramKind::At));
         self.ats = at.iter().filter(|len| **len > 0).count();
-        for (kind, lengths) in [(Kind::Mdt, mdt), (Kind::At, at)] {
+        for (kind, lengths) in [(TelegramKind::Mdt, mdt), (TelegramKind::At, at)] {
             for (number, len) in lengths.into_iter().enumerate().filter(|(_, len)| *len > 0) {
                 self.add(kind, number, len);
             }
         }
         for port in 0..2 {
             match self.phase {
-                Phase::Cp0 => {
+                CommunicationPhase::Cp0 => {
                     set_long(self.sent[port][0].data_mut(), 0, cp0::VERSION);
                     cp0::clear(self.sent[port][1].data_mut());
                 }
@@ -432,32 +435,32 @@ impl Master {
         let (node, sent) = (&mut self.nodes[i], &mut self.sent[port]);
         node.control = node.control.with(true, closed);
         set_word(sent[places.control.telegram].data_mut(), places.control.offset, node.control.0);
-        if self.phase >= Phase::Cp2 {
+        if self.phase >= CommunicationPhase::Cp2 {
             let (control, info) = node.service.give();
             let data = sent[places.mdt_service.telegram].data_mut();
             set_word(data, places.mdt_service.offset, control);
             set_long(data, places.mdt_service.offset + 2, info);
         }
-        if self.phase == Phase::Cp4 {
+        if self.phase == CommunicationPhase::Cp4 {
             let (data, at) = (sent[places.command.telegram].data_mut(), places.command.offset);
             set_word(data, at, node.command_control.0);
             data[at + CONNECTION..at + CONNECTION + node.command.len()].copy_from_slice(&node.command);
         }
     }
 
-    fn places(&self, i: usize) -> Places {
-        if self.phase >= Phase::Cp3 {
+    fn places(&self, i: usize) -> StationPlaces {
+        if self.phase >= CommunicationPhase::Cp3 {
             return self.layout.places[i];
         }
         let topology = self.nodes[i].topology;
-        let place = |(telegram, offset)| crate::layout::Place { telegram, offset };
+        let place = |(telegram, offset)| crate::layout::DataPlace { telegram, offset };
         let (service, device) = (place(cp12::service(topology)), place(cp12::device(topology)));
-        Places {
+        StationPlaces {
             mdt_service: service,
             at_service: service,
             control: device,
             status: device,
-            ..Places::default()
+            ..StationPlaces::default()
         }
     }
 }

@@ -1,9 +1,9 @@
 //! The master on real interfaces: one cycle is [`Near::send`] and [`Near::receive`].
 
 use crate::header::MAX_FRAME;
-use crate::master::{Master, Setup, Stage};
+use crate::master::{Master, MasterSetup, Stage};
 use crate::socket::{Socket, SocketError};
-use crate::trouble::Trouble;
+use crate::trouble::StartTrouble;
 use std::fmt;
 
 /// A frame longer than any telegram is seen as such, not cut to one.
@@ -25,7 +25,7 @@ pub enum OpenError {
     /// An interface.
     Socket(SocketError),
     /// Data to send.
-    Setup(Trouble),
+    Setup(StartTrouble),
 }
 
 impl fmt::Display for OpenError {
@@ -44,7 +44,7 @@ impl Near {
     ///
     /// # Errors
     /// An interface that cannot be used, or a set-up that Sercos III does not know.
-    pub fn open(first: &str, second: Option<&str>, mut setup: Setup) -> Result<Self, OpenError> {
+    pub fn open(first: &str, second: Option<&str>, mut setup: MasterSetup) -> Result<Self, OpenError> {
         let first = Socket::open(first).map_err(OpenError::Socket)?;
         let second = second.map(Socket::open).transpose().map_err(OpenError::Socket)?;
         setup.ports = [Some(first.mac()), second.as_ref().map(Socket::mac)];

@@ -5,7 +5,7 @@
 //! missing gets no new data in that cycle.
 
 use crate::layout::Station;
-use codec::layout::{Carries, Layout};
+use codec::layout::{Carries, FrameLayout};
 use messages::{BusFrames, Frame};
 
 /// Longest data of a connection \[B\].
@@ -23,7 +23,7 @@ pub struct Packing {
 }
 
 /// The slaves of a robot: a local controller has its number, from 1, as its address.
-pub fn stations(layout: &Layout) -> Vec<Station> {
+pub fn stations(layout: &FrameLayout) -> Vec<Station> {
     let (command, feedback) = (Packing::new(layout, true), Packing::new(layout, false));
     let station = |node: usize| Station {
         address: node as u16 + 1,
@@ -35,7 +35,7 @@ pub fn stations(layout: &Layout) -> Vec<Station> {
 
 impl Packing {
     /// For the frames to the drives, or from them.
-    pub fn new(layout: &Layout, to_drives: bool) -> Self {
+    pub fn new(layout: &FrameLayout, to_drives: bool) -> Self {
         let nodes = layout.nodes.len();
         let (mut sizes, mut messages) = (vec![0; nodes], vec![0; nodes]);
         let mut places = Vec::with_capacity(layout.messages.len());
@@ -52,7 +52,7 @@ impl Packing {
     }
 
     /// Packs the frames of a cycle.
-    pub fn pack(&mut self, layout: &Layout, frames: &BusFrames) {
+    pub fn pack(&mut self, layout: &FrameLayout, frames: &BusFrames) {
         self.packed.fill(0);
         for frame in frames.as_slice() {
             let Some(i) = layout.find(frame.line, frame.id) else { continue };
@@ -69,7 +69,7 @@ impl Packing {
     }
 
     /// Appends the frames of a node that its connection brought.
-    pub fn unpack(&self, layout: &Layout, node: usize, data: &[u8], frames: &mut BusFrames) {
+    pub fn unpack(&self, layout: &FrameLayout, node: usize, data: &[u8], frames: &mut BusFrames) {
         for (message, place) in layout.messages.iter().zip(&self.places) {
             let Some(at) = place.filter(|_| message.node == node) else { continue };
             let len = message.len as usize;
@@ -82,7 +82,7 @@ impl Packing {
 }
 
 /// Low bits of the tick in a frame that synchronizes, and how many bits they are; none in others.
-pub fn sync_counter(layout: &Layout, frame: &Frame) -> Option<(u64, u32)> {
+pub fn sync_counter(layout: &FrameLayout, frame: &Frame) -> Option<(u64, u32)> {
     let message = layout.find(frame.line, frame.id).map(|i| &layout.messages[i]).filter(|m| m.is_sync())?;
     let counter = message.signals.iter().find(|s| s.carries == Carries::Counter)?;
     Some((counter.get(&frame.data) as u64, counter.bits))
@@ -130,10 +130,10 @@ impl std::str::FromStr for Interfaces {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use codec::layout::{Message, Signal};
+    use codec::layout::{BusMessage, BusSignal};
 
-    fn message(id: u32, len: u32, node: usize, to_drives: bool) -> Message {
-        let signal = |carries| Signal {
+    fn message(id: u32, len: u32, node: usize, to_drives: bool) -> BusMessage {
+        let signal = |carries| BusSignal {
             name: "n".into(),
             start: 0,
             bits: 16,
@@ -146,10 +146,10 @@ mod tests {
             (true, 2) => vec![signal(Carries::Counter)],
             _ => vec![signal(Carries::Counter), signal(Carries::Mode)],
         };
-        Message { name: String::new(), id, len, node, to_drives, signals }
+        BusMessage { name: String::new(), id, len, node, to_drives, signals }
     }
 
-    fn layout() -> Layout {
+    fn layout() -> FrameLayout {
         let both = |node: usize| {
             let id = 16 * node as u32;
             [
@@ -159,10 +159,10 @@ mod tests {
                 message(id + 3, 16, node, false),
             ]
         };
-        Layout::new(vec!["a".into(), "b".into()], (0..2).flat_map(both).collect())
+        FrameLayout::new(vec!["a".into(), "b".into()], (0..2).flat_map(both).collect())
     }
 
-    fn frames(layout: &Layout, to_drives: bool) -> BusFrames {
+    fn frames(layout: &FrameLayout, to_drives: bool) -> BusFrames {
         let mut frames = BusFrames::default();
         for message in layout.sent(to_drives) {
             let mut frame =

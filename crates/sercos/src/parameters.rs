@@ -1,8 +1,8 @@
 //! The parameters of a slave: what the master reads and writes through the service channel.
 
-use crate::header::{Kind, Phase, TELEGRAMS};
-use crate::idn::{self, Attribute, Idn, Shape, code};
-use crate::layout::{CONNECTION, DEVICE, Place, SERVICE};
+use crate::header::{CommunicationPhase, TELEGRAMS, TelegramKind};
+use crate::idn::{self, Attribute, Idn, ValueShape, code};
+use crate::layout::{CONNECTION, DEVICE, DataPlace, SERVICE};
 use crate::telegram::{set_word, word};
 
 /// Longest value on the wire \[B\]: a list of four words behind its two lengths.
@@ -10,12 +10,12 @@ pub(crate) const VALUE: usize = 12;
 
 /// A value as it is on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Value {
+pub struct WireValue {
     bytes: [u8; VALUE],
     len: usize,
 }
 
-impl Value {
+impl WireValue {
     /// Two bytes.
     pub fn word(value: u16) -> Self {
         let mut bytes = [0; VALUE];
@@ -64,11 +64,11 @@ impl Value {
     }
 
     /// Its shape, by its length.
-    pub fn shape(&self) -> Shape {
+    pub fn shape(&self) -> ValueShape {
         match self.len {
-            2 => Shape::Word,
-            4 => Shape::Long,
-            _ => Shape::Words,
+            2 => ValueShape::Word,
+            4 => ValueShape::Long,
+            _ => ValueShape::Words,
         }
     }
 }
@@ -78,10 +78,10 @@ pub(crate) const COMMAND_DONE: u16 = 3;
 /// Acknowledgement of a procedure command that failed.
 pub(crate) const COMMAND_FAILED: u16 = 0xF;
 
-struct Parameter {
+struct SlaveParameter {
     idn: Idn,
     attribute: Attribute,
-    value: Value,
+    value: WireValue,
     /// Acknowledgement, of a procedure command.
     state: u16,
     /// The procedure command succeeded; cancelling it does not change that.
@@ -90,53 +90,53 @@ struct Parameter {
 }
 
 /// All parameters of a slave.
-pub(crate) struct Parameters {
-    all: Vec<Parameter>,
+pub(crate) struct SlaveParameters {
+    all: Vec<SlaveParameter>,
     command: usize,
     feedback: usize,
 }
 
-impl Parameters {
+impl SlaveParameters {
     /// Parameters of a slave with this address that takes `command` and gives `feedback` bytes in a cycle.
     pub(crate) fn new(address: u16, command: usize, feedback: usize) -> Self {
         let mut all = Vec::new();
-        let mut add = |idn, value: Value, fixed: bool| {
+        let mut add = |idn, value: WireValue, fixed: bool| {
             let writable = !fixed;
             let attribute = Attribute::new(value.shape(), false, writable, false, false);
-            all.push(Parameter { idn, attribute, value, state: 0, passed: false, fixed });
+            all.push(SlaveParameter { idn, attribute, value, state: 0, passed: false, fixed });
         };
         // Timing and places in the telegrams, written by the master in CP2; the address is the slave's own.
-        add(idn::ADDRESS, Value::word(address), true);
-        add(idn::CYCLE_TIME, Value::long(0), false);
-        add(idn::AT_TIME, Value::long(0), false);
-        add(idn::BEAT_LOSSES, Value::word(0), false);
+        add(idn::ADDRESS, WireValue::word(address), true);
+        add(idn::CYCLE_TIME, WireValue::long(0), false);
+        add(idn::AT_TIME, WireValue::long(0), false);
+        add(idn::BEAT_LOSSES, WireValue::word(0), false);
         for offset in
             [idn::CONTROL_OFFSET, idn::STATUS_OFFSET, idn::MDT_SERVICE_OFFSET, idn::AT_SERVICE_OFFSET]
         {
-            add(offset, Value::word(0), false);
+            add(offset, WireValue::word(0), false);
         }
-        add(idn::MDT_LENGTHS, Value::words([0; TELEGRAMS]), false);
-        add(idn::AT_LENGTHS, Value::words([0; TELEGRAMS]), false);
+        add(idn::MDT_LENGTHS, WireValue::words([0; TELEGRAMS]), false);
+        add(idn::AT_LENGTHS, WireValue::words([0; TELEGRAMS]), false);
         // One connection in each direction.
         for (instance, setup, len) in
             [(idn::COMMAND, idn::CONSUMER, command), (idn::FEEDBACK, idn::PRODUCER, feedback)]
         {
             let element = |element| idn::connection(instance, element);
-            add(element(idn::SETUP), Value::word(setup), true);
-            add(element(idn::LENGTH), Value::word((len + CONNECTION) as u16), true);
-            add(element(idn::NUMBER), Value::word(0), false);
-            add(element(idn::ASSIGNMENT), Value::word(0), false);
-            add(element(idn::PRODUCER_TIME), Value::long(0), false);
-            add(element(idn::LOSSES), Value::word(0), false);
+            add(element(idn::SETUP), WireValue::word(setup), true);
+            add(element(idn::LENGTH), WireValue::word((len + CONNECTION) as u16), true);
+            add(element(idn::NUMBER), WireValue::word(0), false);
+            add(element(idn::ASSIGNMENT), WireValue::word(0), false);
+            add(element(idn::PRODUCER_TIME), WireValue::long(0), false);
+            add(element(idn::LOSSES), WireValue::word(0), false);
         }
         // Procedure commands by which the master asks whether the next phase may begin.
         for idn in [idn::CHECK_CP3, idn::CHECK_CP4] {
             let (cp2, cp3) = (idn == idn::CHECK_CP3, idn == idn::CHECK_CP4);
-            let attribute = Attribute::new(Shape::Word, true, cp2, cp3, false);
-            all.push(Parameter {
+            let attribute = Attribute::new(ValueShape::Word, true, cp2, cp3, false);
+            all.push(SlaveParameter {
                 idn,
                 attribute,
-                value: Value::word(0),
+                value: WireValue::word(0),
                 state: 0,
                 passed: false,
                 fixed: false,
@@ -149,9 +149,9 @@ impl Parameters {
     pub(crate) fn reset(&mut self) {
         for p in self.all.iter_mut().filter(|p| !p.fixed) {
             p.value = match p.value.shape() {
-                Shape::Word => Value::word(0),
-                Shape::Long => Value::long(0),
-                Shape::Words => Value::words([0; TELEGRAMS]),
+                ValueShape::Word => WireValue::word(0),
+                ValueShape::Long => WireValue::long(0),
+                ValueShape::Words => WireValue::words([0; TELEGRAMS]),
             };
             (p.state, p.passed) = (0, false);
         }
@@ -168,7 +168,7 @@ impl Parameters {
     }
 
     /// Value of parameter `i`.
-    pub(crate) fn value(&self, i: usize) -> Value {
+    pub(crate) fn value(&self, i: usize) -> WireValue {
         self.all[i].value
     }
 
@@ -181,7 +181,7 @@ impl Parameters {
     ///
     /// # Errors
     /// The code for the service channel; nothing is written.
-    pub(crate) fn write(&mut self, i: usize, bytes: &[u8], phase: Phase) -> Result<(), u16> {
+    pub(crate) fn write(&mut self, i: usize, bytes: &[u8], phase: CommunicationPhase) -> Result<(), u16> {
         let p = &self.all[i];
         if p.fixed {
             return Err(code::READ_ONLY);
@@ -192,9 +192,9 @@ impl Parameters {
         if bytes.len() < p.value.bytes().len() {
             return Err(code::TOO_SHORT);
         }
-        let value = Value::received(bytes).filter(|v| v.bytes().len() == p.value.bytes().len());
+        let value = WireValue::received(bytes).filter(|v| v.bytes().len() == p.value.bytes().len());
         let value = value.ok_or(code::TOO_LONG)?;
-        if value.shape() == Shape::Words && word(value.bytes(), 0) != 8 {
+        if value.shape() == ValueShape::Words && word(value.bytes(), 0) != 8 {
             return Err(code::INVALID);
         }
         self.all[i].value = value;
@@ -216,17 +216,17 @@ impl Parameters {
         }
     }
 
-    fn get(&self, idn: Idn) -> Value {
-        self.find(idn).map_or(Value::word(0), |i| self.all[i].value)
+    fn get(&self, idn: Idn) -> WireValue {
+        self.find(idn).map_or(WireValue::word(0), |i| self.all[i].value)
     }
 
-    fn place(&self, idn: Idn) -> (Kind, Place) {
-        Place::read(self.get(idn).number() as u16)
+    fn place(&self, idn: Idn) -> (TelegramKind, DataPlace) {
+        DataPlace::read(self.get(idn).number() as u16)
     }
 
     /// Whether the master's parameters can be worked with: a permitted cycle time, and every field within its telegram.
     pub(crate) fn is_ready(&self) -> bool {
-        let fits = |idn, kind: Option<Kind>, lengths: Idn, len| {
+        let fits = |idn, kind: Option<TelegramKind>, lengths: Idn, len| {
             let (found, place) = self.place(idn);
             let room = usize::from(self.get(lengths).item(place.telegram));
             kind.is_none_or(|kind| kind == found) && place.offset + len <= room
@@ -238,14 +238,14 @@ impl Parameters {
             && fits(idn::MDT_SERVICE_OFFSET, None, mdt, SERVICE)
             && fits(idn::STATUS_OFFSET, None, at, DEVICE)
             && fits(idn::AT_SERVICE_OFFSET, None, at, SERVICE)
-            && fits(assignment(idn::COMMAND), Some(Kind::Mdt), mdt, CONNECTION + self.command)
-            && fits(assignment(idn::FEEDBACK), Some(Kind::At), at, CONNECTION + self.feedback)
+            && fits(assignment(idn::COMMAND), Some(TelegramKind::Mdt), mdt, CONNECTION + self.command)
+            && fits(assignment(idn::FEEDBACK), Some(TelegramKind::At), at, CONNECTION + self.feedback)
     }
 
     /// The places that the master has given.
-    pub(crate) fn places(&self) -> crate::layout::Places {
+    pub(crate) fn places(&self) -> crate::layout::StationPlaces {
         let place = |idn| self.place(idn).1;
-        crate::layout::Places {
+        crate::layout::StationPlaces {
             mdt_service: place(idn::MDT_SERVICE_OFFSET),
             at_service: place(idn::AT_SERVICE_OFFSET),
             control: place(idn::CONTROL_OFFSET),

@@ -12,7 +12,7 @@
 //! for [`STABLE`] cycles, the cable is back, and the ends are commanded to let telegrams through. Who does not obey
 //! within [`PATIENCE`] cycles is commanded back.
 
-use crate::device::{Control, Idle, Status, Topology};
+use crate::device::{DeviceControl, Idle, Status, Topology};
 
 /// Cycles in which the topology must not change before it counts.
 pub(crate) const STABLE: u32 = 100;
@@ -21,7 +21,7 @@ pub(crate) const PATIENCE: u32 = 12;
 
 /// Shape of the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub enum RingShape {
     /// Every telegram comes back at the other port.
     Ring,
     /// Telegrams of one direction come back at the other port, those of the other do not.
@@ -38,16 +38,16 @@ pub enum Shape {
 
 /// Which telegrams a port of the master got in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Seen {
+pub struct ReceivedTelegrams {
     /// Primary ones.
     pub p: bool,
     /// Secondary ones.
     pub s: bool,
 }
 
-impl Shape {
+impl RingShape {
     /// By the telegrams that came back at port 1 and port 2.
-    pub fn of(first: Seen, second: Seen) -> Self {
+    pub fn of(first: ReceivedTelegrams, second: ReceivedTelegrams) -> Self {
         match (first.p, first.s, second.p, second.s) {
             (false, true, true, false) => Self::Ring,
             (true, _, _, true) => Self::Broken,
@@ -59,7 +59,7 @@ impl Shape {
     }
 }
 
-enum State {
+enum RingState {
     Watch,
     /// Cycles in which all ends saw the other side.
     Repaired(u32),
@@ -69,7 +69,7 @@ enum State {
 
 /// Closes a ring again.
 pub(crate) struct Repair {
-    state: State,
+    state: RingState,
     /// States of the stations before the command, to go back to.
     before: Vec<Topology>,
 }
@@ -77,53 +77,53 @@ pub(crate) struct Repair {
 impl Repair {
     /// For so many stations.
     pub(crate) fn new(stations: usize) -> Self {
-        Self { state: State::Watch, before: vec![Topology::Through; stations] }
+        Self { state: RingState::Watch, before: vec![Topology::Through; stations] }
     }
 
     /// Begins anew.
     pub(crate) fn reset(&mut self) {
-        self.state = State::Watch;
+        self.state = RingState::Watch;
     }
 
     /// One cycle: looks at the device states, and commands. The stations are those that answered.
-    pub(crate) fn step(&mut self, states: &[Option<Status>], controls: &mut [Control]) {
+    pub(crate) fn step(&mut self, states: &[Option<Status>], controls: &mut [DeviceControl]) {
         match self.state {
-            State::Watch => {
+            RingState::Watch => {
                 if all_ends_see(states) {
-                    self.state = State::Repaired(1);
+                    self.state = RingState::Repaired(1);
                 }
             }
-            State::Repaired(_) if !all_ends_see(states) => self.state = State::Watch,
-            State::Repaired(cycles) if cycles < STABLE => self.state = State::Repaired(cycles + 1),
-            State::Repaired(_) => self.command(states, controls),
-            State::Commanded(cycles) => self.supervise(cycles, states, controls),
+            RingState::Repaired(_) if !all_ends_see(states) => self.state = RingState::Watch,
+            RingState::Repaired(cycles) if cycles < STABLE => self.state = RingState::Repaired(cycles + 1),
+            RingState::Repaired(_) => self.command(states, controls),
+            RingState::Commanded(cycles) => self.supervise(cycles, states, controls),
         }
     }
 
-    fn command(&mut self, states: &[Option<Status>], controls: &mut [Control]) {
+    fn command(&mut self, states: &[Option<Status>], controls: &mut [DeviceControl]) {
         for ((state, control), before) in states.iter().zip(controls).zip(&mut self.before) {
             *before = state.and_then(Status::topology).unwrap_or(Topology::Through);
             if *before != Topology::Through {
                 *control = control.command(Topology::Through);
             }
         }
-        self.state = State::Commanded(0);
+        self.state = RingState::Commanded(0);
     }
 
     /// Waits until nobody is an end any more, or takes the command back.
-    fn supervise(&mut self, cycles: u32, states: &[Option<Status>], controls: &mut [Control]) {
+    fn supervise(&mut self, cycles: u32, states: &[Option<Status>], controls: &mut [DeviceControl]) {
         let through = |s: &Option<Status>| s.is_some_and(|s| s.topology() == Some(Topology::Through));
         if states.iter().all(through) {
-            self.state = State::Watch;
+            self.state = RingState::Watch;
         } else if cycles < PATIENCE {
-            self.state = State::Commanded(cycles + 1);
+            self.state = RingState::Commanded(cycles + 1);
         } else {
             for ((state, control), before) in states.iter().zip(controls).zip(&self.before) {
                 if *before != Topology::Through && through(state) {
                     *control = control.command(*before);
                 }
             }
-            self.state = State::Watch;
+            self.state = RingState::Watch;
         }
     }
 }

@@ -7,9 +7,9 @@
 //!
 //! The master begins a step by changing MHS; the slave ends it by making AHS equal.
 
-use crate::header::Phase;
-use crate::idn::{Attribute, Element, Idn, Shape, code};
-use crate::parameters::{COMMAND_DONE, COMMAND_FAILED, Parameters, VALUE, Value};
+use crate::header::CommunicationPhase;
+use crate::idn::{Attribute, Element, Idn, ValueShape, code};
+use crate::parameters::{COMMAND_DONE, COMMAND_FAILED, SlaveParameters, VALUE, WireValue};
 use crate::telegram::word;
 
 const HANDSHAKE: u16 = 1;
@@ -33,7 +33,13 @@ pub(crate) struct Server {
 
 impl Server {
     /// Takes what the master sent. The same step twice, from both channels, is one step.
-    pub(crate) fn take(&mut self, control: u16, info: u32, parameters: &mut Parameters, phase: Phase) {
+    pub(crate) fn take(
+        &mut self,
+        control: u16,
+        info: u32,
+        parameters: &mut SlaveParameters,
+        phase: CommunicationPhase,
+    ) {
         if (control & HANDSHAKE != 0) == self.ahs {
             return;
         }
@@ -60,8 +66,8 @@ impl Server {
         &mut self,
         control: u16,
         info: u32,
-        parameters: &mut Parameters,
-        phase: Phase,
+        parameters: &mut SlaveParameters,
+        phase: CommunicationPhase,
     ) -> Result<u32, u16> {
         let write = control & WRITE != 0;
         if self.element == Element::Close.number() {
@@ -83,7 +89,7 @@ impl Server {
         }
     }
 
-    fn read(&mut self, value: Value) -> Result<u32, u16> {
+    fn read(&mut self, value: WireValue) -> Result<u32, u16> {
         let bytes = value.bytes().get(self.at..).filter(|rest| !rest.is_empty()).ok_or(code::TOO_LONG)?;
         let mut four = [0; 4];
         for (place, byte) in four.iter_mut().zip(bytes) {
@@ -98,14 +104,14 @@ impl Server {
         info: u32,
         last: bool,
         open: usize,
-        parameters: &mut Parameters,
-        phase: Phase,
+        parameters: &mut SlaveParameters,
+        phase: CommunicationPhase,
     ) -> Result<u32, u16> {
         let place = self.buffer.get_mut(self.at..self.at + 4).ok_or(code::TOO_LONG)?;
         place.copy_from_slice(&info.to_le_bytes());
         self.at += 4;
         if last {
-            let short = parameters.attribute(open).shape() == Some(Shape::Word) && self.at == 4;
+            let short = parameters.attribute(open).shape() == Some(ValueShape::Word) && self.at == 4;
             let len = if short { 2 } else { self.at };
             parameters.write(open, &self.buffer[..len], phase)?;
         }
@@ -115,16 +121,16 @@ impl Server {
 
 /// Request of the master to a slave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Request {
+pub(crate) enum ServiceRequest {
     /// The parameter has this value, or the slave is another one.
-    Expect(Idn, Value),
+    Expect(Idn, WireValue),
     /// The parameter takes this value.
-    Write(Idn, Value),
+    Write(Idn, WireValue),
     /// The procedure command is executed.
     Execute(Idn),
 }
 
-impl Request {
+impl ServiceRequest {
     /// The parameter.
     pub(crate) fn idn(&self) -> Idn {
         match *self {
@@ -135,13 +141,13 @@ impl Request {
 
 /// Failure of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
+pub enum ServiceRefusal {
     /// The slave answered with this code.
     Code(u16),
     /// The parameter has another length than expected.
     Shape,
     /// The parameter has another value than expected.
-    Value(Value),
+    Value(WireValue),
     /// The procedure command ended with an error.
     Command,
     /// The slave did not end a step in time.
@@ -158,11 +164,11 @@ pub(crate) enum Progress {
     /// Done; told once.
     Done,
     /// Not done; told once.
-    Refused(Refusal),
+    Refused(ServiceRefusal),
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Step {
+enum ServiceStep {
     None,
     Open,
     Attribute,
@@ -173,19 +179,19 @@ enum Step {
 }
 
 /// The master's side.
-pub(crate) struct Client {
+pub(crate) struct ServiceClient {
     mhs: bool,
     control: u16,
     info: u32,
-    request: Option<Request>,
-    step: Step,
+    request: Option<ServiceRequest>,
+    step: ServiceStep,
     at: usize,
     buffer: [u8; VALUE + 4],
     waited: u32,
     patience: u32,
 }
 
-impl Client {
+impl ServiceClient {
     /// A client that waits so many cycles for a step to end.
     pub(crate) fn new(patience: u32) -> Self {
         Self {
@@ -193,7 +199,7 @@ impl Client {
             control: 0,
             info: 0,
             request: None,
-            step: Step::None,
+            step: ServiceStep::None,
             at: 0,
             buffer: [0; VALUE + 4],
             waited: 0,
@@ -202,9 +208,9 @@ impl Client {
     }
 
     /// Begins a request.
-    pub(crate) fn ask(&mut self, request: Request) {
+    pub(crate) fn ask(&mut self, request: ServiceRequest) {
         self.request = Some(request);
-        (self.step, self.at) = (Step::Open, 0);
+        (self.step, self.at) = (ServiceStep::Open, 0);
         self.send(Element::Idn, true, true, request.idn().0);
     }
 
@@ -232,7 +238,7 @@ impl Client {
             return self.wait();
         }
         if status & ERROR != 0 {
-            return self.end(Err(Refusal::Code(info as u16)));
+            return self.end(Err(ServiceRefusal::Code(info as u16)));
         }
         match self.next(request, info) {
             Ok(true) => self.end(Ok(())),
@@ -247,72 +253,76 @@ impl Client {
             return Progress::Idle;
         }
         self.waited += 1;
-        if self.waited > self.patience { self.end(Err(Refusal::Timeout)) } else { Progress::Busy }
+        if self.waited > self.patience { self.end(Err(ServiceRefusal::Timeout)) } else { Progress::Busy }
     }
 
-    fn end(&mut self, how: Result<(), Refusal>) -> Progress {
-        (self.request, self.step) = (None, Step::None);
+    fn end(&mut self, how: Result<(), ServiceRefusal>) -> Progress {
+        (self.request, self.step) = (None, ServiceStep::None);
         how.map_or_else(Progress::Refused, |()| Progress::Done)
     }
 
     /// The step after the one that ended; whether that was the last one.
-    fn next(&mut self, request: Request, info: u32) -> Result<bool, Refusal> {
+    fn next(&mut self, request: ServiceRequest, info: u32) -> Result<bool, ServiceRefusal> {
         match (self.step, request) {
-            (Step::None, _) => return Ok(true),
-            (Step::Open, _) => {
-                self.step = Step::Attribute;
+            (ServiceStep::None, _) => return Ok(true),
+            (ServiceStep::Open, _) => {
+                self.step = ServiceStep::Attribute;
                 self.send(Element::Attribute, false, true, 0);
             }
-            (Step::Attribute, _) => self.check_attribute(request, Attribute(info))?,
-            (Step::Write, Request::Execute(_)) => {
-                self.step = Step::Acknowledge;
+            (ServiceStep::Attribute, _) => self.check_attribute(request, Attribute(info))?,
+            (ServiceStep::Write, ServiceRequest::Execute(_)) => {
+                self.step = ServiceStep::Acknowledge;
                 self.send(Element::Idn, false, true, 0);
             }
-            (Step::Write, Request::Write(_, value)) => return Ok(self.write_more(value)),
-            (Step::Read, Request::Expect(_, value)) => return self.read_more(value, info),
-            (Step::Acknowledge, _) => match info as u16 {
+            (ServiceStep::Write, ServiceRequest::Write(_, value)) => return Ok(self.write_more(value)),
+            (ServiceStep::Read, ServiceRequest::Expect(_, value)) => return self.read_more(value, info),
+            (ServiceStep::Acknowledge, _) => match info as u16 {
                 COMMAND_DONE => {
-                    self.step = Step::Clear;
+                    self.step = ServiceStep::Clear;
                     self.send(Element::Data, true, true, 0);
                 }
-                COMMAND_FAILED => return Err(Refusal::Command),
+                COMMAND_FAILED => return Err(ServiceRefusal::Command),
                 _ => {
                     let waited = self.waited;
                     self.send(Element::Idn, false, true, 0); // still at it: ask again
                     self.waited = waited + 1;
                     if self.waited > self.patience {
-                        return Err(Refusal::Timeout);
+                        return Err(ServiceRefusal::Timeout);
                     }
                 }
             },
-            (Step::Clear, _) => return Ok(true),
-            (Step::Write | Step::Read, _) => return Err(Refusal::Shape),
+            (ServiceStep::Clear, _) => return Ok(true),
+            (ServiceStep::Write | ServiceStep::Read, _) => return Err(ServiceRefusal::Shape),
         }
         Ok(false)
     }
 
     /// The attribute is known: does the value fit?
-    fn check_attribute(&mut self, request: Request, attribute: Attribute) -> Result<(), Refusal> {
+    fn check_attribute(
+        &mut self,
+        request: ServiceRequest,
+        attribute: Attribute,
+    ) -> Result<(), ServiceRefusal> {
         let shape = match request {
-            Request::Expect(_, value) | Request::Write(_, value) => value.shape(),
-            Request::Execute(_) => Shape::Word,
+            ServiceRequest::Expect(_, value) | ServiceRequest::Write(_, value) => value.shape(),
+            ServiceRequest::Execute(_) => ValueShape::Word,
         };
         if attribute.shape() != Some(shape)
-            || attribute.is_command() != matches!(request, Request::Execute(_))
+            || attribute.is_command() != matches!(request, ServiceRequest::Execute(_))
         {
-            return Err(Refusal::Shape);
+            return Err(ServiceRefusal::Shape);
         }
         match request {
-            Request::Expect(_, value) => {
-                self.step = Step::Read;
+            ServiceRequest::Expect(_, value) => {
+                self.step = ServiceStep::Read;
                 self.send(Element::Data, false, value.bytes().len() <= 4, 0);
             }
-            Request::Write(_, value) => {
-                self.step = Step::Write;
+            ServiceRequest::Write(_, value) => {
+                self.step = ServiceStep::Write;
                 self.write_more(value);
             }
-            Request::Execute(_) => {
-                self.step = Step::Write;
+            ServiceRequest::Execute(_) => {
+                self.step = ServiceStep::Write;
                 self.send(Element::Data, true, true, COMMAND_DONE.into());
             }
         }
@@ -320,7 +330,7 @@ impl Client {
     }
 
     /// Sends the next four bytes of a value; whether all had been sent.
-    fn write_more(&mut self, value: Value) -> bool {
+    fn write_more(&mut self, value: WireValue) -> bool {
         let bytes = value.bytes();
         if self.at >= bytes.len() {
             return true;
@@ -332,7 +342,7 @@ impl Client {
     }
 
     /// Takes four bytes of a value; whether it is whole and as expected.
-    fn read_more(&mut self, value: Value, info: u32) -> Result<bool, Refusal> {
+    fn read_more(&mut self, value: WireValue, info: u32) -> Result<bool, ServiceRefusal> {
         let bytes = value.bytes();
         self.buffer[self.at..self.at + 4].copy_from_slice(&info.to_le_bytes());
         self.at += 4;
@@ -344,6 +354,6 @@ impl Client {
         if found == bytes {
             return Ok(true);
         }
-        Err(Value::received(found).map_or(Refusal::Shape, Refusal::Value))
+        Err(WireValue::received(found).map_or(ServiceRefusal::Shape, ServiceRefusal::Value))
     }
 }

@@ -10,24 +10,24 @@
 //! A phase that may not follow, or a check that did not succeed, ends in NRT. So do beats missed in CP3 and CP4.
 //! No clock in here: cycles are told from the cycle counter of the beats.
 
-use crate::device::{Connection, Control, Idle, Status, Topology};
-use crate::header::{Channel, Header, Kind, Malformed, Phase};
+use crate::device::{Connection, DeviceControl, Idle, Status, Topology};
+use crate::header::{CommunicationPhase, Malformed, RingChannel, TelegramHeader, TelegramKind};
 use crate::idn;
-use crate::layout::{CONNECTION, Places};
-use crate::parameters::Parameters;
+use crate::layout::{CONNECTION, StationPlaces};
+use crate::parameters::SlaveParameters;
 use crate::service::Server;
 use crate::telegram::{cp0, cp12, long, set_long, set_word, word};
 
 /// The two ports of a slave. Which of them P telegrams come from, a slave learns in CP0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum PortSide {
     /// In a chain: towards the master's first port.
     Left,
     /// In a chain: towards the master's second port.
     Right,
 }
 
-impl Side {
+impl PortSide {
     /// The other one.
     pub fn other(self) -> Self {
         match self {
@@ -51,7 +51,7 @@ const SWITCH: u32 = 1000;
 
 /// Counters of a slave.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct SlaveCounts {
     /// Beats seen, each once.
     pub beats: u64,
     /// Frames that are no telegrams.
@@ -67,17 +67,17 @@ pub struct Counts {
 /// One slave.
 pub struct Slave {
     address: u16,
-    parameters: Parameters,
+    parameters: SlaveParameters,
     server: Server,
-    phase: Option<Phase>,
-    places: Places,
+    phase: Option<CommunicationPhase>,
+    places: StationPlaces,
     topology_address: u16,
     /// The side that P telegrams come from.
-    source: Option<Side>,
+    source: Option<PortSide>,
     links: [bool; 2],
     /// The side that is not used: the slave is the end of a line.
-    idle: Option<Side>,
-    seen_on_idle: Option<Channel>,
+    idle: Option<PortSide>,
+    seen_on_idle: Option<RingChannel>,
     idle_status: Idle,
     toggle: bool,
     commanded: Option<Topology>,
@@ -92,7 +92,7 @@ pub struct Slave {
     command_missed: u32,
     feedback: Box<[u8]>,
     feedback_control: Connection,
-    counts: Counts,
+    counts: SlaveCounts,
 }
 
 impl Slave {
@@ -100,10 +100,10 @@ impl Slave {
     pub fn new(address: u16, command: usize, feedback: usize) -> Self {
         Self {
             address,
-            parameters: Parameters::new(address, command, feedback),
+            parameters: SlaveParameters::new(address, command, feedback),
             server: Server::default(),
             phase: None,
-            places: Places::default(),
+            places: StationPlaces::default(),
             topology_address: 0,
             source: None,
             links: [true; 2],
@@ -123,7 +123,7 @@ impl Slave {
             command_missed: 0,
             feedback: vec![0; feedback].into(),
             feedback_control: Connection::default(),
-            counts: Counts::default(),
+            counts: SlaveCounts::default(),
         }
     }
 
@@ -133,12 +133,12 @@ impl Slave {
     }
 
     /// Communication phase; none: NRT.
-    pub fn phase(&self) -> Option<Phase> {
+    pub fn phase(&self) -> Option<CommunicationPhase> {
         self.phase
     }
 
     /// Counts.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> SlaveCounts {
         self.counts
     }
 
@@ -161,11 +161,12 @@ impl Slave {
     }
 
     /// A cable was plugged or pulled.
-    pub(crate) fn set_link(&mut self, side: Side, up: bool) {
+    pub(crate) fn set_link(&mut self, side: PortSide, up: bool) {
         self.links[side as usize] = up;
-        if up && self.phase <= Some(Phase::Cp0) && self.idle == Some(side) {
+        if up && self.phase <= Some(CommunicationPhase::Cp0) && self.idle == Some(side) {
             // Nobody can command it yet.
-            self.idle = [Side::Left, Side::Right].into_iter().find(|side| !self.links[*side as usize]);
+            self.idle =
+                [PortSide::Left, PortSide::Right].into_iter().find(|side| !self.links[*side as usize]);
         }
         if !up && self.idle.is_none() {
             self.idle = Some(side);
@@ -186,14 +187,14 @@ impl Slave {
     pub fn silence(&mut self) {
         self.silent += 1;
         let patience = if self.switching { SWITCH } else { self.parameters.beat_losses() };
-        if self.phase >= Some(Phase::Cp3) && self.silent > patience {
+        if self.phase >= Some(CommunicationPhase::Cp3) && self.silent > patience {
             self.phase = None;
         }
     }
 
     /// A frame came in on this side: reads and writes its part, and says where the frame goes on.
-    pub fn pass(&mut self, from: Side, frame: &mut [u8]) -> Exits {
-        let header = match Header::read(frame) {
+    pub fn pass(&mut self, from: PortSide, frame: &mut [u8]) -> Exits {
+        let header = match TelegramHeader::read(frame) {
             Ok(header) => header,
             Err(Malformed::Foreign) => {
                 self.counts.foreign += 1;
@@ -214,8 +215,8 @@ impl Slave {
         }
         // Data are exchanged on the way out; on the way back a telegram only passes.
         let comes_from = match header.channel {
-            Channel::P => self.source,
-            Channel::S => self.source.map(Side::other),
+            RingChannel::P => self.source,
+            RingChannel::S => self.source.map(PortSide::other),
         };
         let outward = comes_from == Some(from);
         if outward && !header.switching {
@@ -224,17 +225,17 @@ impl Slave {
         self.exits(from, outward)
     }
 
-    fn exits(&self, from: Side, outward: bool) -> Exits {
+    fn exits(&self, from: PortSide, outward: bool) -> Exits {
         let both = self.idle.is_some() && outward;
-        let leaves = |side: Side| {
+        let leaves = |side: PortSide| {
             let on = if self.idle.is_some() { both } else { side != from };
             on && self.links[side as usize]
         };
-        Exits { left: leaves(Side::Left), right: leaves(Side::Right) }
+        Exits { left: leaves(PortSide::Left), right: leaves(PortSide::Right) }
     }
 
     /// The head of MDT0: a new cycle, if it was not seen from the other side before.
-    fn beat(&mut self, from: Side, header: &Header) {
+    fn beat(&mut self, from: PortSide, header: &TelegramHeader) {
         let same_phase = self.phase == Some(header.phase) || header.switching;
         if same_phase && header.cycle.is_some() && header.cycle == self.cycle {
             return;
@@ -244,8 +245,8 @@ impl Slave {
         self.idle_status = match (self.idle, self.seen_on_idle.take()) {
             (Some(side), _) if !self.links[side as usize] => Idle::NoLink,
             (None, _) | (_, None) => Idle::Link,
-            (_, Some(Channel::P)) => Idle::P,
-            (_, Some(Channel::S)) => Idle::S,
+            (_, Some(RingChannel::P)) => Idle::P,
+            (_, Some(RingChannel::S)) => Idle::S,
         };
         if !header.switching && self.phase != Some(header.phase) {
             self.enter(from, header);
@@ -255,14 +256,14 @@ impl Slave {
     }
 
     /// The next phase, the first one, or none.
-    fn enter(&mut self, from: Side, header: &Header) {
-        let follows = self.phase.and_then(Phase::next) == Some(header.phase);
+    fn enter(&mut self, from: PortSide, header: &TelegramHeader) {
+        let follows = self.phase.and_then(CommunicationPhase::next) == Some(header.phase);
         let allowed = match header.phase {
-            Phase::Cp0 => true,
-            Phase::Cp1 => follows && self.topology_address > 0,
-            Phase::Cp2 => follows,
-            Phase::Cp3 => follows && self.parameters.passed(idn::CHECK_CP3),
-            Phase::Cp4 => follows && self.parameters.passed(idn::CHECK_CP4),
+            CommunicationPhase::Cp0 => true,
+            CommunicationPhase::Cp1 => follows && self.topology_address > 0,
+            CommunicationPhase::Cp2 => follows,
+            CommunicationPhase::Cp3 => follows && self.parameters.passed(idn::CHECK_CP3),
+            CommunicationPhase::Cp4 => follows && self.parameters.passed(idn::CHECK_CP4),
         };
         if !allowed {
             self.counts.phase_errors += u64::from(self.phase.is_some());
@@ -271,20 +272,20 @@ impl Slave {
         }
         self.phase = Some(header.phase);
         match header.phase {
-            Phase::Cp0 => self.begin(from, header.channel),
-            Phase::Cp3 => self.places = self.parameters.places(),
-            Phase::Cp4 => self.command_missed = 0,
-            Phase::Cp1 | Phase::Cp2 => {}
+            CommunicationPhase::Cp0 => self.begin(from, header.channel),
+            CommunicationPhase::Cp3 => self.places = self.parameters.places(),
+            CommunicationPhase::Cp4 => self.command_missed = 0,
+            CommunicationPhase::Cp1 | CommunicationPhase::Cp2 => {}
         }
     }
 
     /// CP0: everything as after switching on.
-    fn begin(&mut self, from: Side, channel: Channel) {
+    fn begin(&mut self, from: PortSide, channel: RingChannel) {
         self.parameters.reset();
         self.server = Server::default();
         self.topology_address = 0;
-        self.source = Some(if channel == Channel::P { from } else { from.other() });
-        self.idle = [Side::Left, Side::Right].into_iter().find(|side| !self.links[*side as usize]);
+        self.source = Some(if channel == RingChannel::P { from } else { from.other() });
+        self.idle = [PortSide::Left, PortSide::Right].into_iter().find(|side| !self.links[*side as usize]);
         (self.toggle, self.commanded) = (false, None);
         (self.command_control, self.command_new) = (Connection::default(), false);
         (self.master_valid, self.ring_closed) = (false, false);
@@ -303,30 +304,32 @@ impl Slave {
         };
     }
 
-    fn process(&mut self, header: &Header, data: &mut [u8]) {
+    fn process(&mut self, header: &TelegramHeader, data: &mut [u8]) {
         if self.phase != Some(header.phase) {
             return;
         }
         let telegram = usize::from(header.number);
-        let is = |place: crate::layout::Place| place.telegram == telegram;
+        let is = |place: crate::layout::DataPlace| place.telegram == telegram;
         match (header.phase, header.kind) {
-            (Phase::Cp0, Kind::Mdt) => {}
-            (Phase::Cp0, Kind::At) => self.write_address(header, data),
-            (Phase::Cp1 | Phase::Cp2, kind) => self.process_early(kind, telegram, data),
+            (CommunicationPhase::Cp0, TelegramKind::Mdt) => {}
+            (CommunicationPhase::Cp0, TelegramKind::At) => self.write_address(header, data),
+            (CommunicationPhase::Cp1 | CommunicationPhase::Cp2, kind) => {
+                self.process_early(kind, telegram, data);
+            }
             // CP3 and CP4: each field may lie in another telegram.
-            (_, Kind::Mdt) => {
+            (_, TelegramKind::Mdt) => {
                 let places = self.places;
                 if is(places.mdt_service) {
                     self.read_service(data, places.mdt_service.offset, header.phase);
                 }
                 if is(places.control) {
-                    self.read_control(Control(word(data, places.control.offset)));
+                    self.read_control(DeviceControl(word(data, places.control.offset)));
                 }
-                if is(places.command) && header.phase == Phase::Cp4 {
+                if is(places.command) && header.phase == CommunicationPhase::Cp4 {
                     self.read_command(data, places.command.offset);
                 }
             }
-            (phase, Kind::At) => {
+            (phase, TelegramKind::At) => {
                 let places = self.places;
                 if is(places.at_service) {
                     self.write_service(data, places.at_service.offset);
@@ -334,43 +337,43 @@ impl Slave {
                 if is(places.status) {
                     set_word(data, places.status.offset, self.status().0);
                 }
-                if is(places.feedback) && phase == Phase::Cp4 {
+                if is(places.feedback) && phase == CommunicationPhase::Cp4 {
                     self.write_feedback(data, places.feedback.offset);
                 }
             }
         }
     }
 
-    fn write_address(&mut self, header: &Header, data: &mut [u8]) {
+    fn write_address(&mut self, header: &TelegramHeader, data: &mut [u8]) {
         if header.number == 0
             && let Some(place) = cp0::enter(data, self.address)
-            && header.channel == Channel::P
+            && header.channel == RingChannel::P
         {
             self.topology_address = place;
         }
     }
 
-    fn process_early(&mut self, kind: Kind, telegram: usize, data: &mut [u8]) {
+    fn process_early(&mut self, kind: TelegramKind, telegram: usize, data: &mut [u8]) {
         let (own, service) = cp12::service(self.topology_address);
         let (_, device) = cp12::device(self.topology_address);
         if own != telegram || self.topology_address == 0 {
             return;
         }
         match kind {
-            Kind::Mdt => {
-                self.read_control(Control(word(data, device)));
-                if let Some(phase @ Phase::Cp2) = self.phase {
+            TelegramKind::Mdt => {
+                self.read_control(DeviceControl(word(data, device)));
+                if let Some(phase @ CommunicationPhase::Cp2) = self.phase {
                     self.read_service(data, service, phase);
                 }
             }
-            Kind::At => {
+            TelegramKind::At => {
                 self.write_service(data, service);
                 set_word(data, device, self.status().0);
             }
         }
     }
 
-    fn read_service(&mut self, data: &[u8], at: usize, phase: Phase) {
+    fn read_service(&mut self, data: &[u8], at: usize, phase: CommunicationPhase) {
         self.server.take(word(data, at), long(data, at + 2), &mut self.parameters, phase);
     }
 
@@ -380,7 +383,7 @@ impl Slave {
         set_long(data, at + 2, info);
     }
 
-    fn read_control(&mut self, control: Control) {
+    fn read_control(&mut self, control: DeviceControl) {
         self.master_valid = control.valid();
         self.ring_closed = control.valid() && control.ring_closed();
         if control.valid() && control.toggle() != self.toggle {
@@ -390,7 +393,8 @@ impl Slave {
     }
 
     fn status(&self) -> Status {
-        let error = self.phase == Some(Phase::Cp4) && self.command_missed > self.parameters.command_losses();
+        let error = self.phase == Some(CommunicationPhase::Cp4)
+            && self.command_missed > self.parameters.command_losses();
         Status::new(self.toggle, self.topology(), self.idle_status, true).with_connection_error(error)
     }
 

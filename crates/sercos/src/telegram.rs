@@ -1,6 +1,6 @@
 //! A telegram, and where its fields are while nothing is configured: CP0, CP1 and CP2.
 
-use crate::header::{HEADER, Header, Kind, MAX_FRAME, Phase};
+use crate::header::{CommunicationPhase, HEADER, MAX_FRAME, TelegramHeader, TelegramKind};
 
 /// One telegram with its headers.
 #[derive(Clone, Copy)]
@@ -11,7 +11,7 @@ pub(crate) struct Telegram {
 
 impl Telegram {
     /// Begins a telegram with `len` bytes of zeros behind its headers; `len` at most [`crate::header::MAX_DATA`].
-    pub(crate) fn begin(&mut self, header: &Header, len: usize) {
+    pub(crate) fn begin(&mut self, header: &TelegramHeader, len: usize) {
         self.len = HEADER + len;
         self.bytes[HEADER..HEADER + len].fill(0);
         header.write(&mut self.bytes);
@@ -49,10 +49,10 @@ impl Telegram {
 }
 
 /// Length of the data of a telegram before anything is configured \[B\].
-pub(crate) fn early_len(kind: Kind, phase: Phase) -> usize {
+pub(crate) fn early_len(kind: TelegramKind, phase: CommunicationPhase) -> usize {
     match (kind, phase) {
-        (Kind::Mdt, Phase::Cp0) => cp0::MDT,
-        (Kind::At, Phase::Cp0) => cp0::AT,
+        (TelegramKind::Mdt, CommunicationPhase::Cp0) => cp0::MDT,
+        (TelegramKind::At, CommunicationPhase::Cp0) => cp0::AT,
         _ => cp12::LEN,
     }
 }

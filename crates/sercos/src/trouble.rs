@@ -1,18 +1,18 @@
 //! Events of the master: changes of the ring, and why a start failed.
 
-use crate::header::Phase;
+use crate::header::CommunicationPhase;
 use crate::idn::Idn;
 use crate::layout::LayoutError;
 use crate::parameters::is_cycle_time;
-use crate::ring::Shape;
-use crate::service::Refusal;
+use crate::ring::RingShape;
+use crate::service::ServiceRefusal;
 use std::fmt;
 
 /// Something worth a line in the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
+pub enum RingEvent {
     /// A phase has begun.
-    Phase(Phase),
+    Phase(CommunicationPhase),
     /// The ring is open, between these stations; none: the master.
     RingBroken(Option<u16>, Option<u16>),
     /// The ring is closed again.
@@ -27,7 +27,7 @@ pub enum Event {
 
 /// Cause of a failed start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Trouble {
+pub enum StartTrouble {
     /// A cycle time that Sercos III does not know \[ns\].
     CycleTime(u32),
     /// Stations that cannot be served.
@@ -35,7 +35,7 @@ pub enum Trouble {
     /// No telegram comes back.
     NoTelegrams,
     /// Telegrams come back, and not as they should.
-    Shape(Shape),
+    Shape(RingShape),
     /// So many slaves instead of so many.
     Count {
         /// Slaves that wrote their address.
@@ -54,7 +54,7 @@ pub enum Trouble {
         /// Its address.
         address: u16,
         /// In this phase.
-        phase: Phase,
+        phase: CommunicationPhase,
     },
     /// A slave refused a parameter.
     Refused {
@@ -63,11 +63,11 @@ pub enum Trouble {
         /// The parameter.
         idn: Idn,
         /// How.
-        refusal: Refusal,
+        refusal: ServiceRefusal,
     },
 }
 
-impl Trouble {
+impl StartTrouble {
     /// Whether this cycle time can be run.
     ///
     /// # Errors
@@ -77,7 +77,7 @@ impl Trouble {
     }
 }
 
-impl fmt::Display for Trouble {
+impl fmt::Display for StartTrouble {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::CycleTime(ns) => write!(
@@ -96,9 +96,9 @@ impl fmt::Display for Trouble {
                 f,
                 "sercos: the ring is open at the start ({}); plug both ends into the master's two ports",
                 match shape {
-                    Shape::Broken => "two lines",
-                    Shape::LineP => "a line at port 1",
-                    Shape::LineS => "a line at port 2",
+                    RingShape::Broken => "two lines",
+                    RingShape::LineP => "a line at port 1",
+                    RingShape::LineS => "a line at port 2",
                     _ => "telegrams of one direction are lost",
                 }
             ),
@@ -129,25 +129,27 @@ impl fmt::Display for Trouble {
     }
 }
 
-fn refused(f: &mut fmt::Formatter, address: u16, idn: Idn, refusal: Refusal) -> fmt::Result {
+fn refused(f: &mut fmt::Formatter, address: u16, idn: Idn, refusal: ServiceRefusal) -> fmt::Result {
     write!(f, "sercos: slave {address}, {idn}: ")?;
     match refusal {
-        Refusal::Code(code) => {
+        ServiceRefusal::Code(code) => {
             write!(f, "refused with the code {code:#06x}; look it up in the slave's manual")
         }
-        Refusal::Shape => {
+        ServiceRefusal::Shape => {
             write!(f, "has another type than expected; see that the right device is at this address")
         }
-        Refusal::Value(value) => write!(
+        ServiceRefusal::Value(value) => write!(
             f,
             "has the value {}, not the configured one; see that the right device is at this address",
             value.number()
         ),
-        Refusal::Command => {
+        ServiceRefusal::Command => {
             write!(f, "the check failed; compare the slave's connections with the configuration")
         }
-        Refusal::Timeout => write!(f, "the service channel does not answer; switch the slave off and on"),
+        ServiceRefusal::Timeout => {
+            write!(f, "the service channel does not answer; switch the slave off and on")
+        }
     }
 }
 
-impl std::error::Error for Trouble {}
+impl std::error::Error for StartTrouble {}

@@ -2,8 +2,8 @@
 
 mod wire;
 
-use sercos::header::{Header, Kind};
-use sercos::{Event, Stage};
+use sercos::header::{TelegramHeader, TelegramKind};
+use sercos::{RingEvent, Stage};
 use wire::{LOSSES, Wire};
 
 const ADDRESSES: [u16; 4] = [3, 7, 12, 20];
@@ -44,7 +44,7 @@ fn every_cable_can_be_pulled_and_plugged() {
         assert_eq!(lost, 0, "cable {cable}: both of its ends turn telegrams round at once");
         let left = cable.checked_sub(1).map(|i| ADDRESSES[i]);
         let right = ADDRESSES.get(cable).copied();
-        assert_eq!(wire.events, [Event::RingBroken(left, right)], "cable {cable}");
+        assert_eq!(wire.events, [RingEvent::RingBroken(left, right)], "cable {cable}");
         assert!(wire.master.is_broken() && !wire.chain.slaves()[0].ring_closed());
 
         wire.events.clear();
@@ -52,7 +52,7 @@ fn every_cable_can_be_pulled_and_plugged() {
         let lost = longest_loss(&mut wire, 90);
         assert!(wire.master.is_broken(), "cable {cable}: not before 100 stable cycles");
         let lost = lost.max(longest_loss(&mut wire, 100));
-        assert_eq!(wire.events, [Event::RingClosed], "cable {cable}");
+        assert_eq!(wire.events, [RingEvent::RingClosed], "cable {cable}");
         assert!(wire.chain.slaves()[0].ring_closed());
         assert!(lost <= LOSSES.into(), "cable {cable}: {lost} cycles lost while closing");
     }
@@ -67,10 +67,10 @@ fn two_cables_cut_off_what_is_between_them() {
     for number in 0..10 {
         wire.exchange(number);
     }
-    assert!(wire.events.contains(&Event::Lost(7)) && wire.events.contains(&Event::Lost(12)));
+    assert!(wire.events.contains(&RingEvent::Lost(7)) && wire.events.contains(&RingEvent::Lost(12)));
     assert!(wire.master.feedback(0).is_some() && wire.master.feedback(3).is_some());
     assert!(wire.master.feedback(1).is_none() && wire.master.feedback(2).is_none());
-    assert!(!wire.events.contains(&Event::Lost(3)));
+    assert!(!wire.events.contains(&RingEvent::Lost(3)));
 }
 
 /// A cable that comes and goes within the 100 cycles closes nothing.
@@ -83,9 +83,9 @@ fn a_loose_plug_does_not_close_the_ring() {
         wire.chain.set_cable(2, true);
         assert_eq!(longest_loss(&mut wire, 80), 0);
     }
-    assert_eq!(wire.events, [Event::RingBroken(Some(7), Some(12))]);
+    assert_eq!(wire.events, [RingEvent::RingBroken(Some(7), Some(12))]);
     longest_loss(&mut wire, 110);
-    assert_eq!(wire.events.last(), Some(&Event::RingClosed));
+    assert_eq!(wire.events.last(), Some(&RingEvent::RingClosed));
 }
 
 /// One channel's telegrams lost: the other one's are enough, and the ring is told to be open.
@@ -99,7 +99,7 @@ fn one_channel_is_enough() {
         wire.cycle_with(|port, _| port == 0);
         assert!((0..ADDRESSES.len()).all(|i| wire.master.feedback(i).is_some()));
     }
-    assert_eq!(wire.events, [Event::RingBroken(None, None)]);
+    assert_eq!(wire.events, [RingEvent::RingBroken(None, None)]);
 }
 
 /// Losses up to the permitted number are counted and nothing more; one more is told.
@@ -111,13 +111,13 @@ fn lost_acknowledge_telegrams_are_counted() {
             for i in 0..ADDRESSES.len() {
                 wire.chain.slaves_mut()[i].set_feedback(&vec![number; 12 + 2 * i]);
             }
-            wire.cycle_with(|_, frame| Header::read(frame).unwrap().kind == Kind::Mdt);
+            wire.cycle_with(|_, frame| TelegramHeader::read(frame).unwrap().kind == TelegramKind::Mdt);
         }
         wire.exchange(99);
         let counts = wire.master.counts();
         assert_eq!((counts.longest, counts.missed), (losses.into(), 4 * u64::from(losses)));
-        let told = wire.events.contains(&Event::Lost(3));
+        let told = wire.events.contains(&RingEvent::Lost(3));
         assert_eq!(told, u16::from(losses) > LOSSES);
-        assert_eq!(told, wire.events.contains(&Event::Back(3)));
+        assert_eq!(told, wire.events.contains(&RingEvent::Back(3)));
     }
 }

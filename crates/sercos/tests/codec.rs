@@ -2,10 +2,13 @@
 
 use proptest::prelude::*;
 use sercos::crc32;
-use sercos::device::{Connection, Control, Idle, Status, Topology};
-use sercos::header::{CYCLES, Channel, HEADER, Header, Kind, MAX_DATA, MIN_DATA, Malformed, Phase};
-use sercos::idn::{self, Attribute, Idn, Shape};
-use sercos::layout::{DEVICE, Layout, LayoutError, Place, SERVICE, Station};
+use sercos::device::{Connection, DeviceControl, Idle, Status, Topology};
+use sercos::header::{
+    CYCLES, CommunicationPhase, HEADER, MAX_DATA, MIN_DATA, Malformed, RingChannel, TelegramHeader,
+    TelegramKind,
+};
+use sercos::idn::{self, Attribute, Idn, ValueShape};
+use sercos::layout::{DEVICE, DataPlace, LayoutError, SERVICE, Station, TelegramLayout};
 use sercos::telegram::{cp0, cp12};
 
 /// From `zlib.crc32` of Python.
@@ -27,16 +30,18 @@ const CRCS: [(u8, u8, u32); 4] = [
     (0x20, 0x81, 0x54e9_e86e),
 ];
 
-fn any_header() -> impl Strategy<Value = Header> {
+fn any_header() -> impl Strategy<Value = TelegramHeader> {
     let kinds = (any::<bool>(), any::<bool>(), 0..4u8, 0..5usize, any::<bool>());
-    (any::<[u8; 6]>(), kinds, proptest::option::of(0..CYCLES)).prop_map(|(source, kinds, cycle)| Header {
-        source,
-        channel: if kinds.0 { Channel::S } else { Channel::P },
-        kind: if kinds.1 { Kind::At } else { Kind::Mdt },
-        number: kinds.2,
-        phase: Phase::ALL[kinds.3],
-        switching: kinds.4,
-        cycle,
+    (any::<[u8; 6]>(), kinds, proptest::option::of(0..CYCLES)).prop_map(|(source, kinds, cycle)| {
+        TelegramHeader {
+            source,
+            channel: if kinds.0 { RingChannel::S } else { RingChannel::P },
+            kind: if kinds.1 { TelegramKind::At } else { TelegramKind::Mdt },
+            number: kinds.2,
+            phase: CommunicationPhase::ALL[kinds.3],
+            switching: kinds.4,
+            cycle,
+        }
     })
 }
 
@@ -45,7 +50,7 @@ proptest! {
     fn a_head_reads_as_written(header in any_header(), len in 0..MAX_DATA) {
         let mut frame = vec![0; HEADER + len];
         header.write(&mut frame);
-        prop_assert_eq!(Header::read(&frame), Ok(header));
+        prop_assert_eq!(TelegramHeader::read(&frame), Ok(header));
     }
 
     /// Every change of one bit in the first 20 bytes is noticed.
@@ -56,18 +61,18 @@ proptest! {
         frame[bit / 8] ^= 1 << (bit % 8);
         let foreign = (12..14).contains(&(bit / 8));
         let expected = if foreign { Malformed::Foreign } else { Malformed::Checksum };
-        prop_assert_eq!(Header::read(&frame), Err(expected));
+        prop_assert_eq!(TelegramHeader::read(&frame), Err(expected));
     }
 
     #[test]
     fn random_bytes_are_no_telegram(frame in proptest::collection::vec(any::<u8>(), 0..1600)) {
-        prop_assert!(Header::read(&frame).is_err());
+        prop_assert!(TelegramHeader::read(&frame).is_err());
     }
 
     #[test]
     fn a_place_reads_as_written(telegram in 0..4usize, offset in 0..MAX_DATA, mdt in any::<bool>()) {
-        let (kind, place) = (if mdt { Kind::Mdt } else { Kind::At }, Place { telegram, offset });
-        prop_assert_eq!(Place::read(place.word(kind)), (kind, place));
+        let (kind, place) = (if mdt { TelegramKind::Mdt } else { TelegramKind::At }, DataPlace { telegram, offset });
+        prop_assert_eq!(DataPlace::read(place.word(kind)), (kind, place));
     }
 
     /// No two fields share a byte, and all are within their telegrams.
@@ -77,19 +82,19 @@ proptest! {
             address: i as u16 + 1, command: *command, feedback: *feedback,
         };
         let stations: Vec<_> = sizes.iter().enumerate().map(station).collect();
-        let Ok(layout) = Layout::new(&stations) else {
+        let Ok(layout) = TelegramLayout::new(&stations) else {
             let most = sizes.iter().map(|s| s.0.max(s.1) + 10).sum::<usize>();
             prop_assert!(most > 3 * MAX_DATA, "{most} bytes were refused");
             return Ok(());
         };
-        for kind in [Kind::Mdt, Kind::At] {
-            let lengths = if kind == Kind::Mdt { layout.mdt } else { layout.at };
+        for kind in [TelegramKind::Mdt, TelegramKind::At] {
+            let lengths = if kind == TelegramKind::Mdt { layout.mdt } else { layout.at };
             let mut used = [[false; MAX_DATA]; 4];
             used[0][..8].fill(true);
             for (places, station) in layout.places.iter().zip(&stations) {
                 let fields = match kind {
-                    Kind::Mdt => [(places.mdt_service, SERVICE), (places.control, DEVICE), (places.command, 2 + station.command)],
-                    Kind::At => [(places.at_service, SERVICE), (places.status, DEVICE), (places.feedback, 2 + station.feedback)],
+                    TelegramKind::Mdt => [(places.mdt_service, SERVICE), (places.control, DEVICE), (places.command, 2 + station.command)],
+                    TelegramKind::At => [(places.at_service, SERVICE), (places.status, DEVICE), (places.feedback, 2 + station.feedback)],
                 };
                 for (place, len) in fields {
                     prop_assert!(place.offset + len <= lengths[place.telegram]);
@@ -109,10 +114,12 @@ fn numbers_of_parameters() {
     assert_eq!(idn::connection(1, 5), Idn(0x0105_041A));
     assert_eq!(idn::connection(1, 5).to_string(), "S-0-1050.1.5");
     assert_eq!(Idn(0x0000_8001).to_string(), "P-0-0001.0.0");
-    let attribute = Attribute::new(Shape::Long, false, true, false, false);
+    let attribute = Attribute::new(ValueShape::Long, false, true, false, false);
     assert_eq!(attribute, Attribute(0x6002_0001), "four bytes, write-protected in CP3 and CP4");
-    assert_eq!(attribute.shape(), Some(Shape::Long));
-    assert!(!attribute.protected_in(Phase::Cp2) && attribute.protected_in(Phase::Cp4));
+    assert_eq!(attribute.shape(), Some(ValueShape::Long));
+    assert!(
+        !attribute.protected_in(CommunicationPhase::Cp2) && attribute.protected_in(CommunicationPhase::Cp4)
+    );
 }
 
 #[test]
@@ -120,7 +127,7 @@ fn words_of_devices_and_connections() {
     let status = Status::new(true, Topology::LoopP, Idle::S, true);
     assert_eq!(status.0, 0x5D00);
     assert_eq!((status.topology(), status.idle()), (Some(Topology::LoopP), Idle::S));
-    let control = Control::default().with(true, true);
+    let control = DeviceControl::default().with(true, true);
     assert_eq!(control.0, 0x0900);
     let control = control.command(Topology::LoopS);
     assert_eq!(control.0, 0x6900);
@@ -151,10 +158,10 @@ fn slaves_enter_their_addresses_in_their_order() {
 #[test]
 fn stations_that_cannot_be_served_are_named() {
     let station = |address, command| Station { address, command, feedback: 4 };
-    assert_eq!(Layout::new(&[]), Err(LayoutError::Stations(0)));
-    assert_eq!(Layout::new(&[station(0, 4)]), Err(LayoutError::Address(0)));
-    assert_eq!(Layout::new(&[station(5, 4), station(5, 4)]), Err(LayoutError::Twice(5)));
+    assert_eq!(TelegramLayout::new(&[]), Err(LayoutError::Stations(0)));
+    assert_eq!(TelegramLayout::new(&[station(0, 4)]), Err(LayoutError::Address(0)));
+    assert_eq!(TelegramLayout::new(&[station(5, 4), station(5, 4)]), Err(LayoutError::Twice(5)));
     let long: Vec<_> = (1..=5).map(|a| station(a, 1400)).collect();
-    assert_eq!(Layout::new(&long), Err(LayoutError::Full(Kind::Mdt)));
-    assert!(Layout::new(&long[..4]).is_ok());
+    assert_eq!(TelegramLayout::new(&long), Err(LayoutError::Full(TelegramKind::Mdt)));
+    assert!(TelegramLayout::new(&long[..4]).is_ok());
 }

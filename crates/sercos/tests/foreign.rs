@@ -3,17 +3,17 @@
 mod wire;
 
 use proptest::prelude::*;
-use sercos::header::{HEADER, Header, Kind, Phase};
-use sercos::{Side, Stage};
+use sercos::header::{CommunicationPhase, HEADER, TelegramHeader, TelegramKind};
+use sercos::{PortSide, Stage};
 use std::cell::RefCell;
 use wire::Wire;
 
 thread_local! {
     /// Two rings that stay: one in CP4, and one that is held in CP2.
-    static RINGS: RefCell<[Wire; 2]> = RefCell::new([Phase::Cp4, Phase::Cp2].map(ring));
+    static RINGS: RefCell<[Wire; 2]> = RefCell::new([CommunicationPhase::Cp4, CommunicationPhase::Cp2].map(ring));
 }
 
-fn ring(phase: Phase) -> Wire {
+fn ring(phase: CommunicationPhase) -> Wire {
     let mut wire = Wire::new(&[3, 7, 12], true);
     while wire.master.stage() != Stage::Starting(phase) && wire.master.stage() != Stage::Running {
         wire.cycle();
@@ -24,11 +24,11 @@ fn ring(phase: Phase) -> Wire {
 
 /// Whatever comes, from anywhere.
 fn feed(wire: &mut Wire, frame: &[u8]) {
-    for (port, end) in [(0, Side::Left), (1, Side::Right)] {
+    for (port, end) in [(0, PortSide::Left), (1, PortSide::Right)] {
         wire.master.begin();
         wire.master.take(port, frame);
         wire.chain.take(end, frame, &mut |side, frame| {
-            wire.master.take(if side == Side::Left { 0 } else { 1 }, frame);
+            wire.master.take(if side == PortSide::Left { 0 } else { 1 }, frame);
         });
         wire.master.end();
     }
@@ -58,11 +58,11 @@ proptest! {
             for wire in rings {
                 let mut frame = vec![0; HEADER];
                 frame.extend(&data);
-                let kind = if kind { Kind::At } else { Kind::Mdt };
-                let channel = sercos::header::Channel::P;
-                let (phase, cycle) = (Phase::ALL[phase], Some(cycle));
+                let kind = if kind { TelegramKind::At } else { TelegramKind::Mdt };
+                let channel = sercos::header::RingChannel::P;
+                let (phase, cycle) = (CommunicationPhase::ALL[phase], Some(cycle));
                 let source = wire::MACS[0];
-                Header { source, channel, kind, number, phase, switching, cycle }.write(&mut frame);
+                TelegramHeader { source, channel, kind, number, phase, switching, cycle }.write(&mut frame);
                 feed(wire, &frame);
             }
         });
@@ -78,14 +78,14 @@ fn a_corrupted_head_loses_nothing_in_a_ring() {
         wire.master.set_command(0, &[number; 8]);
         wire.chain.slaves_mut()[0].set_feedback(&[number; 12]);
         wire.master.begin();
-        for (port, end) in [(0, Side::Left), (1, Side::Right)] {
+        for (port, end) in [(0, PortSide::Left), (1, PortSide::Right)] {
             let frames: Vec<_> = wire.master.telegrams(port).map(<[u8]>::to_vec).collect();
             for mut frame in frames {
                 if port == 0 {
                     frame[15] ^= 1 << (number % 8);
                 }
                 wire.chain.take(end, &frame, &mut |side, frame| {
-                    wire.master.take(if side == Side::Left { 0 } else { 1 }, frame);
+                    wire.master.take(if side == PortSide::Left { 0 } else { 1 }, frame);
                 });
             }
         }

@@ -2,7 +2,7 @@
 //! again, and while slaves that fell to NRT are started again.
 
 use realtime::{CountingAllocator, allocations};
-use sercos::{Chain, Master, Setup, Side, Slave, Stage, Station};
+use sercos::{Master, MasterSetup, PortSide, Slave, SlaveChain, Stage, Station};
 
 #[global_allocator]
 static ALLOCATOR: CountingAllocator = CountingAllocator;
@@ -11,22 +11,23 @@ static ALLOCATOR: CountingAllocator = CountingAllocator;
 fn a_cycle_allocates_nothing() {
     let stations: Vec<_> = (1..=9).map(|address| Station { address, command: 64, feedback: 128 }).collect();
     let slaves = stations.iter().map(|s| Slave::new(s.address, s.command, s.feedback)).collect();
-    let mut chain = Chain::new(slaves, true);
+    let mut chain = SlaveChain::new(slaves, true);
     let ports = [Some([2, 0, 0, 0, 0, 1]), Some([2, 0, 0, 0, 0, 2])];
     let mut master =
-        Master::new(Setup { cycle: 1_000_000, losses: 2, beat_losses: 2, stations, ports }).unwrap();
-    let mut sent = vec![(Side::Left, [0; 1514], 0); 16];
-    let mut cycle = |master: &mut Master, chain: &mut Chain| {
+        Master::new(MasterSetup { cycle: 1_000_000, losses: 2, beat_losses: 2, stations, ports }).unwrap();
+    let mut sent = vec![(PortSide::Left, [0; 1514], 0); 16];
+    let mut cycle = |master: &mut Master, chain: &mut SlaveChain| {
         master.begin();
         let mut count = 0;
-        for (port, end) in [(0, Side::Left), (1, Side::Right)] {
+        for (port, end) in [(0, PortSide::Left), (1, PortSide::Right)] {
             for frame in master.telegrams(port) {
                 sent[count].1[..frame.len()].copy_from_slice(frame);
                 (sent[count].0, sent[count].2) = (end, frame.len());
                 count += 1;
             }
         }
-        let mut take = |side: Side, frame: &[u8]| master.take(if side == Side::Left { 0 } else { 1 }, frame);
+        let mut take =
+            |side: PortSide, frame: &[u8]| master.take(if side == PortSide::Left { 0 } else { 1 }, frame);
         for (end, frame, len) in &sent[..count] {
             chain.take(*end, &frame[..*len], &mut take);
         }

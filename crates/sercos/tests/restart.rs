@@ -3,7 +3,7 @@
 
 mod wire;
 
-use sercos::{Event, Phase, Stage};
+use sercos::{CommunicationPhase, RingEvent, Stage};
 use wire::{LOSSES, Wire};
 
 const ADDRESSES: [u16; 4] = [3, 7, 12, 20];
@@ -47,8 +47,12 @@ fn slaves_that_fell_to_nrt_are_started_again_and_have_their_data() {
         wire.events.clear();
         wire.master.restart();
         let cycles = comes_back(&mut wire, 2000);
-        let phases = wire.events.iter().filter_map(|e| if let Event::Phase(p) = e { Some(*p) } else { None });
-        assert_eq!((wire.events[0], phases.collect::<Vec<_>>()), (Event::Restart, Phase::ALL.to_vec()));
+        let phases =
+            wire.events.iter().filter_map(|e| if let RingEvent::Phase(p) = e { Some(*p) } else { None });
+        assert_eq!(
+            (wire.events[0], phases.collect::<Vec<_>>()),
+            (RingEvent::Restart, CommunicationPhase::ALL.to_vec())
+        );
         assert!(cycles < 600, "{cycles} cycles");
         for number in 100..120 {
             assert_eq!(wire.exchange(number), Stage::Running);
@@ -59,7 +63,7 @@ fn slaves_that_fell_to_nrt_are_started_again_and_have_their_data() {
             }
         }
         assert_eq!(wire.master.fallen(), 0);
-        let back = wire.events.iter().filter(|e| matches!(e, Event::Back(_))).count();
+        let back = wire.events.iter().filter(|e| matches!(e, RingEvent::Back(_))).count();
         assert_eq!(back, ADDRESSES.len());
     }
 }
@@ -98,7 +102,7 @@ fn cables_and_lost_telegrams_are_no_reason_to_start_again() {
         wire.exchange(number);
         assert_eq!(wire.master.fallen(), 0);
     }
-    assert!(wire.events.contains(&Event::Lost(7)));
+    assert!(wire.events.contains(&RingEvent::Lost(7)));
     let mut wire = running(true);
     for _ in 0..50 {
         wire.cycle_with(|_, _| false);

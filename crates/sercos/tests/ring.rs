@@ -4,7 +4,7 @@
 mod veth;
 
 use realtime::clock;
-use sercos::{Event, Near, SocketError, Stage};
+use sercos::{Near, RingEvent, SocketError, Stage};
 use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -29,7 +29,7 @@ struct Loop {
     next: u64,
     number: u8,
     runs: [u32; ADDRESSES.len()],
-    events: Vec<Event>,
+    events: Vec<RingEvent>,
 }
 
 impl Loop {
@@ -83,7 +83,7 @@ fn a_ring_between_namespaces_breaks_and_is_closed_again() {
     while !matches!(ring.cycle(), Stage::Running) {
         assert!(!matches!(ring.near.master().stage(), Stage::Failed(_)), "{:?}", ring.near.master().stage());
     }
-    assert!(!ring.events.iter().any(|e| !matches!(e, Event::Phase(_))), "{:?}", ring.events);
+    assert!(!ring.events.iter().any(|e| !matches!(e, RingEvent::Phase(_))), "{:?}", ring.events);
     ring.cycles(5); // slaves have data of their own from the first answer on
     let (first, last) = (ADDRESSES[0], ADDRESSES[ADDRESSES.len() - 1]);
     // Pulled at the slaves' side, and at the master's, where the slaves learn of it by silence only.
@@ -96,13 +96,13 @@ fn a_ring_between_namespaces_breaks_and_is_closed_again() {
         veth.set(link, "down");
         let lost = ring.cycles(200);
         assert!(lost <= LOSSES.into(), "{link} pulled: {lost} cycles lost, {LOSSES} permitted");
-        assert_eq!(ring.events, [Event::RingBroken(ends.0, ends.1)], "{link}");
+        assert_eq!(ring.events, [RingEvent::RingBroken(ends.0, ends.1)], "{link}");
 
         ring.events.clear();
         veth.set(link, "up");
         let lost = ring.cycles(1500); // Linux takes up to a second to see the link
         assert!(lost <= LOSSES.into(), "{link} plugged: {lost} cycles lost, {LOSSES} permitted");
-        assert_eq!(ring.events, [Event::RingClosed], "{link}");
+        assert_eq!(ring.events, [RingEvent::RingClosed], "{link}");
         assert!(!ring.near.master().is_broken());
     }
     let counts = ring.near.master().counts();

@@ -2,15 +2,15 @@
 
 mod wire;
 
-use sercos::Refusal;
-use sercos::header::{Header, Kind};
+use sercos::ServiceRefusal;
+use sercos::header::{TelegramHeader, TelegramKind};
 use sercos::idn::{self, connection};
 use sercos::layout::LayoutError;
-use sercos::{Chain, Event, Master, Phase, Side, Slave, Stage, Trouble};
+use sercos::{CommunicationPhase, Master, PortSide, RingEvent, Slave, SlaveChain, Stage, StartTrouble};
 use wire::{Wire, setup};
 
 /// Cycles until the master is in CP4 or has given up.
-fn ends(wire: &mut Wire) -> Trouble {
+fn ends(wire: &mut Wire) -> StartTrouble {
     for _ in 0..5000 {
         match wire.cycle() {
             Stage::Failed(trouble) => return trouble,
@@ -21,9 +21,9 @@ fn ends(wire: &mut Wire) -> Trouble {
     panic!("neither started nor given up");
 }
 
-fn phases(wire: &Wire) -> Vec<Phase> {
-    let phase = |e: &Event| match e {
-        Event::Phase(phase) => Some(*phase),
+fn phases(wire: &Wire) -> Vec<CommunicationPhase> {
+    let phase = |e: &RingEvent| match e {
+        RingEvent::Phase(phase) => Some(*phase),
         _ => None,
     };
     wire.events.iter().filter_map(phase).collect()
@@ -34,7 +34,7 @@ fn a_ring_and_a_line_start_phase_by_phase_and_exchange_data() {
     for two_ports in [true, false] {
         let mut wire = Wire::new(&[3, 7, 12], two_ports);
         wire.start(2000);
-        assert_eq!(phases(&wire), Phase::ALL);
+        assert_eq!(phases(&wire), CommunicationPhase::ALL);
         for number in 1..100 {
             assert_eq!(wire.exchange(number), Stage::Running);
             for i in 0..3 {
@@ -79,7 +79,7 @@ fn a_silent_ring_is_given_up_after_1000_cycles() {
     let mut wire = Wire::new(&[3, 7], true);
     wire.chain.set_cable(0, false);
     wire.chain.set_cable(2, false);
-    assert_eq!(ends(&mut wire), Trouble::NoTelegrams);
+    assert_eq!(ends(&mut wire), StartTrouble::NoTelegrams);
     assert_eq!(wire.master.counts().cycles, 1000);
 }
 
@@ -89,7 +89,7 @@ fn an_open_ring_does_not_start() {
         let mut wire = Wire::new(&[3, 7], true);
         wire.chain.set_cable(cable, false);
         let trouble = ends(&mut wire);
-        assert!(matches!(trouble, Trouble::Shape(_)), "cable {cable}: {trouble}");
+        assert!(matches!(trouble, StartTrouble::Shape(_)), "cable {cable}: {trouble}");
         assert!(trouble.to_string().contains("the ring is open"), "{trouble}");
     }
 }
@@ -107,7 +107,7 @@ fn a_ring_that_is_closed_in_cp0_starts() {
         wire.start(2000);
         wire.exchange(1);
         assert!(
-            !wire.events.iter().any(|e| !matches!(e, Event::Phase(_))),
+            !wire.events.iter().any(|e| !matches!(e, RingEvent::Phase(_))),
             "cable {cable}: {:?}",
             wire.events
         );
@@ -116,36 +116,38 @@ fn a_ring_that_is_closed_in_cp0_starts() {
 
 #[test]
 fn other_slaves_than_the_configured_ones_are_named() {
-    for (expected, trouble) in
-        [(&[3, 7, 8][..], Trouble::Missing(8)), (&[3], Trouble::Stranger(7)), (&[3, 8], Trouble::Stranger(7))]
-    {
+    for (expected, trouble) in [
+        (&[3, 7, 8][..], StartTrouble::Missing(8)),
+        (&[3], StartTrouble::Stranger(7)),
+        (&[3, 8], StartTrouble::Stranger(7)),
+    ] {
         let mut wire = Wire::new(&[3, 7], true);
         wire.master = Master::new(setup(expected, true)).unwrap();
         assert_eq!(ends(&mut wire), trouble);
     }
     let mut wire = Wire::new(&[3, 7], true);
-    wire.chain = Chain::new(vec![Slave::new(3, 8, 12), Slave::new(3, 12, 14)], false);
-    assert_eq!(ends(&mut wire), Trouble::Stranger(3), "two slaves with one address");
+    wire.chain = SlaveChain::new(vec![Slave::new(3, 8, 12), Slave::new(3, 12, 14)], false);
+    assert_eq!(ends(&mut wire), StartTrouble::Stranger(3), "two slaves with one address");
 }
 
 /// A slave whose connections are not the configured ones refuses in CP2, by name.
 #[test]
 fn a_slave_of_another_kind_is_refused() {
     let mut wire = Wire::new(&[3, 7], true);
-    wire.chain = Chain::new(vec![Slave::new(3, 8, 12), Slave::new(7, 99, 14)], false);
+    wire.chain = SlaveChain::new(vec![Slave::new(3, 8, 12), Slave::new(7, 99, 14)], false);
     let trouble = ends(&mut wire);
-    let Trouble::Refused { address: 7, idn, refusal: Refusal::Value(value) } = trouble else {
+    let StartTrouble::Refused { address: 7, idn, refusal: ServiceRefusal::Value(value) } = trouble else {
         panic!("{trouble}");
     };
     assert_eq!((idn, value.number()), (connection(idn::COMMAND, idn::LENGTH), 101));
-    assert_eq!(wire.chain.slaves()[0].phase(), Some(Phase::Cp2), "nobody went on");
+    assert_eq!(wire.chain.slaves()[0].phase(), Some(CommunicationPhase::Cp2), "nobody went on");
 }
 
 /// A slave that dies in CP2 does not hold the master for ever.
 #[test]
 fn a_slave_that_falls_silent_in_cp2_is_named() {
     let mut wire = Wire::new(&[3, 7], false);
-    while !matches!(wire.master.stage(), Stage::Starting(Phase::Cp2)) {
+    while !matches!(wire.master.stage(), Stage::Starting(CommunicationPhase::Cp2)) {
         wire.cycle();
     }
     for _ in 0..30 {
@@ -153,7 +155,10 @@ fn a_slave_that_falls_silent_in_cp2_is_named() {
     }
     wire.chain.set_cable(1, false);
     let trouble = ends(&mut wire);
-    assert!(matches!(trouble, Trouble::Refused { address: 7, refusal: Refusal::Timeout, .. }), "{trouble}");
+    assert!(
+        matches!(trouble, StartTrouble::Refused { address: 7, refusal: ServiceRefusal::Timeout, .. }),
+        "{trouble}"
+    );
 }
 
 #[test]
@@ -161,10 +166,10 @@ fn what_cannot_be_is_refused_before_anything_is_sent() {
     let mut wrong = setup(&[3, 7], true);
     wrong.cycle = 300_000;
     let error = Master::new(wrong).err().unwrap();
-    assert_eq!(error, Trouble::CycleTime(300_000));
+    assert_eq!(error, StartTrouble::CycleTime(300_000));
     assert!(error.to_string().contains("300 µs does not exist"), "{error}");
     let error = Master::new(setup(&[3, 3], true)).err().unwrap();
-    assert_eq!(error, Trouble::Layout(LayoutError::Twice(3)));
+    assert_eq!(error, StartTrouble::Layout(LayoutError::Twice(3)));
 }
 
 /// Many slaves: service channels and connections need more than one telegram of each kind.
@@ -185,7 +190,7 @@ fn a_master_starts_again() {
     wire.master = Master::new(setup(&[3, 7], true)).unwrap();
     wire.events.clear();
     wire.start(2000);
-    assert_eq!(phases(&wire), Phase::ALL);
+    assert_eq!(phases(&wire), CommunicationPhase::ALL);
 }
 
 /// Without a master, slaves in CP4 go back to NRT when more beats are missing than S-0-1003 permits.
@@ -196,13 +201,13 @@ fn slaves_without_a_master_end_in_nrt() {
     wire.exchange(0);
     wire.chain.silence();
     wire.chain.silence();
-    assert_eq!(wire.chain.slaves()[0].phase(), Some(Phase::Cp4), "two losses are permitted");
+    assert_eq!(wire.chain.slaves()[0].phase(), Some(CommunicationPhase::Cp4), "two losses are permitted");
     wire.chain.silence();
     assert!(wire.chain.slaves().iter().all(|s| s.phase().is_none()));
     for _ in 0..5 {
         wire.exchange(1);
     }
-    assert!(wire.events.contains(&Event::Lost(3)) && wire.events.contains(&Event::Lost(7)));
+    assert!(wire.events.contains(&RingEvent::Lost(3)) && wire.events.contains(&RingEvent::Lost(7)));
 }
 
 /// Awaited telegrams: all acknowledge telegrams, at both ports of a ring, however many data telegrams there are.
@@ -212,23 +217,25 @@ fn a_cycle_is_complete_when_everything_is_back() {
     let mut setup = setup(&[3, 7], true);
     setup.stations[1].feedback = 1480; // two ATs, one MDT
     let slaves = setup.stations.iter().map(|s| Slave::new(s.address, s.command, s.feedback)).collect();
-    wire.chain = Chain::new(slaves, false);
+    wire.chain = SlaveChain::new(slaves, false);
     wire.master = Master::new(setup).unwrap();
     wire.start(2000);
     for _ in 0..3 {
         wire.master.begin();
         let mut back = Vec::new();
-        for (port, end) in [(0, Side::Left), (1, Side::Right)] {
+        for (port, end) in [(0, PortSide::Left), (1, PortSide::Right)] {
             for frame in wire.master.telegrams(port) {
                 wire.chain.take(end, frame, &mut |side, frame| back.push((side, frame.to_vec())));
             }
         }
-        let telegrams =
-            back.iter().filter(|(_, frame)| Header::read(frame).unwrap().kind == Kind::At).count();
+        let telegrams = back
+            .iter()
+            .filter(|(_, frame)| TelegramHeader::read(frame).unwrap().kind == TelegramKind::At)
+            .count();
         assert_eq!((back.len(), telegrams), (6, 4));
         for (i, (side, frame)) in back.iter().enumerate() {
             assert!(!wire.master.is_complete(), "{i} of 6");
-            wire.master.take(if *side == Side::Left { 0 } else { 1 }, frame);
+            wire.master.take(if *side == PortSide::Left { 0 } else { 1 }, frame);
         }
         assert!(wire.master.is_complete());
         wire.master.end();

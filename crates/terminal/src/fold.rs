@@ -16,7 +16,7 @@ const WINDOW: u64 = 1_000_000_000;
 
 /// Events of one kind in this window.
 #[derive(Clone, Debug)]
-struct Kind {
+struct RepeatedEvent {
     example: String,
     seen: u32,
     hidden: u32,
@@ -27,7 +27,7 @@ struct Kind {
 pub struct Fold {
     begun: u64,
     shown: u32,
-    kinds: HashMap<String, Kind>,
+    kinds: HashMap<String, RepeatedEvent>,
     others: u32,
 }
 
@@ -39,7 +39,7 @@ impl Fold {
             self.others += 1;
             return false;
         }
-        let new = || Kind { example: line.into(), seen: 0, hidden: 0 };
+        let new = || RepeatedEvent { example: line.into(), seen: 0, hidden: 0 };
         let kind = self.kinds.entry(key).or_insert_with(new);
         kind.seen += 1;
         let shown = kind.seen <= PLAIN && self.shown < MOST;
@@ -54,7 +54,7 @@ impl Fold {
             return Vec::new();
         }
         (self.begun, self.shown) = (now_ns, 0);
-        let mut hidden: Vec<Kind> =
+        let mut hidden: Vec<RepeatedEvent> =
             self.kinds.drain().map(|(_, kind)| kind).filter(|k| k.hidden > 0).collect();
         hidden.sort_by(|a, b| a.example.cmp(&b.example));
         let mut lines: Vec<String> = hidden

@@ -4,7 +4,7 @@
 pub mod checks;
 pub mod feasible;
 
-use config::gait::{CogMethod, Control, Gait, Limits, Model, Obstacles, Step};
+use config::gait::{CogMethod, CommandLimits, Gait, GaitModel, Obstacles, StabilizerGains, StepSettings};
 use messages::{Command, ControllerState, Detail, EventCode, Plan, Record};
 use planner::Planner;
 use realtime::clock;
@@ -20,7 +20,7 @@ pub const TOES: [Option<[f64; 2]>; 2] = [Some([-0.7767, 0.1623]), Some([-0.1885,
 pub fn gait() -> Gait {
     Gait {
         arm_swing: None,
-        step: Step {
+        step: StepSettings {
             width: 0.21,
             width_min: 0.16,
             swing_height: 0.05,
@@ -38,7 +38,7 @@ pub fn gait() -> Gait {
                 [3.0 / 3.6, 0.58, 0.58 * 3.6 / 3.0],
             ],
         },
-        model: Model {
+        model: GaitModel {
             com_height: 0.80,
             com_forward: -0.10,
             leg_mass: 0.082,
@@ -46,10 +46,9 @@ pub fn gait() -> Gait {
             zmp_margin: 0.02,
             cog_method: CogMethod::Collocation,
             spacing: 0.08,
-            stand_time: 2.0,
             friction: 0.5,
         },
-        limits: Limits {
+        limits: CommandLimits {
             length: [-0.2, 0.66],
             side: [-0.2, 0.2],
             turn: [-0.35, 0.35],
@@ -63,12 +62,11 @@ pub fn gait() -> Gait {
             tilt: 0.4,
             duration: 1.2,
         }),
-        control: Control {
+        control: StabilizerGains {
             inclination_p: [0.0; 2],
             inclination_d: [0.0; 2],
             height_p: 0.0,
             height_d: 0.0,
-            force_max: 2.0,
             force_shift: 1.0,
             force_gain: [0.0; 3],
             force_feed_forward: 0.0,
@@ -77,15 +75,12 @@ pub fn gait() -> Gait {
             modification_limit: [0.0; 3],
             modification_rate: [0.0; 3],
             drift_gain: 0.0,
-            null_space_gain: 0.0,
-            search: [0.0; 2],
             inclination_compensation: 0.0,
             planned_deformation: 0.0,
             feedback: 1,
             force_filter: 0.0,
         },
         toes: None,
-        forefoot_roll: None,
         heel_strike: None,
     }
 }

@@ -47,7 +47,7 @@ pub(crate) struct Encoders {
 
 impl Encoders {
     /// Encoders for the joints of `robot`, read once per `cycle` \[s\].
-    pub(crate) fn new(errors: &config::sensors::Encoder, robot: &Robot, cycle: f64) -> Self {
+    pub(crate) fn new(errors: &config::sensors::EncoderErrors, robot: &Robot, cycle: f64) -> Self {
         let encoder = |joint: &config::robot::Joint| Encoder {
             step: errors.counts.of(&joint.name).map_or(0.0, |counts| TAU / counts),
             bias: errors.bias.of(&joint.name).unwrap_or(0.0),

@@ -20,7 +20,7 @@ use super::noise::Noise;
 
 /// One sensor: forces, then moments.
 #[derive(Clone, Debug)]
-pub struct ForceTorque {
+pub struct ForceTorqueSensor {
     inertia: bool,
     /// Wrench that is added: F_0, T_0, if it was set to zero while hanging.
     zero: Option<[f64; 6]>,
@@ -31,10 +31,10 @@ pub struct ForceTorque {
     latency: Latency<[f64; 6]>,
 }
 
-impl ForceTorque {
+impl ForceTorqueSensor {
     /// `hanging`: F_0, T_0 of this foot, as [`super::carried::hanging`] gives it. `cycle` in s. `stream(i)`: noise of the six signals.
     pub fn new(
-        errors: &config::sensors::ForceTorque,
+        errors: &config::sensors::ForceTorqueErrors,
         hanging: &Wrench,
         cycle: f64,
         stream: impl Fn(u64) -> Noise,

@@ -12,7 +12,7 @@
 //! the axes of the torso: o exp(b) exp(n). Neither w nor a has a bias. The quaternion is converted by components, in
 //! steps of half the step of an angle, since a rotation by a small angle moves them by its half.
 
-use config::sensors::Signal;
+use config::sensors::SignalErrors;
 use messages::Imu as Reading;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
@@ -23,7 +23,7 @@ use super::noise::Noise;
 
 /// The sensor of the upper body.
 #[derive(Clone, Debug)]
-pub struct Imu {
+pub struct ImuSensor {
     orientation: Option<Orientation>,
     low_pass: [LowPass<3>; 2],
     rate: Converter,
@@ -42,13 +42,14 @@ struct Orientation {
     step: f64,
 }
 
-impl Imu {
+impl ImuSensor {
     /// `cycle` in s; `stream(i)`: noise of orientation, angular velocity and specific force.
-    pub fn new(errors: &config::sensors::Imu, cycle: f64, stream: impl Fn(u64) -> Noise) -> Self {
+    pub fn new(errors: &config::sensors::ImuErrors, cycle: f64, stream: impl Fn(u64) -> Noise) -> Self {
         let time = time_constant(errors.bandwidth);
-        let converter = |s: &Signal, i| Converter::new(s.noise, s.step, s.range, stream(i));
-        let exact =
-            errors.bandwidth == 0.0 && errors.bias == [0.0; 3] && errors.orientation == Signal::default();
+        let converter = |s: &SignalErrors, i| Converter::new(s.noise, s.step, s.range, stream(i));
+        let exact = errors.bandwidth == 0.0
+            && errors.bias == [0.0; 3]
+            && errors.orientation == SignalErrors::default();
         let orientation = || Orientation {
             low_pass: OrientationLowPass::new(time, cycle),
             bias: UnitQuaternion::from_scaled_axis(Vector3::from(errors.bias)),

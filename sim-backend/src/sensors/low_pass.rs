@@ -15,14 +15,14 @@ use nalgebra::UnitQuaternion;
 
 /// State handed from one step to the next.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+struct FilterStep {
     /// \[1\] 1 - a: share of the old error that is made up for.
     old: f64,
     /// \[1\] 1 - r: share of the input's change within this cycle.
     new: f64,
 }
 
-impl Step {
+impl FilterStep {
     /// `time` T and `cycle` h \[s\]; nothing if there is no filter.
     fn new(time: f64, cycle: f64) -> Option<Self> {
         let x = cycle / time;
@@ -39,7 +39,7 @@ pub fn time_constant(bandwidth: f64) -> f64 {
 /// Low pass of `N` numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct LowPass<const N: usize> {
-    step: Option<Step>,
+    step: Option<FilterStep>,
     /// Output and input of the last cycle.
     last: Option<([f64; N], [f64; N])>,
 }
@@ -47,12 +47,12 @@ pub(crate) struct LowPass<const N: usize> {
 impl<const N: usize> LowPass<N> {
     /// Time constant and cycle \[s\]; a time constant of 0 gives the input back, bit for bit.
     pub(crate) fn new(time: f64, cycle: f64) -> Self {
-        Self { step: Step::new(time, cycle), last: None }
+        Self { step: FilterStep::new(time, cycle), last: None }
     }
 
     /// One cycle. The first input is taken as the steady state. An input that is not finite gives NaN and is forgotten.
     pub(crate) fn filter(&mut self, u: [f64; N]) -> [f64; N] {
-        let Some(Step { old, new }) = self.step else { return u };
+        let Some(FilterStep { old, new }) = self.step else { return u };
         if !u.iter().all(|u| u.is_finite()) {
             return [f64::NAN; N];
         }
@@ -66,19 +66,19 @@ impl<const N: usize> LowPass<N> {
 /// Low pass of an orientation: the filter's error is the rotation vector from its output to the input.
 #[derive(Clone, Debug)]
 pub(crate) struct OrientationLowPass {
-    step: Option<Step>,
+    step: Option<FilterStep>,
     last: Option<[UnitQuaternion<f64>; 2]>,
 }
 
 impl OrientationLowPass {
     /// Time constant and cycle \[s\].
     pub(crate) fn new(time: f64, cycle: f64) -> Self {
-        Self { step: Step::new(time, cycle), last: None }
+        Self { step: FilterStep::new(time, cycle), last: None }
     }
 
     /// One cycle. The first input is taken as the steady state; all inputs must be finite.
     pub(crate) fn filter(&mut self, u: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-        let Some(Step { old, new }) = self.step else { return u };
+        let Some(FilterStep { old, new }) = self.step else { return u };
         let [y0, u0] = self.last.unwrap_or([u, u]);
         let [error, to_new] = [u0, u].map(|u| (y0.inverse() * u).scaled_axis());
         let mut y = y0 * UnitQuaternion::from_scaled_axis(old * error + new * (to_new - error));

@@ -23,12 +23,12 @@ pub mod low_pass;
 pub mod noise;
 
 use config::Robot;
-use config::sensors::Side;
+use config::sensors::EncoderSide;
 use messages::{Joints, Sensors, Wrench};
 
 use encoder::Encoders;
-use force_torque::ForceTorque;
-use imu::Imu;
+use force_torque::ForceTorqueSensor;
+use imu::ImuSensor;
 use noise::Noise;
 
 /// Everything that sensors see, at the end of a cycle.
@@ -65,11 +65,11 @@ pub struct ReadingFaults {
 #[derive(Clone, Debug)]
 pub struct SensorSet {
     joints: usize,
-    side: Side,
+    side: EncoderSide,
     link: Option<Encoders>,
     motor: Option<Encoders>,
-    feet: Option<[ForceTorque; 2]>,
-    imu: Option<Imu>,
+    feet: Option<[ForceTorqueSensor; 2]>,
+    imu: Option<ImuSensor>,
 }
 
 /// First stream of the noise of each sensor.
@@ -82,17 +82,23 @@ impl SensorSet {
     /// `hanging`: wrench that carries the bodies below each force sensor while the robot hangs at rest with level feet,
     /// see [`carried::hanging`]; it is used where the scene asks for compensation of the bias.
     pub fn new(
-        errors: &config::Sensors,
+        errors: &config::SensorErrors,
         robot: &Robot,
         hanging: &[Wrench; 2],
         seed: u64,
         cycle: f64,
     ) -> Self {
-        let encoders =
-            |e: &config::sensors::Encoder| (*e != Default::default()).then(|| Encoders::new(e, robot, cycle));
+        let encoders = |e: &config::sensors::EncoderErrors| {
+            (*e != Default::default()).then(|| Encoders::new(e, robot, cycle))
+        };
         let stream = |first: u64| move |i: u64| Noise::new(seed, first + i);
         let foot = |i: usize| {
-            ForceTorque::new(&errors.force_torque, &hanging[i], cycle, stream(STREAM_FEET + 6 * i as u64))
+            ForceTorqueSensor::new(
+                &errors.force_torque,
+                &hanging[i],
+                cycle,
+                stream(STREAM_FEET + 6 * i as u64),
+            )
         };
         Self {
             joints: robot.joints.len().min(messages::MAX_JOINTS),
@@ -100,7 +106,8 @@ impl SensorSet {
             link: encoders(&errors.encoder),
             motor: encoders(&errors.motor_encoder),
             feet: (errors.force_torque != Default::default()).then(|| [foot(0), foot(1)]),
-            imu: (errors.imu != Default::default()).then(|| Imu::new(&errors.imu, cycle, stream(STREAM_IMU))),
+            imu: (errors.imu != Default::default())
+                .then(|| ImuSensor::new(&errors.imu, cycle, stream(STREAM_IMU))),
         }
     }
 
@@ -141,7 +148,7 @@ impl SensorSet {
             [&truth.motor_angle, &truth.motor_speed],
             [&mut out.motor_angle, &mut out.motor_speed],
         );
-        if self.side == Side::Motor {
+        if self.side == EncoderSide::Motor {
             out.joint_angle[..n].copy_from_slice(&out.motor_angle[..n]);
             out.joint_speed[..n].copy_from_slice(&out.motor_speed[..n]);
         }

@@ -3,13 +3,13 @@
 #![allow(dead_code, reason = "each test uses its part")]
 
 use config::Robot;
+use config::method::Integrator;
 use config::robot::Drive as Motor;
-use config::scene::Integrator;
 use drives::Gear;
 use environment::Environment;
 use multibody::{Data, Frame, Momentum};
 use nalgebra::Vector3;
-use sim_backend::drive::{Drive, Motion};
+use sim_backend::drive::{JointCubic, JointMotion};
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs, Snapshot, orientation};
 
@@ -22,7 +22,7 @@ pub(crate) struct Rig {
     pub(crate) depth: u8,
     pub(crate) pose: Vec<f64>,
     pub(crate) x: Vec<f64>,
-    pub(crate) drives: Vec<Drive>,
+    pub(crate) drives: Vec<JointCubic>,
     pub(crate) inputs: PlantInputs,
     data: Data,
 }
@@ -53,7 +53,7 @@ impl Rig {
         let pose = robot.poses["stand"].clone();
         let mut plant = Plant::new(&robot, environment, depth, &pose).unwrap();
         let x = plant.standing(&pose);
-        let drives = pose.iter().map(|&q| Drive::resting(q)).collect();
+        let drives = pose.iter().map(|&q| JointCubic::resting(q)).collect();
         let data = Data::new(plant.model());
         let inputs = PlantInputs::POWERED;
         Self { robot, plant, depth, pose, x, drives, inputs, data }
@@ -70,9 +70,9 @@ impl Rig {
     /// Every joint begins to move to a place of its own, within `duration` \[s\].
     pub(crate) fn moving(mut self, size: f64, duration: f64) -> Self {
         for (j, d) in self.drives.iter_mut().enumerate() {
-            let from = Motion { angle: self.pose[j], ..Motion::default() };
+            let from = JointMotion { angle: self.pose[j], ..JointMotion::default() };
             let way = size * (1.0 + 1.7 * j as f64).sin();
-            *d = Drive::follow(from, self.pose[j] + way, 0.0, duration);
+            *d = JointCubic::follow(from, self.pose[j] + way, 0.0, duration);
         }
         self
     }

@@ -4,9 +4,9 @@
 use planner::boundary::{BoundarySolver, U};
 use planner::collocation::Collocation;
 
-use super::{Chart, Cost, Point, cost};
+use super::{Cost, ErrorChart, Point, cost};
 
-const G: f64 = planner::com::GRAVITY;
+const G: f64 = multibody::GRAVITY_ACCELERATION;
 /// Phases of two steps \[s\].
 const MARKS: [f64; 7] = [0.0, 0.16, 0.64, 0.8, 0.96, 1.44, 1.6];
 /// Kinks of the zero-moment point: \[s\], \[m\].
@@ -92,8 +92,8 @@ fn error(c: &Collocation, fine: &Collocation) -> f64 {
 }
 
 /// The chart.
-pub(super) fn chart() -> Chart {
-    let mut chart = Chart::new("boundary", "Collocation: order and knots", "error of the centre of gravity [m]")
+pub(super) fn chart() -> ErrorChart {
+    let mut chart = ErrorChart::new("boundary", "Collocation: order and knots", "error of the centre of gravity [m]")
         .over(Cost::PerCall)
         .about(
             "Two steps of 0.8 s with the zero-moment point of errata 2.8, ends given; all six right-hand sides solved; \

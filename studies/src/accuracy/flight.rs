@@ -9,8 +9,8 @@ use multibody::{Data, Model};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde_json::Value;
 
-use super::system::{Method, System, Times};
-use super::{Chart, Given, Part};
+use super::system::{SteppingMethod, System, Times};
+use super::{AccuracyInput, ErrorChart, Part};
 
 pub(super) const PART: Part = charts;
 
@@ -18,14 +18,14 @@ const END: Times = Times { every: 1.0, count: 1 };
 const STEPS: [f64; 10] = [2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5];
 const TOLERANCES: [f64; 5] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 
-fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
+fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let lola = Setup::load(given.config, "stand")?.robot;
     let order: Vec<&str> = lola.joints.iter().map(|j| j.name.as_str()).collect();
     let chain = include_str!("../../../tests/peers/mujoco/chain.urdf");
     let mut all = motion(
         given,
         ["flight", "Free flight of Lola, 1 s", "flight"],
-        Body::new(
+        FallingBodies::new(
             Model::from_urdf(&lola.urdf, &lola.torso, &order)?,
             include_str!("../../../tests/peers/mujoco/states/flight.txt"),
         )?,
@@ -33,7 +33,7 @@ fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
     all.extend(motion(
         given,
         ["chain", "Fall of a chain of three links, 1 s", "chain"],
-        Body::new(
+        FallingBodies::new(
             Model::from_urdf(chain, "torso", &["hip", "knee", "ankle"])?,
             include_str!("../../../tests/peers/mujoco/states/chain.txt"),
         )?,
@@ -42,7 +42,11 @@ fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
 }
 
 /// Three charts of one body: position, energy, momentum.
-fn motion(given: &Given<'_>, [name, title, initial]: [&str; 3], mut body: Body) -> Vec<Chart> {
+fn motion(
+    given: &AccuracyInput<'_>,
+    [name, title, initial]: [&str; 3],
+    mut body: FallingBodies,
+) -> Vec<ErrorChart> {
     let about =
         "No contact, no drives. Reference: RK4 with steps of 0.02 ms; energy and momentum by their laws.";
     let measures = [
@@ -50,15 +54,16 @@ fn motion(given: &Given<'_>, [name, title, initial]: [&str; 3], mut body: Body) 
         ("energy", "drift of the energy in 1 s [J]"),
         ("momentum", "drift of the angular momentum in 1 s [N m s]"),
     ];
-    let mut charts = measures.map(|(what, m)| Chart::new(&format!("{name}.{what}"), title, m).about(about));
+    let mut charts =
+        measures.map(|(what, m)| ErrorChart::new(&format!("{name}.{what}"), title, m).about(about));
     let start = body.start.clone();
-    let reference = Method::RungeKutta4(2e-5).run(&mut body, &start, END).seen.remove(0);
+    let reference = SteppingMethod::RungeKutta4(2e-5).run(&mut body, &start, END).seen.remove(0);
     let (energy, turn) = body.conserved(&start);
-    let mut methods: Vec<Method> = Vec::new();
-    methods.extend(STEPS[2..].iter().map(|h| Method::Euler(*h)));
-    methods.extend(STEPS.iter().map(|h| Method::Own("semi-implicit", *h)));
-    methods.extend(STEPS[..8].iter().map(|h| Method::RungeKutta4(*h)));
-    methods.extend(TOLERANCES.iter().map(|tolerance| Method::Bdf(*tolerance)));
+    let mut methods: Vec<SteppingMethod> = Vec::new();
+    methods.extend(STEPS[2..].iter().map(|h| SteppingMethod::Euler(*h)));
+    methods.extend(STEPS.iter().map(|h| SteppingMethod::Own("semi-implicit", *h)));
+    methods.extend(STEPS[..8].iter().map(|h| SteppingMethod::RungeKutta4(*h)));
+    methods.extend(TOLERANCES.iter().map(|tolerance| SteppingMethod::Bdf(*tolerance)));
     for method in methods {
         let (motion, mut point) = method.measure(&mut body, &start, END);
         (point.scene, point.model) = (name.into(), "bodies".into());
@@ -89,7 +94,7 @@ fn motion(given: &Given<'_>, [name, title, initial]: [&str; 3], mut body: Body) 
 }
 
 /// Bodies in free fall; x = (q, v).
-struct Body {
+struct FallingBodies {
     model: Model,
     data: Data,
     none: Vec<f64>,
@@ -97,7 +102,7 @@ struct Body {
     start: Vec<f64>,
 }
 
-impl Body {
+impl FallingBodies {
     fn new(model: Model, state: &str) -> Result<Self, String> {
         let row = |key: &str| {
             let line = state.lines().find_map(|line| line.strip_prefix(key)).unwrap_or_default();
@@ -142,7 +147,7 @@ impl Body {
     }
 }
 
-impl System for Body {
+impl System for FallingBodies {
     fn rate(&mut self, _: f64, x: &[f64], dx: &mut [f64]) {
         self.accelerate(x);
         let n = self.model.nq();
@@ -180,11 +185,11 @@ mod tests {
         let chain = include_str!("../../../tests/peers/mujoco/chain.urdf");
         let model = Model::from_urdf(chain, "torso", &["hip", "knee", "ankle"]).unwrap();
         let mut body =
-            Body::new(model, include_str!("../../../tests/peers/mujoco/states/chain.txt")).unwrap();
+            FallingBodies::new(model, include_str!("../../../tests/peers/mujoco/states/chain.txt")).unwrap();
         let start = body.start.clone();
         let times = Times { every: 0.3, count: 1 };
-        let a = Method::RungeKutta4(5e-4).run(&mut body, &start, times).seen.remove(0);
-        let b = Method::Bdf(1e-11).run(&mut body, &start, times).seen.remove(0);
+        let a = SteppingMethod::RungeKutta4(5e-4).run(&mut body, &start, times).seen.remove(0);
+        let b = SteppingMethod::Bdf(1e-11).run(&mut body, &start, times).seen.remove(0);
         assert!(body.distance(&a, &b) < 1e-8, "{:e}", body.distance(&a, &b));
         let (before, after) = (body.conserved(&start), body.conserved(&a));
         assert!((before.0 - after.0).abs() < 1e-8 && (before.1 - after.1).norm() < 1e-9);

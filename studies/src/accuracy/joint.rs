@@ -8,11 +8,11 @@ use std::error::Error;
 
 use config::Setup;
 use environment::Environment;
-use sim_backend::drive::Drive;
+use sim_backend::drive::JointCubic;
 use sim_backend::plant::{Plant, PlantInputs};
 
-use super::system::{Method, Motion, System, Times, largest};
-use super::{Chart, Given, Part, Point};
+use super::system::{SteppingMethod, System, SystemMotion, Times, largest};
+use super::{AccuracyInput, ErrorChart, Part, Point};
 
 pub(super) const PART: Part = charts;
 
@@ -22,17 +22,18 @@ const STEP: f64 = 0.05;
 const TIMES: Times = Times { every: 0.01, count: 10 };
 const STEPS: [f64; 9] = [2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6];
 
-fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
+fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let setup = Setup::load(given.config, "stand")?;
     [2, 3].into_iter().map(|depth| chart(&setup, depth)).collect()
 }
 
-fn chart(setup: &Setup, depth: u8) -> Result<Chart, Box<dyn Error>> {
+fn chart(setup: &Setup, depth: u8) -> Result<ErrorChart, Box<dyn Error>> {
     let mut robot = Hovering::new(setup, depth)?;
     let (start, joint) = (robot.start.clone(), robot.joint);
-    let apart = |a: &Motion, b: &Motion| largest(a, b, |a, b| (a[7 + joint] - b[7 + joint]).abs());
-    let smooth = Method::RungeKutta4(5e-6).run(&mut robot, &start, TIMES);
-    let [finer, coarser] = [2e-6, 4e-6].map(|h| Method::Own(OWN, h).run(&mut robot, &start, TIMES));
+    let apart =
+        |a: &SystemMotion, b: &SystemMotion| largest(a, b, |a, b| (a[7 + joint] - b[7 + joint]).abs());
+    let smooth = SteppingMethod::RungeKutta4(5e-6).run(&mut robot, &start, TIMES);
+    let [finer, coarser] = [2e-6, 4e-6].map(|h| SteppingMethod::Own(OWN, h).run(&mut robot, &start, TIMES));
     let dry = extrapolated(&finer, &coarser);
     let measure = format!("type {depth}: largest error of the joint's angle in 0.1 s [rad]");
     let about = format!(
@@ -40,16 +41,17 @@ fn chart(setup: &Setup, depth: u8) -> Result<Chart, Box<dyn Error>> {
          for dry friction; they are {:.1e} rad apart.",
         apart(&smooth, &dry)
     );
-    let mut chart = Chart::new(&format!("joint.type{depth}"), "A step of 0.05 rad at a hip joint", &measure)
-        .about(&about);
-    let mut methods: Vec<Method> = Vec::new();
-    methods.extend(STEPS.map(Method::Euler));
-    methods.extend(STEPS[..7].iter().map(|h| Method::RungeKutta4(*h)));
-    methods.extend(STEPS.map(|h| Method::Own(OWN, h)));
-    methods.extend([1e-3, 1e-5, 1e-7].map(Method::Bdf));
+    let mut chart =
+        ErrorChart::new(&format!("joint.type{depth}"), "A step of 0.05 rad at a hip joint", &measure)
+            .about(&about);
+    let mut methods: Vec<SteppingMethod> = Vec::new();
+    methods.extend(STEPS.map(SteppingMethod::Euler));
+    methods.extend(STEPS[..7].iter().map(|h| SteppingMethod::RungeKutta4(*h)));
+    methods.extend(STEPS.map(|h| SteppingMethod::Own(OWN, h)));
+    methods.extend([1e-3, 1e-5, 1e-7].map(SteppingMethod::Bdf));
     for method in methods {
         let (motion, point) = method.measure(&mut robot, &start, TIMES);
-        let reference = if matches!(method, Method::Own(..)) { &dry } else { &smooth };
+        let reference = if matches!(method, SteppingMethod::Own(..)) { &dry } else { &smooth };
         let error = apart(&motion, reference);
         chart.add(Point { scene: "step".into(), model: format!("type {depth}"), error, ..point });
     }
@@ -61,15 +63,18 @@ fn chart(setup: &Setup, depth: u8) -> Result<Chart, Box<dyn Error>> {
 const OWN: &str = "semi-implicit";
 
 /// The limit of two motions of first order with steps h and 2 h.
-fn extrapolated(finer: &Motion, coarser: &Motion) -> Motion {
+fn extrapolated(finer: &SystemMotion, coarser: &SystemMotion) -> SystemMotion {
     let limit = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| 2.0 * a - b).collect();
-    Motion { seen: finer.seen.iter().zip(&coarser.seen).map(limit).collect(), ..Motion::default() }
+    SystemMotion {
+        seen: finer.seen.iter().zip(&coarser.seen).map(limit).collect(),
+        ..SystemMotion::default()
+    }
 }
 
 /// The robot high above the ground, powered.
 struct Hovering {
     plant: Plant,
-    drives: Vec<Drive>,
+    drives: Vec<JointCubic>,
     inputs: PlantInputs,
     joint: usize,
     start: Vec<f64>,
@@ -85,8 +90,8 @@ impl Hovering {
         start[2] += 10.0;
         let layer = plant.layout().layer();
         start[layer].fill(0.0);
-        let mut drives: Vec<Drive> = pose.iter().map(|q| Drive::resting(*q)).collect();
-        drives[joint] = Drive::resting(pose[joint] + STEP);
+        let mut drives: Vec<JointCubic> = pose.iter().map(|q| JointCubic::resting(*q)).collect();
+        drives[joint] = JointCubic::resting(pose[joint] + STEP);
         Ok(Self { plant, drives, inputs: PlantInputs::POWERED, joint, start })
     }
 }

@@ -11,12 +11,12 @@ use config::{Robot, Setup};
 use controller::inverse_kinematics::{InverseKinematics, JointVector, TaskJacobian, TaskVector};
 use controller::task_space::TaskSpace;
 use drives::Transmission;
-use drives::lookup::Table;
+use drives::lookup::LookupTable;
 use messages::{LEFT, MAX_JOINTS, RIGHT};
 use nalgebra::{Matrix3, Vector3};
 
 use super::order::in_ms;
-use super::{Chart, Cost, Given, Point, cost};
+use super::{AccuracyInput, Cost, ErrorChart, Point, cost};
 
 /// \[s\] Length of a step, and the cycles it is followed in.
 const STEP: f64 = 0.8;
@@ -30,7 +30,7 @@ const TABLES: [usize; 7] = [5, 9, 17, 33, 65, 129, 257];
 ///
 /// # Errors
 /// A configuration is wrong.
-pub fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
+pub fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let setup = Setup::load(given.config, "walk_1kmh")?;
     let mut charts = vec![inverse(&setup)?];
     charts.extend(tables(&setup.robot)?);
@@ -39,15 +39,15 @@ pub fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
 
 /// What is done in a cycle.
 #[derive(Clone, Copy)]
-enum Way {
+enum TrackingMethod {
     /// Joint speeds of the feet's speed at the cycle's begin, and the gain \[1/s\] on the drift.
     Speeds(f64),
     /// So many Newton steps to where the feet are to be at its end.
     Newton(usize),
 }
 
-fn inverse(setup: &Setup) -> Result<Chart, Box<dyn Error>> {
-    let mut chart = Chart::new(
+fn inverse(setup: &Setup) -> Result<ErrorChart, Box<dyn Error>> {
+    let mut chart = ErrorChart::new(
         "inverse_kinematics",
         "Steps of the inverse kinematics in a cycle",
         "error of the feet [m, rad]",
@@ -58,11 +58,11 @@ fn inverse(setup: &Setup) -> Result<Chart, Box<dyn Error>> {
     );
     let gain = setup.gait.control.drift_gain;
     let ways = [
-        ("speeds alone", Way::Speeds(0.0)),
-        ("speeds with drift fed back", Way::Speeds(gain)),
-        ("1 Newton step", Way::Newton(1)),
-        ("2 Newton steps", Way::Newton(2)),
-        ("3 Newton steps", Way::Newton(3)),
+        ("speeds alone", TrackingMethod::Speeds(0.0)),
+        ("speeds with drift fed back", TrackingMethod::Speeds(gain)),
+        ("1 Newton step", TrackingMethod::Newton(1)),
+        ("2 Newton steps", TrackingMethod::Newton(2)),
+        ("3 Newton steps", TrackingMethod::Newton(3)),
     ];
     for (name, way) in ways {
         for cycle in CYCLES {
@@ -105,18 +105,18 @@ impl Following {
     }
 
     /// Greatest error on the way.
-    fn follow(&mut self, cycle: f64, way: Way) -> f64 {
+    fn follow(&mut self, cycle: f64, way: TrackingMethod) -> f64 {
         let mut q = self.pose.clone();
         let mut worst = 0.0f64;
         self.space.update(&q);
         for k in 0..(STEP / cycle).round() as usize {
             let (now, next) = (k as f64 * cycle, (k + 1) as f64 * cycle);
             match way {
-                Way::Speeds(gain) => {
+                TrackingMethod::Speeds(gain) => {
                     let wanted = self.speed(now) + gain * self.error(now);
                     self.step(&mut q, &wanted, cycle);
                 }
-                Way::Newton(steps) => {
+                TrackingMethod::Newton(steps) => {
                     for _ in 0..steps {
                         let wanted = self.error(next);
                         self.step(&mut q, &wanted, 1.0);
@@ -179,14 +179,14 @@ fn way(foot: usize, t: f64) -> (Vector3<f64>, Vector3<f64>) {
 }
 
 /// Tables of a knee and an ankle.
-fn tables(robot: &Robot) -> Result<Vec<Chart>, Box<dyn Error>> {
-    let mut angle = Chart::new(
+fn tables(robot: &Robot) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
+    let mut angle = ErrorChart::new(
         "lookup.angle",
         "Look-up tables of the drives' linkages",
         "error of the motor's angle [rad]",
     )
     .over(Cost::PerCall);
-    let mut ratio = Chart::new("lookup.ratio", "", "error of the ratio [1]").over(Cost::PerCall);
+    let mut ratio = ErrorChart::new("lookup.ratio", "", "error of the ratio [1]").over(Cost::PerCall);
     let mut about = "Linear interpolation over the joints' whole ranges. Without a table:".to_owned();
     for (name, joints) in [("knee", 1), ("ankle", 3)] {
         let wanted = |d: &&config::robot::Drive| {
@@ -204,7 +204,7 @@ fn tables(robot: &Robot) -> Result<Vec<Chart>, Box<dyn Error>> {
         });
         about += &format!(" {name} {:.0} ns.", 1e9 * direct / places.len() as f64);
         for points in TABLES {
-            let table = Table::new(transmission, ranges, [points; 2])?;
+            let table = LookupTable::new(transmission, ranges, [points; 2])?;
             let ((), seconds) = cost::of(|| {
                 for q in &places {
                     let _ = black_box(table.at(black_box(*q)));
@@ -268,10 +268,10 @@ mod tests {
         let setup = Setup::load(&config::root(None), "walk_1kmh").unwrap();
         let mut leg = Following::new(&setup).unwrap();
         let mut error = |cycle, way| leg.follow(cycle, way);
-        let drift = error(8e-3, Way::Speeds(0.0)) / error(4e-3, Way::Speeds(0.0));
+        let drift = error(8e-3, TrackingMethod::Speeds(0.0)) / error(4e-3, TrackingMethod::Speeds(0.0));
         assert!((drift - 2.0).abs() < 0.2, "{drift}");
-        let once = error(8e-3, Way::Newton(1));
-        let twice = error(8e-3, Way::Newton(2));
+        let once = error(8e-3, TrackingMethod::Newton(1));
+        let twice = error(8e-3, TrackingMethod::Newton(2));
         assert!(twice < 10.0 * once * once, "{once} {twice}");
     }
 }

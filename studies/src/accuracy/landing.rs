@@ -15,13 +15,13 @@ use environment::{Environment, Mesh, Object, Pose, Schedule};
 use messages::RIGHT;
 use multibody::Data;
 use serde_json::Value;
-use sim_backend::drive::Drive;
+use sim_backend::drive::JointCubic;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, orientation};
 
-use super::methods::Method;
+use super::methods::IntegrationMethod;
 use super::walking::greatest;
-use super::{Chart, Given, Peers, Point, cost};
+use super::{AccuracyInput, ErrorChart, Peers, Point, cost};
 use crate::second::POWERED;
 
 /// \[s\] Steps are parts of it, as of a bus cycle.
@@ -53,7 +53,7 @@ const LANDINGS: [(&str, usize, u8); 8] = [
 ///
 /// # Errors
 /// The robot's configuration is wrong.
-pub fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
+pub fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let setup = Setup::load(given.config, "stand")?;
     let mut charts = Vec::new();
     for (scene, cycles, depth) in LANDINGS {
@@ -69,14 +69,14 @@ pub fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
 struct Fall {
     environment: Environment,
     state: Vec<f64>,
-    drives: Vec<Drive>,
+    drives: Vec<JointCubic>,
     pose: Vec<f64>,
     cycles: usize,
 }
 
 /// What is compared.
 #[derive(Clone, Debug)]
-struct Outcome {
+struct LandingOutcome {
     peak: f64,
     impulse: f64,
     state: Vec<f64>,
@@ -87,7 +87,7 @@ impl Fall {
         let (robot, pose) = (&setup.robot, &setup.robot.poses[&setup.scene.start_pose]);
         let mut plant = Plant::new(robot, Environment::flat(), depth, pose)?;
         let mut state = plant.standing(pose);
-        let drives: Vec<Drive> = pose.iter().map(|&q| Drive::resting(q)).collect();
+        let drives: Vec<JointCubic> = pose.iter().map(|&q| JointCubic::resting(q)).collect();
         let sole = plant.snapshot(0.0, &state, &drives, &POWERED).feet[RIGHT];
         let layer = plant.layout().layer();
         state[layer].fill(0.0);
@@ -97,14 +97,14 @@ impl Fall {
         Ok(Self { environment, state, drives, pose: pose.clone(), cycles })
     }
 
-    fn charts(&self, setup: &Setup, scene: &str, depth: u8) -> Result<[Chart; 3], Box<dyn Error>> {
+    fn charts(&self, setup: &Setup, scene: &str, depth: u8) -> Result<[ErrorChart; 3], Box<dyn Error>> {
         let mut plant = Plant::new(&setup.robot, self.environment.clone(), depth, &self.pose)?;
-        let mut methods = Method::all(depth);
+        let mut methods = IntegrationMethod::all(depth);
         methods.retain(|m| m.tolerance.is_none_or(|t| depth <= ADAPTIVE && TOLERANCES.contains(&t)));
         let finer = if depth > 3 { 4 } else { 10 };
         let references = [false, true].map(|exact| {
             let wanted = methods.iter().any(|m| m.exact_friction() == exact);
-            wanted.then(|| self.outcome(&mut plant, &Method::reference(exact, depth, finer)))
+            wanted.then(|| self.outcome(&mut plant, &IntegrationMethod::reference(exact, depth, finer)))
         });
         let title = match scene {
             "edge" => format!("Landing on the edge of a board under the right foot, type {depth}"),
@@ -113,9 +113,9 @@ impl Fall {
         let name = |what| format!("{scene}_type{depth}.{what}");
         let about = about(&references, self.cycles);
         let mut charts = [
-            Chart::new(&name("peak"), &title, "error of the peak of the normal force [N]").about(&about),
-            Chart::new(&name("impulse"), &title, "error of the ground's impulse [N s]"),
-            Chart::new(&name("state"), &title, "error of pose at the end [m, rad]"),
+            ErrorChart::new(&name("peak"), &title, "error of the peak of the normal force [N]").about(&about),
+            ErrorChart::new(&name("impulse"), &title, "error of the ground's impulse [N s]"),
+            ErrorChart::new(&name("state"), &title, "error of pose at the end [m, rad]"),
         ];
         for method in methods {
             let Some(reference) = &references[usize::from(method.exact_friction())] else { continue };
@@ -143,7 +143,7 @@ impl Fall {
     fn run(
         &self,
         plant: &mut Plant,
-        method: &Method,
+        method: &IntegrationMethod,
         mut seen: impl FnMut(&mut Plant, &mut Stepper, &[f64]),
     ) -> Vec<f64> {
         let mut x = self.state.clone();
@@ -158,13 +158,13 @@ impl Fall {
         x
     }
 
-    fn outcome(&self, plant: &mut Plant, method: &Method) -> Outcome {
+    fn outcome(&self, plant: &mut Plant, method: &IntegrationMethod) -> LandingOutcome {
         let mut peak = 0.0f64;
         let state = self.run(plant, method, |plant, _, x| {
             let wrench = plant.snapshot(CYCLE, x, &self.drives, &POWERED).foot_wrench;
             peak = peak.max(wrench.iter().map(|w| w.force[2]).sum());
         });
-        Outcome { peak, impulse: self.impulse(plant, &state), state: self.coordinates(plant, &state) }
+        LandingOutcome { peak, impulse: self.impulse(plant, &state), state: self.coordinates(plant, &state) }
     }
 
     /// \[N s\] What the ground gave: momentum now, and what gravity took.
@@ -189,7 +189,7 @@ impl Fall {
     }
 }
 
-impl Outcome {
+impl LandingOutcome {
     fn errors(&self, reference: &Self) -> [f64; 3] {
         let state = greatest(self.state.iter().zip(&reference.state).map(|(a, b)| (a - b).abs()));
         let impulse = (self.impulse - reference.impulse).abs();
@@ -212,9 +212,10 @@ fn board(robot: &Robot, sole: [f64; 4]) -> Result<Environment, Box<dyn Error>> {
 }
 
 /// What the references are, and what they say.
-fn about(references: &[Option<Outcome>; 2], cycles: usize) -> String {
+fn about(references: &[Option<LandingOutcome>; 2], cycles: usize) -> String {
     let time = cycles as f64 * CYCLE;
-    let of = |name: &str, r: &Outcome| format!("{name} peak {:.1} N, impulse {:.3} N s", r.peak, r.impulse);
+    let of =
+        |name: &str, r: &LandingOutcome| format!("{name} peak {:.1} N, impulse {:.3} N s", r.peak, r.impulse);
     let known: Vec<String> = ["rk4", "semi_implicit"]
         .iter()
         .zip(references)
@@ -224,9 +225,9 @@ fn about(references: &[Option<Outcome>; 2], cycles: usize) -> String {
 }
 
 /// Another program's points beside ours, each against its own smallest step of the same integrator.
-fn overlay(ours: &Chart, peers: &Peers) -> Option<Chart> {
+fn overlay(ours: &ErrorChart, peers: &Peers) -> Option<ErrorChart> {
     let title = format!("Dropped by 10 mm, type 2 and {}", peers.peer);
-    let mut chart = Chart::new("settle_peers.peak", &title, &ours.measure).about(&format!(
+    let mut chart = ErrorChart::new("settle_peers.peak", &title, &ours.measure).about(&format!(
         "{}: soft contact, position servos; so each integrator against its own smallest step, and not against ours.",
         peers.peer
     ));

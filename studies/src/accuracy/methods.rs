@@ -3,7 +3,7 @@
 //! Explicit methods and the adaptive one see dry friction smoothed over a small speed, the semi-implicit one sees it as it
 //! is. These are two models; each family is held against a reference of its own.
 
-use config::scene::Integrator;
+use config::method::Integrator;
 use sim_backend::integrate::Stepper;
 
 use super::Point;
@@ -17,7 +17,7 @@ const TOLERANCES: [f64; 5] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 
 /// An integrator with what sets its accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Method {
+pub struct IntegrationMethod {
     /// Which one.
     pub integrator: Integrator,
     /// Steps in a cycle.
@@ -26,7 +26,7 @@ pub struct Method {
     pub tolerance: Option<f64>,
 }
 
-impl Method {
+impl IntegrationMethod {
     /// With so many steps in a cycle.
     pub(crate) fn stepping(integrator: Integrator, steps: u32) -> Self {
         Self { integrator, steps, tolerance: None }
@@ -88,8 +88,8 @@ mod tests {
     #[test]
     fn references_are_finer_than_what_they_judge() {
         for depth in 1..=5 {
-            for method in Method::all(depth) {
-                let reference = Method::reference(method.exact_friction(), depth, 10);
+            for method in IntegrationMethod::all(depth) {
+                let reference = IntegrationMethod::reference(method.exact_friction(), depth, 10);
                 assert!(reference.steps >= 10 * method.steps, "{method:?}");
                 assert_eq!(reference.exact_friction(), method.exact_friction());
             }

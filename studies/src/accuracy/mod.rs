@@ -30,11 +30,11 @@ use serde_json::json;
 use crate::search::slope;
 use crate::sheet::{self, Column, fixed, plain};
 use crate::{Error, Sheet, Study};
-pub use order::Order;
+pub use order::ConvergenceOrder;
 pub use peers::Peers;
 
 /// What a part makes its charts from.
-pub struct Given<'a> {
+pub struct AccuracyInput<'a> {
     /// Directory of the configuration.
     pub config: &'a Path,
     /// What other programs did in the same scenes.
@@ -42,7 +42,7 @@ pub struct Given<'a> {
 }
 
 /// A part's charts.
-pub type Part = fn(&Given<'_>) -> Result<Vec<Chart>, Error>;
+pub type Part = fn(&AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Error>;
 
 /// All parts, with their names for `--only`.
 pub const PARTS: &[(&str, Part)] = &[
@@ -104,7 +104,7 @@ pub enum Cost {
 
 /// Points that belong on one pair of axes.
 #[derive(Clone, Debug, Default)]
-pub struct Chart {
+pub struct ErrorChart {
     /// Name; charts with the same text before a dot share a picture.
     pub name: String,
     /// One line above the axes.
@@ -120,10 +120,10 @@ pub struct Chart {
     /// What was found.
     pub points: Vec<Point>,
     /// Orders of convergence, measured beside predicted.
-    pub orders: Vec<Order>,
+    pub orders: Vec<ConvergenceOrder>,
 }
 
-impl Chart {
+impl ErrorChart {
     /// An empty chart: "flight.energy", "Free flight of Lola", "energy drift \[J\]".
     pub fn new(name: &str, title: &str, measure: &str) -> Self {
         Self { name: name.into(), title: title.into(), measure: measure.into(), ..Self::default() }
@@ -167,7 +167,12 @@ impl Chart {
         let of_method = self.points.iter().filter(|p| p.method == method && !p.diverged);
         let pairs = of_method.filter_map(|p| Some([p.step.filter(|h| steps.contains(h))?, p.error]));
         let measured = slope(&pairs.collect::<Vec<_>>());
-        self.orders.push(Order { chart: self.name.clone(), method: method.into(), predicted, measured });
+        self.orders.push(ConvergenceOrder {
+            chart: self.name.clone(),
+            method: method.into(),
+            predicted,
+            measured,
+        });
     }
 }
 
@@ -209,7 +214,7 @@ impl Study for Accuracy {
         let mut charts = Vec::new();
         for (done, (name, part)) in wanted.iter().enumerate() {
             (given.progress)(done, wanted.len(), name);
-            charts.extend(part(&Given { config: given.config, peers: &peers })?);
+            charts.extend(part(&AccuracyInput { config: given.config, peers: &peers })?);
         }
         let sheet = sheet(&charts, &self.out)?;
         let path = self.out.join("accuracy.json");
@@ -220,9 +225,9 @@ impl Study for Accuracy {
 }
 
 /// What was lost, the orders, and where the pictures are.
-fn sheet(charts: &[Chart], out: &Path) -> Result<Sheet, Error> {
+fn sheet(charts: &[ErrorChart], out: &Path) -> Result<Sheet, Error> {
     let points: Vec<&Point> = charts.iter().flat_map(|chart| &chart.points).collect();
-    let orders: Vec<&Order> = charts.iter().flat_map(|chart| &chart.orders).collect();
+    let orders: Vec<&ConvergenceOrder> = charts.iter().flat_map(|chart| &chart.orders).collect();
     let lost = |p: &&&Point| {
         let step = p.step.map_or(String::new(), |h| format!(" {}", order::in_ms(h)));
         let (method, note) = (format!("{}{step}", p.method), p.note.as_deref().unwrap_or("diverged"));

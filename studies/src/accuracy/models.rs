@@ -15,13 +15,13 @@
 use std::error::Error;
 
 use config::Setup;
-use config::scene::Integrator;
+use config::method::Integrator;
 use messages::{JointTargets, SimState};
 use multibody::{Data, Frame, Model};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use realtime::clock::processor_time;
 
-use super::{Chart, Given, Point};
+use super::{AccuracyInput, ErrorChart, Point};
 use chain::Chain;
 
 /// Differences below this, in any unit, are rounding of what the bus carries.
@@ -50,19 +50,19 @@ const QUANTITIES: [(&str, &str, &str); 5] = [
 ///
 /// # Errors
 /// A configuration is wrong.
-pub fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
+pub fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let mut all = Vec::new();
     for (scene, span, push) in SCENES {
         let title = format!("Model depth: difference from type 5, {scene}");
         let mut charts =
-            QUANTITIES.map(|(name, what, _)| Chart::new(&format!("depth_{scene}.{name}"), &title, what));
+            QUANTITIES.map(|(name, what, _)| ErrorChart::new(&format!("depth_{scene}.{name}"), &title, what));
         let [begin, end] = span;
         charts[0].about = format!(
             "The whole chain on each type, {begin} s to {end} s. Reference: type 5, 0.1 ms; at 0.25 ms it shows the step's share."
         );
         let walks = MODELS
             .iter()
-            .map(|&model| Walk::new(given, scene, (span, push), model))
+            .map(|&model| WalkOutputs::new(given, scene, (span, push), model))
             .collect::<Result<Vec<_>, _>>()?;
         let Some((reference, others)) = walks.split_last() else { continue };
         for walk in others {
@@ -88,7 +88,7 @@ fn note(itself: f64, of_reference: f64, unit: &str) -> String {
 }
 
 /// What is looked at of a walk.
-struct Walk {
+struct WalkOutputs {
     model: (u8, u32),
     /// \[s\] Bus cycle.
     cycle: f64,
@@ -106,9 +106,9 @@ struct Walk {
     tracking: f64,
 }
 
-impl Walk {
+impl WalkOutputs {
     fn new(
-        given: &Given<'_>,
+        given: &AccuracyInput<'_>,
         scene: &str,
         ([from, end], push): ([f64; 2], f64),
         (depth, steps): (u8, u32),

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// How fast a method's error falls with its step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Order {
+pub struct ConvergenceOrder {
     /// Name of the chart.
     pub chart: String,
     /// The method.

@@ -6,7 +6,7 @@ use drawing::color::{BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION};
 use drawing::{Color, Figure, Pen};
 
 use super::order::in_ms;
-use super::{Chart, Cost, Point};
+use super::{Cost, ErrorChart, Point};
 use crate::Sheet;
 
 const COLORS: [Color; 6] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY];
@@ -15,7 +15,7 @@ const COLORS: [Color; 6] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY];
 const CROWDED: usize = 6;
 
 /// Draws the pictures.
-pub(super) fn draw(charts: &[Chart], out: &Path, sheet: &mut Sheet) -> Result<(), String> {
+pub(super) fn draw(charts: &[ErrorChart], out: &Path, sheet: &mut Sheet) -> Result<(), String> {
     for together in charts.chunk_by(|a, b| file(a) == file(b)) {
         let first = &together[0];
         let figure = Figure::new(&first.title, &first.about);
@@ -25,11 +25,11 @@ pub(super) fn draw(charts: &[Chart], out: &Path, sheet: &mut Sheet) -> Result<()
     Ok(())
 }
 
-fn file(chart: &Chart) -> &str {
+fn file(chart: &ErrorChart) -> &str {
     chart.name.split('.').next().unwrap_or_default()
 }
 
-fn panel(chart: &Chart) -> drawing::Chart {
+fn panel(chart: &ErrorChart) -> drawing::Chart {
     let x = match chart.cost {
         Cost::PerSecond => "processor time by simulated time [s/s]",
         Cost::PerCall => "processor time of one call [us]",

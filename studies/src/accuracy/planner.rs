@@ -4,11 +4,11 @@ use std::error::Error;
 
 use config::Setup;
 use messages::RIGHT;
-use planner::pose::Pose;
+use planner::pose::PlanarPose;
 use planner::sole::Sole;
 use planner::zmp::ZmpProblem;
 
-use super::{Chart, Cost, Given, Point, boundary, cost};
+use super::{AccuracyInput, Cost, ErrorChart, Point, boundary, cost};
 use crate::speed::{Recording, plan_times};
 
 /// Distances of knots, by that of the gait.
@@ -24,15 +24,15 @@ const CALLS: usize = 200;
 ///
 /// # Errors
 /// A configuration is wrong, or the robot falls.
-pub fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
+pub fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let setup = Setup::load(given.config, "walk_1kmh")?;
     Ok(vec![collocation(&setup)?, boundary::chart(), zmp(&setup)])
 }
 
 /// A walking plan's error by the distance of its knots.
-fn collocation(setup: &Setup) -> Result<Chart, Box<dyn Error>> {
+fn collocation(setup: &Setup) -> Result<ErrorChart, Box<dyn Error>> {
     let recording = Recording::new(setup)?;
-    let mut chart = Chart::new("planner", "Collocation points of a walking plan", "error of the zero-moment point [m]")
+    let mut chart = ErrorChart::new("planner", "Collocation points of a walking plan", "error of the zero-moment point [m]")
         .over(Cost::PerCall)
         .about(
             "Scene walk_1kmh; the planner's cycle in which a plan is made, median; how far three masses that move as \
@@ -53,8 +53,8 @@ fn collocation(setup: &Setup) -> Result<Chart, Box<dyn Error>> {
 }
 
 /// Error of projected Gauss-Seidel by its sweeps, and of direct construction.
-fn zmp(setup: &Setup) -> Chart {
-    let mut chart = Chart::new("zmp", "Sweeps for the zero-moment point's way", "distance from the optimum [m]")
+fn zmp(setup: &Setup) -> ErrorChart {
+    let mut chart = ErrorChart::new("zmp", "Sweeps for the zero-moment point's way", "distance from the optimum [m]")
         .over(Cost::PerCall)
         .about(
             "Projected Gauss-Seidel on (4.42) and direct construction over steps of 0.35 m from foot to foot, with ends in \
@@ -99,7 +99,13 @@ fn zmp(setup: &Setup) -> Chart {
     chart
 }
 
-fn add(chart: &mut Chart, method: &str, solver: String, seconds: f64, [found, reference]: [&ZmpProblem; 2]) {
+fn add(
+    chart: &mut ErrorChart,
+    method: &str,
+    solver: String,
+    seconds: f64,
+    [found, reference]: [&ZmpProblem; 2],
+) {
     let pairs = found.nodes().iter().zip(reference.nodes());
     let error = pairs.map(|(a, b)| (a.p[0] - b.p[0]).hypot(a.p[1] - b.p[1])).fold(0.0, f64::max);
     chart.add(Point {
@@ -117,7 +123,7 @@ fn chain(sole: &Sole, nodes: usize) -> ZmpProblem {
     let mut chain = ZmpProblem::new();
     let foot = |k: usize| {
         let step = k.div_ceil(2);
-        Pose::new(0.35 * step as f64, if step.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0)
+        PlanarPose::new(0.35 * step as f64, if step.is_multiple_of(2) { -0.1 } else { 0.1 }, 0.0)
     };
     let last = nodes - 1;
     let time = |k: usize| (k / 2) as f64 * 0.8 + (k % 2) as f64 * 0.6;

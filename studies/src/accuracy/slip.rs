@@ -6,11 +6,11 @@
 
 use std::error::Error;
 
-use contact::point::{self, Law};
+use contact::point::{self, ContactLaw};
 use serde_json::Value;
 
-use super::system::{Method, Motion, System, Times, stepper};
-use super::{Chart, Given, Part, Peers, Point};
+use super::system::{SteppingMethod, System, SystemMotion, Times, stepper};
+use super::{AccuracyInput, ErrorChart, Part, Peers, Point};
 
 pub(super) const PART: Part = charts;
 
@@ -19,12 +19,12 @@ const MASS: f64 = 10.0;
 const TIMES: Times = Times { every: 1.0, count: 2 };
 const DIRECTIONS: [f64; 7] = [0.0, 7.5, 15.0, 22.5, 30.0, 37.5, 45.0];
 
-fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
+fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let title = "A block on an incline, downhill 0 to 45 degrees off the axes";
     let about = "Above: 30 degrees, mu 0.3, slides. Below: 20 degrees, mu 0.8, must not move. A dot at the bottom is zero.";
     let mut slide =
-        Chart::new("slip.slides", title, "relative error of the acceleration").about(about).scattered();
-    let mut stick = Chart::new("slip.sticks", title, "creep [m/s]").about(about).scattered();
+        ErrorChart::new("slip.slides", title, "relative error of the acceleration").about(about).scattered();
+    let mut stick = ErrorChart::new("slip.sticks", title, "creep [m/s]").about(about).scattered();
     for direction in DIRECTIONS {
         for step in [1e-3, 1e-4] {
             slide.add(ours(30.0, 0.3, direction, step));
@@ -47,7 +47,7 @@ fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
 fn ours(slope: f64, friction: f64, direction: f64, step: f64) -> Point {
     let mut block = Block::new(slope, friction, direction);
     let start = block.start();
-    let (motion, point) = Method::Euler(step).measure(&mut block, &start, TIMES);
+    let (motion, point) = SteppingMethod::Euler(step).measure(&mut block, &start, TIMES);
     let error = if slope == 30.0 { block.acceleration_error(&motion) } else { block.creep(&motion) };
     let (scene, model) = ("incline".to_string(), "contact point".to_string());
     let method = format!("contact point, {}", super::order::in_ms(step));
@@ -70,7 +70,7 @@ fn theirs(peers: &Peers, found: &Value, error: f64) -> Point {
 
 /// x = (position, velocity, displacement of the node).
 struct Block {
-    law: Law,
+    law: ContactLaw,
     gravity: [f64; 3],
     /// \[m/s^2\] Exact, downhill.
     acceleration: f64,
@@ -78,9 +78,9 @@ struct Block {
 
 impl Block {
     fn new(slope: f64, friction: f64, direction: f64) -> Self {
-        let (a, b, g) = (slope.to_radians(), direction.to_radians(), -multibody::GRAVITY.z);
+        let (a, b, g) = (slope.to_radians(), direction.to_radians(), multibody::GRAVITY_ACCELERATION);
         Self {
-            law: Law { stiffness: [2e4; 3], damping: [1e3; 3], friction, recovery: 200.0 },
+            law: ContactLaw { stiffness: [2e4; 3], damping: [1e3; 3], friction, recovery: 200.0 },
             gravity: [g * a.sin() * b.cos(), g * a.sin() * b.sin(), -g * a.cos()],
             acceleration: (g * (a.sin() - friction * a.cos())).max(0.0),
         }
@@ -92,7 +92,7 @@ impl Block {
         [0.0, 0.0, -depth, 0.0, 0.0, 0.0, 0.0, 0.0, depth]
     }
 
-    fn acceleration_error(&self, motion: &Motion) -> f64 {
+    fn acceleration_error(&self, motion: &SystemMotion) -> f64 {
         let speed = |x: &[f64]| x[3].hypot(x[4]);
         match &motion.seen[..] {
             [a, b] => ((speed(b) - speed(a)) / TIMES.every / self.acceleration - 1.0).abs(),
@@ -101,7 +101,7 @@ impl Block {
     }
 
     /// \[m/s\] Way of the node between the two times.
-    fn creep(&self, motion: &Motion) -> f64 {
+    fn creep(&self, motion: &SystemMotion) -> f64 {
         let node = |x: &[f64], k: usize| x[k] + x[6 + k];
         match &motion.seen[..] {
             [a, b] => (node(b, 0) - node(a, 0)).hypot(node(b, 1) - node(a, 1)) / TIMES.every,
@@ -135,7 +135,7 @@ mod tests {
             let run = |slope, friction| {
                 let mut block = Block::new(slope, friction, direction);
                 let start = block.start();
-                let motion = Method::Euler(1e-3).run(&mut block, &start, TIMES);
+                let motion = SteppingMethod::Euler(1e-3).run(&mut block, &start, TIMES);
                 (block, motion)
             };
             let (block, motion) = run(30.0, 0.3);

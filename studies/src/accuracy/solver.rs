@@ -4,12 +4,12 @@
 use std::error::Error;
 
 use contact::coupling::Coupling;
-use contact::hexahedron::{Elasticity, Volume};
+use contact::hexahedron::{LinearElasticity, Volume};
 use contact::solver::solve;
-use contact::{Layer, Material, Memory, Method, Report, Settings};
+use contact::{CouplingMethod, Layer, Material, Memory, Settings, SolverReport};
 use nalgebra::Vector3;
 
-use super::{Chart, Cost, Given, Part, Point, cost};
+use super::{AccuracyInput, Cost, ErrorChart, Part, Point, cost};
 
 pub(super) const PART: Part = charts;
 
@@ -17,7 +17,7 @@ pub(super) const PART: Part = charts;
 const TOGETHER: usize = 20;
 const TOLERANCES: [f64; 6] = [1e1, 1e-1, 1e-3, 1e-5, 1e-7, 1e-9];
 
-fn charts(_: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
+fn charts(_: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let mut charts = Vec::new();
     for poisson in [0.3, 0.45] {
         let layer = layer(poisson)?;
@@ -28,8 +28,8 @@ fn charts(_: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
     Ok(charts)
 }
 
-fn chart(layer: &Layer, poisson: f64, friction: f64) -> Chart {
-    let mut chart = Chart::new(
+fn chart(layer: &Layer, poisson: f64, friction: f64) -> ErrorChart {
+    let mut chart = ErrorChart::new(
         &format!("contact.nu{poisson}mu{friction}"),
         "Contact of one pad, 36 nodes that stick, slide and lift off; cold start",
         &format!("nu {poisson}, mu {friction}: largest error of a force / largest force"),
@@ -44,14 +44,14 @@ fn chart(layer: &Layer, poisson: f64, friction: f64) -> Chart {
         ..Settings::of_friction(friction)
     };
     let mut memory = Memory::new(layer.coupling());
-    rolled(layer.coupling(), &mut memory, &settings(Method::Velocity, 1.0, 1e-13));
+    rolled(layer.coupling(), &mut memory, &settings(CouplingMethod::Velocity, 1.0, 1e-13));
     let exact = memory.forces().to_vec();
     let largest = exact.iter().map(|f| f.norm()).fold(0.0, f64::max);
     for (name, method, gamma) in [
-        ("Jacobi, gamma 0.7", Method::Jacobi, 0.7),
-        ("Gauss-Seidel, gamma 1", Method::GaussSeidel, 1.0),
-        ("Gauss-Seidel, gamma 1.5", Method::GaussSeidel, 1.5),
-        ("velocity sweeps", Method::Velocity, 1.0),
+        ("Jacobi, gamma 0.7", CouplingMethod::Jacobi, 0.7),
+        ("Gauss-Seidel, gamma 1", CouplingMethod::GaussSeidel, 1.0),
+        ("Gauss-Seidel, gamma 1.5", CouplingMethod::GaussSeidel, 1.5),
+        ("velocity sweeps", CouplingMethod::Velocity, 1.0),
     ] {
         for tolerance in TOLERANCES {
             let settings = settings(method, gamma, tolerance);
@@ -80,13 +80,13 @@ fn chart(layer: &Layer, poisson: f64, friction: f64) -> Chart {
 }
 
 fn layer(poisson: f64) -> Result<Layer, Box<dyn Error>> {
-    let elasticity = Elasticity { modulus: 4.643e5, poisson };
+    let elasticity = LinearElasticity { modulus: 4.643e5, poisson };
     let (size, bricks) = ([0.06, 0.04, 0.012], [5, 5, 1]);
     Ok(Layer::new(&Material { size, bricks, elasticity, volume: Volume::Mean, damping_time: 0.008 })?)
 }
 
 /// The pad as it is when the foot rolls and turns: one edge lifts off, the middle slides, the other edge sticks.
-fn rolled(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> Report {
+fn rolled(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> SolverReport {
     memory.clear();
     memory.begin();
     for i in 0..coupling.nodes() {
@@ -100,7 +100,7 @@ fn rolled(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> Repo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use contact::point::State;
+    use contact::point::PointState;
 
     #[test]
     fn the_problem_has_nodes_of_every_kind_and_one_answer() {
@@ -111,9 +111,9 @@ mod tests {
             assert!(rolled(layer.coupling(), memory, &settings).converged);
             memory.forces().to_vec()
         };
-        let a = of(Method::GaussSeidel, &mut memory);
-        let b = of(Method::Velocity, &mut memory);
-        for kind in [State::Open, State::Stick, State::Slip] {
+        let a = of(CouplingMethod::GaussSeidel, &mut memory);
+        let b = of(CouplingMethod::Velocity, &mut memory);
+        for kind in [PointState::Open, PointState::Stick, PointState::Slip] {
             assert!(memory.states().contains(&kind), "no node is {kind:?}");
         }
         assert!(a.iter().zip(&b).all(|(a, b)| (a - b).norm() < 1e-6));

@@ -14,8 +14,8 @@ use drives::Sliding;
 
 use crate::search::{NoBorder, Width, middle};
 
-use super::system::{Method, Motion, System, Times, largest};
-use super::{Chart, Cost, Given, Part, Point};
+use super::system::{SteppingMethod, System, SystemMotion, Times, largest};
+use super::{AccuracyInput, Cost, ErrorChart, Part, Point};
 
 pub(super) const PART: Part = charts;
 
@@ -24,14 +24,14 @@ const A: f64 = 14.0;
 const TIMES: Times = Times { every: 0.01, count: 200 };
 const STEPS: [f64; 8] = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 2e-5];
 
-fn charts(_: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
+fn charts(_: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let about = "14 N m of load at 1 Hz against 10.4 N m of dry friction, 2 s. Reference: closed form between events.";
     let title = "A joint that sticks and slides";
     let measure = "largest error of the angle [rad]";
-    let mut calls = Chart::new("stiction.calls", title, measure).over(Cost::Calls).about(about);
-    let mut time = Chart::new("stiction.time", title, measure).about(about);
+    let mut calls = ErrorChart::new("stiction.calls", title, measure).over(Cost::Calls).about(about);
+    let mut time = ErrorChart::new("stiction.time", title, measure).about(about);
     let exact = exact();
-    let mut add = |method: Method, name: &str, joint: &mut Joint, solver: Option<String>| {
+    let mut add = |method: SteppingMethod, name: &str, joint: &mut StickingJoint, solver: Option<String>| {
         let (motion, mut point) = method.measure(joint, &[0.0, 0.0], TIMES);
         let error = largest(&motion, &exact, |a, b| (a[0] - b[0]).abs());
         point =
@@ -41,14 +41,19 @@ fn charts(_: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
         time.add(point);
     };
     for h in STEPS {
-        add(Method::Euler(h), "sign, Euler", &mut Joint { smooth: 0.0 }, None);
-        add(Method::Own("prox", h), "prox, Euler", &mut Joint { smooth: 0.0 }, None);
+        add(SteppingMethod::Euler(h), "sign, Euler", &mut StickingJoint { smooth: 0.0 }, None);
+        add(SteppingMethod::Own("prox", h), "prox, Euler", &mut StickingJoint { smooth: 0.0 }, None);
     }
     for smooth in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
-        add(Method::Bdf(1e-8), "tanh, BDF", &mut Joint { smooth }, Some(format!("{smooth:.0e} rad/s")));
+        add(
+            SteppingMethod::Bdf(1e-8),
+            "tanh, BDF",
+            &mut StickingJoint { smooth },
+            Some(format!("{smooth:.0e} rad/s")),
+        );
     }
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-5] {
-        add(Method::Bdf(tolerance), "sign, BDF", &mut Joint { smooth: 0.0 }, None);
+        add(SteppingMethod::Bdf(tolerance), "sign, BDF", &mut StickingJoint { smooth: 0.0 }, None);
     }
     calls.expect_order("prox, Euler", 1.0, 1e-5..=2e-3);
     calls.expect_order("sign, Euler", 1.0, 1e-5..=2e-3);
@@ -56,7 +61,7 @@ fn charts(_: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
 }
 
 /// x = (angle, speed).
-struct Joint {
+struct StickingJoint {
     /// \[rad/s\] Speed over which friction changes its sign; 0: at once.
     smooth: f64,
 }
@@ -65,7 +70,7 @@ fn load(t: f64) -> f64 {
     A * (TAU * t).sin()
 }
 
-impl System for Joint {
+impl System for StickingJoint {
     fn rate(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
         let sign = match x[1] {
             0.0 => 0.0,
@@ -83,7 +88,7 @@ impl System for Joint {
 }
 
 /// The motion at the times: symmetric, since each half period begins at rest and ends so.
-fn exact() -> Motion {
+fn exact() -> SystemMotion {
     let go = (T_0 / A).asin() / TAU;
     let speed = |t: f64| A / TAU * ((TAU * go).cos() - (TAU * t).cos()) - T_0 * (t - go);
     let slides = |t: f64| Ok::<_, NoBorder>(speed(t) > 0.0);
@@ -101,7 +106,7 @@ fn exact() -> Motion {
         let q = if halves % 2.0 == 0.0 { way(rest) } else { way(0.5) - way(rest) };
         vec![q, f64::NAN]
     });
-    Motion { seen: seen.collect(), ..Motion::default() }
+    SystemMotion { seen: seen.collect(), ..SystemMotion::default() }
 }
 
 #[cfg(test)]
@@ -123,7 +128,8 @@ mod tests {
     #[test]
     fn the_implicit_step_is_of_first_order_and_rests() {
         let error = |h| {
-            let motion = Method::Own("prox", h).run(&mut Joint { smooth: 0.0 }, &[0.0, 0.0], TIMES);
+            let motion =
+                SteppingMethod::Own("prox", h).run(&mut StickingJoint { smooth: 0.0 }, &[0.0, 0.0], TIMES);
             assert_eq!(motion.seen[59][1], 0.0);
             largest(&motion, &exact(), |a, b| (a[0] - b[0]).abs())
         };

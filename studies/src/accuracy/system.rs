@@ -1,8 +1,8 @@
 //! A small system, moved by any method and seen at equally spaced times.
 
-use config::scene::Integrator;
+use config::method::Integrator;
 use sim_backend::integrate::Stepper;
-use sim_backend::stiff::{GaveUp, Limits, Stiff};
+use sim_backend::stiff::{GaveUp, Stiff, StiffLimits};
 
 use super::{Point, cost};
 
@@ -17,7 +17,7 @@ pub trait System {
 
 /// How it is moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Method {
+pub enum SteppingMethod {
     /// Explicit Euler, by steps \[s\].
     Euler(f64),
     /// The system's own step, with its name.
@@ -39,7 +39,7 @@ pub struct Times {
 
 /// A motion.
 #[derive(Clone, Debug, Default)]
-pub struct Motion {
+pub struct SystemMotion {
     /// States at the times.
     pub seen: Vec<Vec<f64>>,
     /// Evaluations of the rates.
@@ -51,7 +51,7 @@ pub struct Motion {
 /// Evaluations after which an adaptive method gives up, between two times.
 const MOST_CALLS: u32 = 400_000;
 
-impl Method {
+impl SteppingMethod {
     /// Name of its curve.
     pub fn name(&self) -> String {
         match self {
@@ -63,8 +63,8 @@ impl Method {
     }
 
     /// Moves `system` from `x`.
-    pub fn run(&self, system: &mut dyn System, x: &[f64], times: Times) -> Motion {
-        let (mut x, mut motion) = (x.to_vec(), Motion::default());
+    pub fn run(&self, system: &mut dyn System, x: &[f64], times: Times) -> SystemMotion {
+        let (mut x, mut motion) = (x.to_vec(), SystemMotion::default());
         let (mut stepper, mut stiff) = (stepper(x.len()), Stiff::new(limits(self)));
         for k in 0..times.count {
             let t = k as f64 * times.every;
@@ -103,7 +103,7 @@ impl Method {
     }
 
     /// Moves it as often as the time takes to be measured; a point without scene and error yet.
-    pub fn measure(&self, system: &mut dyn System, x: &[f64], times: Times) -> (Motion, Point) {
+    pub fn measure(&self, system: &mut dyn System, x: &[f64], times: Times) -> (SystemMotion, Point) {
         let (motion, seconds) = cost::of(|| self.run(system, x, times));
         let duration = times.every * times.count as f64;
         let lost = motion.seen.last().is_none_or(|x| x.iter().any(|x| !x.is_finite()));
@@ -133,13 +133,13 @@ pub fn stepper(n: usize) -> Stepper {
     Stepper::new(Integrator::Euler, n)
 }
 
-fn limits(method: &Method) -> Limits {
-    let tolerance = if let Method::Bdf(tolerance) = method { *tolerance } else { 1e-6 };
-    Limits { most_calls: MOST_CALLS, ..Limits::of_tolerance(tolerance) }
+fn limits(method: &SteppingMethod) -> StiffLimits {
+    let tolerance = if let SteppingMethod::Bdf(tolerance) = method { *tolerance } else { 1e-6 };
+    StiffLimits { most_calls: MOST_CALLS, ..StiffLimits::of_tolerance(tolerance) }
 }
 
 /// Largest difference of two motions over all times, of the states that `of` takes.
-pub fn largest(a: &Motion, b: &Motion, of: impl Fn(&[f64], &[f64]) -> f64) -> f64 {
+pub fn largest(a: &SystemMotion, b: &SystemMotion, of: impl Fn(&[f64], &[f64]) -> f64) -> f64 {
     if a.seen.len() != b.seen.len() {
         return f64::NAN;
     }

@@ -4,17 +4,17 @@
 
 use std::error::Error;
 
-use contact::point::{self, Law};
+use contact::point::{self, ContactLaw};
 
 use crate::search::{NoBorder, Width, border};
 
-use super::system::{Method, Motion, System, Times, largest, stepper};
-use super::{Chart, Given, Part, Point};
+use super::system::{SteppingMethod, System, SystemMotion, Times, largest, stepper};
+use super::{AccuracyInput, ErrorChart, Part, Point};
 
 pub(super) const PART: Part = charts;
 
 const MASS: f64 = 60.0;
-const LAW: Law = Law { stiffness: [2e5; 3], damping: [2e3; 3], friction: 0.6, recovery: 0.0 };
+const LAW: ContactLaw = ContactLaw { stiffness: [2e5; 3], damping: [2e3; 3], friction: 0.6, recovery: 0.0 };
 /// \[m\]
 const FALL: f64 = 0.01;
 /// \[m\] Height from which a node counts as touching.
@@ -22,28 +22,28 @@ const TOUCH: f64 = 1e-6;
 const TIMES: Times = Times { every: 0.01, count: 20 };
 const STEPS: [f64; 10] = [5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6];
 
-fn charts(_: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
+fn charts(_: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let about =
         "60 kg fall 10 mm onto one contact point, K = 200 kN/m, B = 2 kN s/m, 0.2 s. Reference: closed form.";
     let mut chart =
-        Chart::new("touchdown", "Touchdown of a mass", "largest error of the height [m]").about(about);
+        ErrorChart::new("touchdown", "Touchdown of a mass", "largest error of the height [m]").about(about);
     let exact = exact();
-    let mut add = |method: Method| {
+    let mut add = |method: SteppingMethod| {
         let (motion, point) = method.measure(&mut Mass, &[FALL + TOUCH, 0.0, 0.0], TIMES);
         let error = largest(&motion, &exact, |a, b| (a[0] - b[0]).abs());
         chart.add(Point { scene: "mass".into(), model: "contact point".into(), error, ..point });
     };
     for h in STEPS {
-        add(Method::Euler(h));
+        add(SteppingMethod::Euler(h));
     }
     for h in STEPS {
-        add(Method::RungeKutta4(h));
+        add(SteppingMethod::RungeKutta4(h));
     }
     for h in STEPS {
-        add(Method::Own(LOCATED, h));
+        add(SteppingMethod::Own(LOCATED, h));
     }
     for tolerance in [1e-4, 1e-6, 1e-8, 1e-10] {
-        add(Method::Bdf(tolerance));
+        add(SteppingMethod::Bdf(tolerance));
     }
     chart.expect_order("Euler", 1.0, 1e-6..=2e-4);
     chart.expect_order("RK4", 1.0, 1e-6..=2e-4);
@@ -96,8 +96,8 @@ impl Mass {
     }
 }
 
-fn exact() -> Motion {
-    let g = -multibody::GRAVITY.z;
+fn exact() -> SystemMotion {
+    let g = multibody::GRAVITY_ACCELERATION;
     let landed = (2.0 * FALL / g).sqrt();
     let (k, decay) = (LAW.stiffness[2] / MASS, 0.5 * LAW.damping[2] / MASS);
     let (rest, o) = (-g / k, (k - decay * decay).sqrt());
@@ -108,7 +108,7 @@ fn exact() -> Motion {
         if s < 0.0 { FALL - 0.5 * g * t * t } else { rest + (-decay * s).exp() * swing }
     };
     let seen = (1..=TIMES.count).map(|k| vec![TOUCH + height(k as f64 * TIMES.every)]);
-    Motion { seen: seen.collect(), ..Motion::default() }
+    SystemMotion { seen: seen.collect(), ..SystemMotion::default() }
 }
 
 #[cfg(test)]
@@ -118,16 +118,16 @@ mod tests {
 
     #[test]
     fn the_order_falls_to_one_and_locating_the_event_brings_it_back() {
-        let of = |method: fn(f64) -> Method, steps: &[f64]| {
+        let of = |method: fn(f64) -> SteppingMethod, steps: &[f64]| {
             let error = |h: &f64| {
                 let motion = method(*h).run(&mut Mass, &[FALL + TOUCH, 0.0, 0.0], TIMES);
                 [*h, largest(&motion, &exact(), |a, b| (a[0] - b[0]).abs())]
             };
             slope(&steps.iter().map(error).collect::<Vec<_>>())
         };
-        let blind = of(Method::RungeKutta4, &[2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5]);
+        let blind = of(SteppingMethod::RungeKutta4, &[2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5]);
         assert!((0.7..1.5).contains(&blind), "{blind}");
-        let located = of(|h| Method::Own(LOCATED, h), &[2e-3, 1e-3, 5e-4, 2e-4]);
+        let located = of(|h| SteppingMethod::Own(LOCATED, h), &[2e-3, 1e-3, 5e-4, 2e-4]);
         assert!(located > 3.5, "{located}");
     }
 }

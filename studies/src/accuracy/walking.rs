@@ -12,13 +12,13 @@
 use std::error::Error;
 
 use config::Setup;
-use config::scene::Integrator;
-use sim_backend::drive::Drive;
+use config::method::Integrator;
+use sim_backend::drive::JointCubic;
 use sim_backend::plant::{Plant, orientation};
 use sim_backend::terrain;
 
-use super::methods::Method;
-use super::{Chart, Given, Point, cost};
+use super::methods::IntegrationMethod;
+use super::{AccuracyInput, ErrorChart, Point, cost};
 use crate::second::{POWERED, Second};
 
 /// \[s\] The gait is periodic by then.
@@ -50,7 +50,7 @@ const WALKS: [(&str, u8); 11] = [
 ///
 /// # Errors
 /// A scene cannot be loaded, or a robot falls.
-pub fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
+pub fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let mut charts = Vec::new();
     for (scene, depth) in WALKS {
         charts.extend(walk(given, scene, depth)?);
@@ -60,19 +60,19 @@ pub fn charts(given: &Given<'_>) -> Result<Vec<Chart>, Box<dyn Error>> {
 
 /// Sampled periods of a walk: how the joints are to move, where each begins and where it is to end.
 struct Samples {
-    drives: Vec<Vec<Drive>>,
+    drives: Vec<Vec<JointCubic>>,
     begins: Vec<Vec<f64>>,
-    ends: Vec<End>,
+    ends: Vec<PeriodEnd>,
 }
 
 /// Where a period ended.
 #[derive(Clone)]
-struct End {
+struct PeriodEnd {
     state: Vec<f64>,
     force: [f64; 2],
 }
 
-fn walk(given: &Given<'_>, scene: &str, depth: u8) -> Result<[Chart; 2], Box<dyn Error>> {
+fn walk(given: &AccuracyInput<'_>, scene: &str, depth: u8) -> Result<[ErrorChart; 2], Box<dyn Error>> {
     let mut setup = Setup::load(given.config, scene)?;
     setup.scene.depth = depth;
     if depth > 1 {
@@ -81,7 +81,7 @@ fn walk(given: &Given<'_>, scene: &str, depth: u8) -> Result<[Chart; 2], Box<dyn
     let second = Second::record(&setup, BEGIN, CYCLES)?;
     let pose = &setup.robot.poses[&setup.scene.start_pose];
     let mut plant = Plant::new(&setup.robot, terrain::environment(&setup.scene)?, depth, pose)?;
-    let methods = Method::all(depth);
+    let methods = IntegrationMethod::all(depth);
     let samples = [false, true].map(|exact_friction| {
         let wanted = methods.iter().any(|m| m.exact_friction() == exact_friction);
         wanted.then(|| Samples::new(&second, &mut plant, exact_friction, depth))
@@ -90,8 +90,8 @@ fn walk(given: &Given<'_>, scene: &str, depth: u8) -> Result<[Chart; 2], Box<dyn
     let about = about(&samples, &plant);
     let name = |what| format!("{scene}_type{depth}.{what}");
     let mut charts = [
-        Chart::new(&name("pose"), &title, "error of pose in a period [m, rad]").about(&about),
-        Chart::new(&name("force"), &title, "error of the normal force [N]"),
+        ErrorChart::new(&name("pose"), &title, "error of pose in a period [m, rad]").about(&about),
+        ErrorChart::new(&name("force"), &title, "error of the normal force [N]"),
     ];
     for method in methods {
         let Some(samples) = &samples[usize::from(method.exact_friction())] else { continue };
@@ -120,17 +120,20 @@ fn about(samples: &[Option<Samples>; 2], plant: &Plant) -> String {
 impl Samples {
     fn new(second: &Second, plant: &mut Plant, exact_friction: bool, depth: u8) -> Self {
         let wanted = if depth > 3 { FEW } else { SAMPLES };
-        let between = Method::stepping(Method::reference(exact_friction, depth, 1).integrator, BETWEEN);
-        let reference = Method::reference(exact_friction, depth, if depth > 3 { 4 } else { 10 });
+        let between = IntegrationMethod::stepping(
+            IntegrationMethod::reference(exact_friction, depth, 1).integrator,
+            BETWEEN,
+        );
+        let reference = IntegrationMethod::reference(exact_friction, depth, if depth > 3 { 4 } else { 10 });
         let mut x = second.state.clone();
         let mut steppers = [between, reference].map(|m| m.stepper(x.len()));
         let mut samples = Self { drives: Vec::new(), begins: Vec::new(), ends: Vec::new() };
         for cycle in 0..second.cycles() {
-            let drives: Vec<Drive> = second.drives(cycle).collect();
+            let drives: Vec<JointCubic> = second.drives(cycle).collect();
             if cycle % (second.cycles() / wanted) == 0 {
                 let mut end = x.clone();
                 second.advance(plant, &mut steppers[1], reference.steps, &drives, &mut end);
-                samples.ends.push(End::new(plant, second.cycle, &drives, end));
+                samples.ends.push(PeriodEnd::new(plant, second.cycle, &drives, end));
                 samples.begins.push(x.clone());
                 samples.drives.push(drives.clone());
             }
@@ -140,7 +143,7 @@ impl Samples {
     }
 
     /// What a method costs, and its errors of pose and force.
-    fn judge(&self, second: &Second, plant: &mut Plant, method: &Method) -> (Point, [f64; 2]) {
+    fn judge(&self, second: &Second, plant: &mut Plant, method: &IntegrationMethod) -> (Point, [f64; 2]) {
         let mut stepper = method.stepper(second.state.len());
         let mut states = self.begins.clone();
         let (gave_up, seconds) = cost::of(|| {
@@ -155,7 +158,7 @@ impl Samples {
         let n = states.len();
         let mut sums = [0.0; 2];
         for ((x, drives), reference) in states.into_iter().zip(&self.drives).zip(&self.ends) {
-            let end = End::new(plant, second.cycle, drives, x);
+            let end = PeriodEnd::new(plant, second.cycle, drives, x);
             for (sum, error) in sums.iter_mut().zip(errors(plant, &end, reference)) {
                 *sum += error / n as f64;
             }
@@ -169,15 +172,15 @@ impl Samples {
     }
 }
 
-impl End {
-    fn new(plant: &mut Plant, cycle: f64, drives: &[Drive], state: Vec<f64>) -> Self {
+impl PeriodEnd {
+    fn new(plant: &mut Plant, cycle: f64, drives: &[JointCubic], state: Vec<f64>) -> Self {
         let force = plant.snapshot(cycle, &state, drives, &POWERED).foot_wrench.map(|w| w.force[2]);
         Self { state, force }
     }
 }
 
 /// Greatest errors of pose and force; NaN if one is no number.
-fn errors(plant: &Plant, a: &End, b: &End) -> [f64; 2] {
+fn errors(plant: &Plant, a: &PeriodEnd, b: &PeriodEnd) -> [f64; 2] {
     let turned = orientation(&a.state).angle_to(&orientation(&b.state));
     let joints = 7..plant.layout().pose().end;
     let moved = (0..3).chain(joints).map(|i| (a.state[i] - b.state[i]).abs());

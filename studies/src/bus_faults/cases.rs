@@ -3,11 +3,11 @@
 use std::ops::RangeInclusive;
 
 use config::Setup;
-use config::bus_fault::{BusFault, FaultKind, Way};
+use config::bus_fault::{BusFault, FaultKind, FrameDirection};
 use messages::EventCode;
 
-use super::trial::Trial;
-use super::{End, Row};
+use super::trial::FaultTrial;
+use super::{FaultCaseRow, TrialEnd};
 
 /// Local controllers of a joint that carries the robot, of one it can do without, and of the force sensor's foot.
 const KNEE: &str = "shank_left";
@@ -25,12 +25,12 @@ const AT_REST: u64 = 150;
 pub(super) struct Case {
     pub(super) name: String,
     pub(super) faults: Vec<BusFault>,
-    pub(super) demand: Demand,
+    pub(super) demand: InstantDemand,
 }
 
 /// What is demanded at every instant.
 #[derive(Default)]
-pub(super) struct Demand {
+pub(super) struct InstantDemand {
     /// Noticed within so many cycles.
     noticed: Option<u64>,
     /// Stopped or switched off, for this reason, in these cycles; none: must not be.
@@ -43,7 +43,7 @@ pub(super) struct Demand {
     power_off: Option<u64>,
 }
 
-impl Demand {
+impl InstantDemand {
     /// The robot walks on; this is told.
     fn walks(told: &[EventCode]) -> Self {
         Self { told: told.to_vec(), ..Self::default() }
@@ -74,7 +74,7 @@ impl Demand {
     }
 
     /// What of it is not met.
-    pub(super) fn unmet(&self, row: &Row, trials: &[Trial]) -> Vec<String> {
+    pub(super) fn unmet(&self, row: &FaultCaseRow, trials: &[FaultTrial]) -> Vec<String> {
         let mut unmet = Vec::new();
         let mut demand = |met: bool, text: String| {
             if !met {
@@ -88,12 +88,14 @@ impl Demand {
             demand(trials.iter().all(|t| t.log.contains(code)), format!("{code:?} told"));
         }
         match &self.reacts {
-            None if self.may_fall => demand(row.end < End::Fell, "joints at rest before it falls".into()),
-            None => demand(row.end == End::Walks, "walks on".into()),
+            None if self.may_fall => {
+                demand(row.end < TrialEnd::Fell, "joints at rest before it falls".into());
+            }
+            None => demand(row.end == TrialEnd::Walks, "walks on".into()),
             Some((code, cycles)) => {
-                let in_time = |t: &Trial| t.reacted.is_some_and(|n| cycles.contains(&n));
+                let in_time = |t: &FaultTrial| t.reacted.is_some_and(|n| cycles.contains(&n));
                 demand(trials.iter().all(in_time), format!("{code:?} in cycles {cycles:?}"));
-                demand(row.end < End::Fell, "joints at rest before it falls".into());
+                demand(row.end < TrialEnd::Fell, "joints at rest before it falls".into());
                 demand(
                     row.at_rest_cycles.is_some_and(|n| n <= AT_REST),
                     format!("at rest in {AT_REST} cycles"),
@@ -118,11 +120,11 @@ fn on(node: &str, fault: BusFault) -> BusFault {
 }
 
 fn to_drives(fault: BusFault) -> BusFault {
-    BusFault { way: Some(Way::ToDrives), ..fault }
+    BusFault { way: Some(FrameDirection::ToDrives), ..fault }
 }
 
 fn from_drives(fault: BusFault) -> BusFault {
-    BusFault { way: Some(Way::FromDrives), ..fault }
+    BusFault { way: Some(FrameDirection::FromDrives), ..fault }
 }
 
 fn share(share: f64, fault: BusFault) -> BusFault {
@@ -140,49 +142,52 @@ pub(super) fn all(setup: &Setup) -> Vec<Case> {
     let for_ever = |kind: FaultKind| BusFault::new(kind, 0.0, FOR_EVER);
     let brief =
         |kind: FaultKind, cycles: u32| BusFault::new(kind, 0.0, f64::from(cycles) * setup.scene.cycle);
-    let case =
-        |name: &str, fault: BusFault, demand: Demand| Case { name: name.into(), faults: vec![fault], demand };
+    let case = |name: &str, fault: BusFault, demand: InstantDemand| Case {
+        name: name.into(),
+        faults: vec![fault],
+        demand,
+    };
     use EventCode::{
         BusActive, BusOff, BusPassive, BusSilent, BusWarning, DriveHeld, DriveTripped, FrameRefused,
         FramesLost, NodeBack, NodeHeld, NodeSilent,
     };
     use FaultKind::{Corrupted, Duplicated, Flipped, Late, Lost, Pulled, Reordered, Shorted, Silent};
     let lost = |rate: f64| share(rate, fault(Lost));
-    let refused = || Demand::walks(&[FrameRefused]);
+    let refused = || InstantDemand::walks(&[FrameRefused]);
     vec![
-        case("lost 0.1 % of all frames", lost(0.001), Demand::walks(&[FramesLost])),
-        case("lost 1 %", lost(0.01), Demand::walks(&[FramesLost])),
-        case("lost 10 %", lost(0.1), Demand::walks(&[FramesLost])),
+        case("lost 0.1 % of all frames", lost(0.001), InstantDemand::walks(&[FramesLost])),
+        case("lost 1 %", lost(0.01), InstantDemand::walks(&[FramesLost])),
+        case("lost 10 %", lost(0.1), InstantDemand::walks(&[FramesLost])),
         case(
             "lost for ever, from all drives",
             from_drives(for_ever(Lost)),
-            Demand::stops(BusSilent, silent..=silent),
+            InstantDemand::stops(BusSilent, silent..=silent),
         ),
         // The drives' fault is in the next answer, and believed when it is said twice.
         case(
             "lost for ever, to a knee: its drives stop by themselves",
             on(KNEE, to_drives(for_ever(Lost))),
-            Demand::stops(DriveTripped, silent + 1..=silent + 1).noticed_in(silent + 1),
+            InstantDemand::stops(DriveTripped, silent + 1..=silent + 1).noticed_in(silent + 1),
         ),
         case("late by 1 cycle, 10 %", share(0.1, cycles(1, fault(Late))), refused()),
         case(
             "late by 5 cycles, all of a knee, for 10 cycles",
             on(KNEE, cycles(5, brief(Late, 10))),
-            Demand::walks(&[FrameRefused, NodeHeld, NodeBack]),
+            InstantDemand::walks(&[FrameRefused, NodeHeld, NodeBack]),
         ),
         case(
             "late by 3 cycles, all, for ever",
             cycles(3, for_ever(Late)),
-            Demand::stops(BusSilent, silent..=silent).and_tells(&[FrameRefused]),
+            InstantDemand::stops(BusSilent, silent..=silent).and_tells(&[FrameRefused]),
         ),
         case("duplicated, all, in the same cycle", cycles(0, fault(Duplicated)), refused()),
         case("duplicated, all, 7 cycles later", cycles(7, fault(Duplicated)), refused()),
-        case("reordered, all", fault(Reordered), Demand::default()),
-        case("corrupted 1 %", share(0.01, fault(Corrupted)), Demand::walks(&[FramesLost])),
+        case("reordered, all", fault(Reordered), InstantDemand::default()),
+        case("corrupted 1 %", share(0.01, fault(Corrupted)), InstantDemand::walks(&[FramesLost])),
         case(
             "corrupted, all to a knee: lowlevel's controller leaves the bus",
             on(KNEE, to_drives(for_ever(Corrupted))),
-            Demand::stops(BusOff, 1..=17)
+            InstantDemand::stops(BusOff, 1..=17)
                 .noticed_in(6)
                 .and_power_off(17)
                 .and_tells(&[BusWarning, BusPassive]),
@@ -190,7 +195,7 @@ pub(super) fn all(setup: &Setup) -> Vec<Case> {
         case(
             "corrupted, all from a knee: the node's controller leaves the bus",
             on(KNEE, from_drives(for_ever(Corrupted))),
-            Demand::stops(NodeSilent, silent..=silent).and_tells(&[BusPassive]),
+            InstantDemand::stops(NodeSilent, silent..=silent).and_tells(&[BusPassive]),
         ),
         case(
             "one bit flipped unseen, 0.1 % of frames from the drives",
@@ -200,44 +205,48 @@ pub(super) fn all(setup: &Setup) -> Vec<Case> {
         case(
             "one bit flipped unseen, 1 % of frames from the drives",
             share(0.01, from_drives(fault(Flipped))),
-            Demand::bears(&[FrameRefused]),
+            InstantDemand::bears(&[FrameRefused]),
         ),
         case(
             "one bit flipped unseen, 0.1 % of frames to the drives",
             share(0.001, to_drives(fault(Flipped))),
-            Demand::walks(&[]),
+            InstantDemand::walks(&[]),
         ),
         case(
             "knee silent for 10 cycles",
             on(KNEE, brief(Silent, 10)),
-            Demand::walks(&[FramesLost, NodeHeld, NodeBack]),
+            InstantDemand::walks(&[FramesLost, NodeHeld, NodeBack]),
         ),
-        case("knee silent for ever", on(KNEE, for_ever(Silent)), Demand::stops(NodeSilent, silent..=silent)),
+        case(
+            "knee silent for ever",
+            on(KNEE, for_ever(Silent)),
+            InstantDemand::stops(NodeSilent, silent..=silent),
+        ),
         case(
             "knee silent for 30 cycles: its drives have stopped when it is back",
             on(KNEE, brief(Silent, 30)),
-            Demand::stops(NodeSilent, silent..=silent).and_tells(&[NodeBack, DriveTripped]),
+            InstantDemand::stops(NodeSilent, silent..=silent).and_tells(&[NodeBack, DriveTripped]),
         ),
-        case("arm silent for ever", on(ARM, for_ever(Silent)), Demand::walks(&[NodeHeld])),
+        case("arm silent for ever", on(ARM, for_ever(Silent)), InstantDemand::walks(&[NodeHeld])),
         case(
             "arm silent for 30 cycles",
             on(ARM, brief(Silent, 30)),
-            Demand::walks(&[NodeHeld, NodeBack, DriveHeld]),
+            InstantDemand::walks(&[NodeHeld, NodeBack, DriveHeld]),
         ),
         case(
             "cable of a knee pulled for 10 cycles",
             on(KNEE, brief(Pulled, 10)),
-            Demand::walks(&[BusPassive, NodeBack, BusActive]),
+            InstantDemand::walks(&[BusPassive, NodeBack, BusActive]),
         ),
         case(
             "cable of a knee pulled for ever",
             on(KNEE, for_ever(Pulled)),
-            Demand::stops(NodeSilent, silent..=silent).and_tells(&[BusPassive]),
+            InstantDemand::stops(NodeSilent, silent..=silent).and_tells(&[BusPassive]),
         ),
         case(
             "cable of a knee shorted",
             on(KNEE, for_ever(Shorted)),
-            Demand::stops(BusOff, 1..=1).and_power_off(1),
+            InstantDemand::stops(BusOff, 1..=1).and_power_off(1),
         ),
     ]
 }

@@ -22,7 +22,7 @@ use crate::sheet::{Column, plain};
 use crate::{Error, Given, Sheet, Study, push};
 use cases::Case;
 use chain::parallel;
-use trial::Trial;
+use trial::FaultTrial;
 
 /// The walk that is disturbed, unless another one is.
 pub const SCENE: &str = "walk_2kmh";
@@ -66,7 +66,7 @@ impl Study for BusFaults {
 /// How a robot ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum End {
+pub enum TrialEnd {
     /// It walks on.
     Walks,
     /// It was stopped and stands.
@@ -79,7 +79,7 @@ pub enum End {
 
 /// What was found about a case.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct FaultCaseRow {
     /// What happens to the bus.
     pub fault: String,
     /// \[cycle\] Until lowlevel tells something, at the latest.
@@ -93,7 +93,7 @@ pub struct Row {
     /// Names of what the log tells, at any instant.
     pub log: Vec<String>,
     /// The worst end.
-    pub end: End,
+    pub end: TrialEnd,
     /// \[1\] Instants at which the robot did not fall.
     pub upright: usize,
     /// What is demanded and not met; empty: all is.
@@ -113,20 +113,20 @@ pub struct Burst {
 
 /// What was found.
 #[derive(Clone, Debug, Serialize)]
-pub struct Found {
+pub struct FaultFindings {
     /// \[s\] Bus cycle.
     pub cycle_s: f64,
     /// \[1\] Instants of a stride at which each fault began.
     pub instants: usize,
     /// The cases.
-    pub rows: Vec<Row>,
+    pub rows: Vec<FaultCaseRow>,
     /// The bursts.
     pub bursts: Vec<Burst>,
 }
 
-impl Found {
+impl FaultFindings {
     /// Cases whose demands are not met.
-    pub fn failed(&self) -> impl Iterator<Item = &Row> {
+    pub fn failed(&self) -> impl Iterator<Item = &FaultCaseRow> {
         self.rows.iter().filter(|row| !row.unmet.is_empty())
     }
 
@@ -138,12 +138,12 @@ impl Found {
             "Faults of the bus while Lola walks 2 km/h, bus cycle {} ms, begun at {n} instants of a stride; the latest of all.",
             self.cycle_s * 1e3
         ));
-        let row = |row: &Row| {
+        let row = |row: &FaultCaseRow| {
             let end = match row.end {
-                End::Walks => "walks on",
-                End::Stands => "stopped, stands",
-                End::FellBraked => "falls with its joints braked",
-                End::Fell => "falls",
+                TrialEnd::Walks => "walks on",
+                TrialEnd::Stands => "stopped, stands",
+                TrialEnd::FellBraked => "falls with its joints braked",
+                TrialEnd::Fell => "falls",
             };
             let unmet =
                 if row.unmet.is_empty() { String::new() } else { format!(" **not met: {}**", row.unmet) };
@@ -168,50 +168,50 @@ impl Found {
 ///
 /// # Errors
 /// A configuration or robot is wrong, or the robot falls without a fault.
-pub fn run(config: &Path, scene: &str, instants: usize) -> Result<Found, Error> {
+pub fn run(config: &Path, scene: &str, instants: usize) -> Result<FaultFindings, Error> {
     let setup = Setup::load(config, scene)?;
     let starts = push::at_instants(&setup, instants)?;
     let cases = cases::all(&setup);
     let trials = parallel::map(cases.len() * instants, |k| {
         Some(trial::run(&starts[k % instants], &cases[k / instants].faults))
     });
-    let trials: Vec<Trial> = trials.into_iter().flatten().collect::<Result<_, _>>()?;
+    let trials: Vec<FaultTrial> = trials.into_iter().flatten().collect::<Result<_, _>>()?;
     let rows = cases.iter().zip(trials.chunks(instants)).map(|(case, trials)| row(case, trials)).collect();
     let lengths = cases::BURSTS;
     let bursts = parallel::map(lengths.len() * 2 * instants, |k| {
         let fault = cases::burst(lengths[k / (2 * instants)], k / instants % 2 == 1);
         Some(trial::run(&starts[k % instants], &[fault]))
     });
-    let bursts: Vec<Trial> = bursts.into_iter().flatten().collect::<Result<_, _>>()?;
+    let bursts: Vec<FaultTrial> = bursts.into_iter().flatten().collect::<Result<_, _>>()?;
     let bursts = lengths.iter().zip(bursts.chunks(2 * instants)).map(|(&cycles, trials)| {
-        let count = |ok: fn(&Trial) -> bool| {
+        let count = |ok: fn(&FaultTrial) -> bool| {
             [0, 1].map(|i| trials[i * instants..(i + 1) * instants].iter().filter(|t| ok(t)).count())
         };
         Burst {
             cycles,
-            walked_on: count(|t| t.end() == End::Walks),
-            upright: count(|t| t.end() <= End::Stands),
+            walked_on: count(|t| t.end() == TrialEnd::Walks),
+            upright: count(|t| t.end() <= TrialEnd::Stands),
         }
     });
-    Ok(Found { cycle_s: setup.scene.cycle, instants, rows, bursts: bursts.collect() })
+    Ok(FaultFindings { cycle_s: setup.scene.cycle, instants, rows, bursts: bursts.collect() })
 }
 
 /// The worst of all instants.
-fn row(case: &Case, trials: &[Trial]) -> Row {
+fn row(case: &Case, trials: &[FaultTrial]) -> FaultCaseRow {
     // Later than everything: it did not happen at one instant.
-    let latest = |of: fn(&Trial) -> Option<u64>| {
+    let latest = |of: fn(&FaultTrial) -> Option<u64>| {
         let all: Vec<Option<u64>> = trials.iter().map(of).collect();
         if all.iter().all(Option::is_some) { all.into_iter().max().flatten() } else { None }
     };
-    let mut row = Row {
+    let mut row = FaultCaseRow {
         fault: case.name.clone(),
         noticed_cycles: latest(|t| t.noticed),
         reacted_cycles: latest(|t| t.reacted),
         at_rest_cycles: latest(|t| t.at_rest),
         power_off_cycles: latest(|t| t.power_off),
         log: Vec::new(),
-        end: trials.iter().map(Trial::end).max().unwrap_or(End::Fell),
-        upright: trials.iter().filter(|t| t.end() <= End::Stands).count(),
+        end: trials.iter().map(FaultTrial::end).max().unwrap_or(TrialEnd::Fell),
+        upright: trials.iter().filter(|t| t.end() <= TrialEnd::Stands).count(),
         unmet: String::new(),
     };
     for name in trials.iter().flat_map(|t| &t.log).map(|code| format!("{code:?}")) {

@@ -3,7 +3,7 @@
 use config::bus_fault::BusFault;
 use messages::{EventCode, Process, SimState};
 
-use super::{End, is_reaction};
+use super::{TrialEnd, is_reaction};
 use chain::{Chain, Cycle};
 
 /// \[s\] How long the robot is watched.
@@ -16,7 +16,7 @@ const RESTED: u64 = 10;
 
 /// What happened, in cycles from the first one that the fault strikes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Trial {
+pub(super) struct FaultTrial {
     /// Lowlevel told something.
     pub(super) noticed: Option<u64>,
     /// A stop or power off began.
@@ -30,13 +30,13 @@ pub(super) struct Trial {
     pub(super) fell: Option<u64>,
 }
 
-impl Trial {
-    pub(super) fn end(&self) -> End {
+impl FaultTrial {
+    pub(super) fn end(&self) -> TrialEnd {
         match (self.fell, self.at_rest, self.reacted) {
-            (Some(_), Some(_), _) => End::FellBraked,
-            (Some(_), None, _) => End::Fell,
-            (None, _, Some(_)) => End::Stands,
-            (None, _, None) => End::Walks,
+            (Some(_), Some(_), _) => TrialEnd::FellBraked,
+            (Some(_), None, _) => TrialEnd::Fell,
+            (None, _, Some(_)) => TrialEnd::Stands,
+            (None, _, None) => TrialEnd::Walks,
         }
     }
 }
@@ -45,14 +45,14 @@ impl Trial {
 ///
 /// # Errors
 /// A fault names an unknown node.
-pub(super) fn run(start: &Chain, faults: &[BusFault]) -> Result<Trial, String> {
+pub(super) fn run(start: &Chain, faults: &[BusFault]) -> Result<FaultTrial, String> {
     let mut chain = start.clone();
     let dt = chain.cycle();
     let now = chain.tick() + 1;
     let mut faults = faults.to_vec();
     faults.iter_mut().for_each(|fault| fault.time += now as f64 * dt);
     chain.parts().0.inject(&faults)?;
-    let mut trial = Trial::default();
+    let mut trial = FaultTrial::default();
     let (mut before, mut moved, mut last) = (None, 0, 0);
     for cycle in 0..(WATCHED / dt) as u64 {
         let c = chain.step();
@@ -70,7 +70,7 @@ pub(super) fn run(start: &Chain, faults: &[BusFault]) -> Result<Trial, String> {
     Ok(trial)
 }
 
-impl Trial {
+impl FaultTrial {
     fn note(&mut self, cycle: u64, c: &Cycle) {
         for &(process, code, _) in &c.events {
             if process == Process::Lowlevel {

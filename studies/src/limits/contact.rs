@@ -8,18 +8,18 @@
 //! | gamma | scale of the r-factors (2.48), (2.49) | 1 |
 
 use ::contact::coupling::Coupling;
-use ::contact::hexahedron::{Elasticity, Volume};
-use ::contact::point::{self, Law, State};
+use ::contact::hexahedron::{LinearElasticity, Volume};
+use ::contact::point::{self, ContactLaw, PointState};
 use ::contact::solver::solve;
-use ::contact::{Layer, Material, Memory, Method, Report, Settings};
+use ::contact::{CouplingMethod, Layer, Material, Memory, Settings, SolverReport};
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::Rule::{AtLeast, AtMost, Within};
+use super::LimitRule::{AtLeast, AtMost, Within};
 use super::{Bench, Findings, Result, largest_stable, row};
 
 /// A pad of the thesis's size, 36 nodes free.
 fn layer(poisson: f64) -> Result<Layer> {
-    let elasticity = Elasticity { modulus: 6e5, poisson };
+    let elasticity = LinearElasticity { modulus: 6e5, poisson };
     let size = [0.06, 0.04, 0.012];
     Ok(Layer::new(&Material {
         size,
@@ -45,7 +45,7 @@ fn spectrum(layer: &Layer) -> (DVector<f64>, f64) {
 }
 
 /// A sole pressed on the ground with some shear and spin: evenly and hard, so that it sticks for enough friction.
-fn press(coupling: &Coupling, memory: &mut Memory, shear: f64, settings: &Settings) -> Report {
+fn press(coupling: &Coupling, memory: &mut Memory, shear: f64, settings: &Settings) -> SolverReport {
     memory.begin();
     for i in 0..coupling.nodes() {
         let x = i as f64;
@@ -55,7 +55,7 @@ fn press(coupling: &Coupling, memory: &mut Memory, shear: f64, settings: &Settin
     solve(coupling, memory, settings)
 }
 
-fn settings(method: Method, gamma: f64, tolerance: f64, friction: f64) -> Settings {
+fn settings(method: CouplingMethod, gamma: f64, tolerance: f64, friction: f64) -> Settings {
     Settings { method, gamma, tolerance, sweeps: 30_000, ..Settings::of_friction(friction) }
 }
 
@@ -66,7 +66,7 @@ pub(super) fn fixed_point(_: &Bench) -> Findings {
         let predicted = 2.0 / spectrum(&layer).0.max();
         let run = |gamma: f64| {
             let mut memory = Memory::new(layer.coupling());
-            let settings = Settings { sweeps: 4000, ..settings(Method::Jacobi, gamma, 1e-3, 10.0) };
+            let settings = Settings { sweeps: 4000, ..settings(CouplingMethod::Jacobi, gamma, 1e-3, 10.0) };
             let report = press(layer.coupling(), &mut memory, 0.0, &settings);
             (report, memory.forces().iter().all(|f| f.norm() < 1e6))
         };
@@ -89,7 +89,7 @@ pub(super) fn incompressible(_: &Bench) -> Findings {
         let gamma = 1.8 / values.max();
         let sweeps = |tolerance| {
             let mut memory = Memory::new(layer.coupling());
-            let settings = settings(Method::Jacobi, gamma, tolerance, 10.0);
+            let settings = settings(CouplingMethod::Jacobi, gamma, tolerance, 10.0);
             f64::from(press(layer.coupling(), &mut memory, 0.0, &settings).sweeps)
         };
         let left = values.iter().map(|l| (1.0 - gamma * l).abs()).fold(0.0, f64::max);
@@ -108,7 +108,7 @@ pub(super) fn friction(_: &Bench) -> Findings {
     let coupling = layer.coupling();
     let run = |mu: f64, gamma: f64, warm: bool| {
         let mut memory = Memory::new(coupling);
-        let settings = Settings { sweeps: 5000, ..settings(Method::GaussSeidel, gamma, 1e-6, mu) };
+        let settings = Settings { sweeps: 5000, ..settings(CouplingMethod::GaussSeidel, gamma, 1e-6, mu) };
         if warm {
             press(coupling, &mut memory, -0.2, &settings); // forces of another problem
         }
@@ -137,14 +137,18 @@ pub(super) fn friction(_: &Bench) -> Findings {
 
 /// F11: friction of a sliding node in every direction; a pyramid would be up to 41 % too large, or 29 % too small.
 pub(super) fn cone(_: &Bench) -> Findings {
-    let law =
-        Law { stiffness: [4e4, 4e4, 6e4], damping: [300.0, 300.0, 500.0], friction: 0.3, recovery: 0.0 };
+    let law = ContactLaw {
+        stiffness: [4e4, 4e4, 6e4],
+        damping: [300.0, 300.0, 500.0],
+        friction: 0.3,
+        recovery: 0.0,
+    };
     let error = |degrees: i32| {
         let (s, c) = f64::from(degrees).to_radians().sin_cos();
         let a = point::solve(&law, [0.0; 3], [0.5 * c, 0.5 * s, -0.1], -1e-9);
         let against = a.force[0] * s - a.force[1] * c;
         let wrong = (a.force[0].hypot(a.force[1]) / (law.friction * a.force[2]) - 1.0).abs();
-        if a.state == State::Slip { wrong.max(against.abs() / a.force[2]) } else { f64::INFINITY }
+        if a.state == PointState::Slip { wrong.max(against.abs() / a.force[2]) } else { f64::INFINITY }
     };
     let largest = (0..=45).map(error).fold(0.0, f64::max);
     let regime = "sliding node, 0 to 45 degrees: size and direction of friction, error";
@@ -153,10 +157,14 @@ pub(super) fn cone(_: &Bench) -> Findings {
 
 /// F11: a block that sticks on an incline of 20 degrees stays: way in 5 s after it came to rest.
 pub(super) fn creep(_: &Bench) -> Findings {
-    let law =
-        Law { stiffness: [4e4, 4e4, 6e4], damping: [300.0, 300.0, 500.0], friction: 0.8, recovery: 200.0 };
+    let law = ContactLaw {
+        stiffness: [4e4, 4e4, 6e4],
+        damping: [300.0, 300.0, 500.0],
+        friction: 0.8,
+        recovery: 200.0,
+    };
     let (mass, h, tilt) = (10.0, 1e-3, 20_f64.to_radians());
-    let pull = [-multibody::GRAVITY.z * tilt.sin(), 0.0, multibody::GRAVITY.z * tilt.cos()];
+    let pull = [multibody::GRAVITY_ACCELERATION * tilt.sin(), 0.0, multibody::GRAVITY.z * tilt.cos()];
     let (mut r, mut v, mut d, mut before) = ([0.0; 3], [0.0; 3], [0.0; 3], 0.0);
     for i in 0..10_000 {
         let a = point::solve(&law, d, v, r[2] + d[2]);
@@ -176,13 +184,13 @@ pub(super) fn creep(_: &Bench) -> Findings {
 /// A node left 1 mm inside of the ground by a too long step: time constant with which it is taken out, 1/200 s, which is
 /// also the longest step that does not throw it into the air (from where its spring presses it in again).
 pub(super) fn penetration(_: &Bench) -> Findings {
-    let law = Law { stiffness: [6e4; 3], damping: [500.0; 3], friction: 0.6, recovery: 200.0 };
+    let law = ContactLaw { stiffness: [6e4; 3], damping: [500.0; 3], friction: 0.6, recovery: 200.0 };
     // A foot held where it is. What is left of the penetration, and whether the node stayed on the ground.
     let run = |h: f64, steps: usize| {
         let (mut d, mut stays) = (0.0, true);
         for _ in 0..steps {
             let a = point::solve(&law, [0.0, 0.0, d], [0.0; 3], d - 1e-3);
-            stays &= a.state != State::Open;
+            stays &= a.state != PointState::Open;
             d += h * a.rate[2];
         }
         ((d - 1e-3).abs(), stays)

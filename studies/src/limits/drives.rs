@@ -7,13 +7,13 @@ use ::drives::{
 };
 use config::robot::Drive as Description;
 use nalgebra::Vector3;
-use sim_backend::drive::Drive;
+use sim_backend::drive::JointCubic;
 use sim_backend::plant::PlantInputs;
 use sim_backend::train::FaultCause;
 
 use crate::search::{Width, border, slope};
 
-use super::Rule::{AtMost, Within};
+use super::LimitRule::{AtMost, Within};
 use super::{Bench, Findings, Result, largest_stable, row};
 
 /// A gear whose share of the load is the speed \[rad/s\] times 1e-3.
@@ -162,7 +162,7 @@ pub(super) fn dead_point(bench: &Bench) -> Findings {
     };
     let Transmission::Knee(knee) = drive.transmission else { return Err("no knee linkage".into()) };
     let mut plant = bench.plant(2)?;
-    let still: Vec<Drive> = bench.pose().iter().map(|&q| Drive::resting(q)).collect();
+    let still: Vec<JointCubic> = bench.pose().iter().map(|&q| JointCubic::resting(q)).collect();
     let rest = plant.standing(bench.pose());
     let mut rate = vec![0.0; rest.len()];
     let mut finite = true;

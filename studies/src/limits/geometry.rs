@@ -3,7 +3,7 @@
 use environment::{Environment, Mesh, Object, Pose, Schedule, Surface, closest};
 use nalgebra::Vector3;
 
-use super::Rule::{AtMost, Within};
+use super::LimitRule::{AtMost, Within};
 use super::{Bench, Findings, row};
 
 /// Numbers from -1 to 1, the same in every run.

@@ -1,7 +1,7 @@
 //! The simulated robot with its supply on and all joints told to stay where they are.
 
 use codec::frames::{DriveCommand, encode_targets};
-use codec::layout::Layout;
+use codec::layout::FrameLayout;
 use config::scene::Scene;
 use drives::cia402::{ENABLE_OPERATION, SHUTDOWN};
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, SimState};
@@ -10,15 +10,15 @@ use sim_backend::SimBackend;
 use super::{Bench, Result};
 
 /// Robot, and what the bus tells it.
-pub(super) struct Held {
+pub(super) struct HeldRobot {
     pub(super) sim: SimBackend,
-    layout: Layout,
+    layout: FrameLayout,
     command: DriveCommand,
     frames: BusFrames,
     power: Power,
 }
 
-impl Held {
+impl HeldRobot {
     /// The robot of `scene` in its start pose.
     pub(super) fn new(bench: &Bench, scene: &Scene) -> Result<Self> {
         let robot = &bench.setup.robot;

@@ -13,22 +13,22 @@ use std::f64::consts::PI;
 
 use ::drives::elastic_joint::{ElasticJoint, Gains};
 use ::drives::{
-    Cascade, Elasticity, Feedback, Friction, HarmonicFriction, JointControl, Law, Motor, Resolution, Sampled,
-    Sampling, ScrewFriction, Transmission,
+    Cascade, ControlLaw, Elasticity, Feedback, Friction, HarmonicFriction, JointControl, Motor, Resolution,
+    Sampled, Sampling, ScrewFriction, Transmission,
 };
 use config::Robot;
+use config::method::Integrator;
 use config::robot::Drive as Description;
-use config::scene::Integrator;
 use environment::Environment;
-use sim_backend::drive::Drive;
+use sim_backend::drive::JointCubic;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs};
 
 use crate::search::{Width, middle, windows};
 
-use super::Rule::{AtLeast, AtMost, Within};
+use super::LimitRule::{AtLeast, AtMost, Within};
 use super::drives::gear;
-use super::{Bench, Findings, Result, Row, row};
+use super::{Bench, Findings, LimitRow, Result, row};
 
 /// A leg joint standing, and the same in the air (errata 2.14): HFUC-25-100 with a large motor.
 pub(super) const STANCE: ElasticJoint =
@@ -102,7 +102,7 @@ impl Loop {
         x[2] += 1e3;
         x[l.layer()].fill(0.0);
         (x[l.speed()][6], x[l.rotor_speed()][0]) = (link, rotor);
-        let (drives, inputs) = ([Drive::resting(0.0)], PlantInputs::POWERED);
+        let (drives, inputs) = ([JointCubic::resting(0.0)], PlantInputs::POWERED);
         let cycle = self.sampled.map_or(1e-3, |(period, _)| period);
         let longest = STEPS[usize::from(self.sampled.is_none())];
         let (cycles, steps) = ((self.seconds / cycle) as usize, (cycle / longest).ceil() as usize);
@@ -173,7 +173,7 @@ impl Loop {
             winding: None,
             encoder_counts: None,
             control: JointControl {
-                law: Law::Cascade(cascade),
+                law: ControlLaw::Cascade(cascade),
                 sampling: self.sampled.map_or(Sampling::Continuous, |(_, sampled)| Sampling::Cycle(sampled)),
                 resolution: Resolution::default(),
             },
@@ -212,7 +212,7 @@ impl Tried {
 /// border.
 fn stable_gains(
     bench: &Bench,
-    (row, regime, gain): (Row, &str, &str),
+    (row, regime, gain): (LimitRow, &str, &str),
     tried: Tried,
     family: impl Fn(f64) -> Loop + Sync,
 ) -> Findings {
@@ -241,7 +241,7 @@ fn stable_gains(
                     let numbers = [a, b].map(|x| x / tried.unit);
                     // What the steps of the simulation damp makes windows wider: a lower border may lie too low.
                     let rule = if border == 0 { AtMost } else { row.rule };
-                    findings.push(Row { rule, ..row }.of(format!("{regime}: {which} {gain}"), numbers));
+                    findings.push(LimitRow { rule, ..row }.of(format!("{regime}: {which} {gain}"), numbers));
                 }
                 ends => {
                     return Err(format!("{regime}: {which} {gain} {ends:?}: only one of them ends").into());

@@ -1,6 +1,6 @@
 //! Stable gains of an elastic joint over its sampling time, as a picture.
 
-use ::drives::elastic_joint::{ElasticJoint, Gains, Held};
+use ::drives::elastic_joint::{ElasticJoint, Gains, HeldJoint};
 use ::drives::{Feedback, Sampled};
 use drawing::color::{BLUE, VERMILION};
 use drawing::{Chart, Color, Figure, Pen};
@@ -76,7 +76,7 @@ impl Arrangement {
         Pen { color: self.color, width: 2.5, dashed: self.sampled.delay }
     }
 
-    fn stable(&self, joint: &ElasticJoint, held: &Held, kp: f64, kd: f64) -> bool {
+    fn stable(&self, joint: &ElasticJoint, held: &HeldJoint, kp: f64, kd: f64) -> bool {
         held.is_stable(self.feedback, Gains { position: kp * joint.stiffness, speed: kd }, self.sampled)
     }
 }
@@ -93,7 +93,7 @@ fn speed_gains() -> impl DoubleEndedIterator<Item = f64> {
 }
 
 /// K_p/K up to which all smaller ones are stable too, at the best K_d; NaN if there is none.
-fn largest_position(joint: &ElasticJoint, held: &Held, a: &Arrangement) -> f64 {
+fn largest_position(joint: &ElasticJoint, held: &HeldJoint, a: &Arrangement) -> f64 {
     let (least, largest) = POSITION_GAINS;
     let mut best = least;
     for kd in speed_gains() {
@@ -105,7 +105,7 @@ fn largest_position(joint: &ElasticJoint, held: &Held, a: &Arrangement) -> f64 {
 }
 
 /// Ends of the stable K_d; NaN if there is none.
-fn speeds(joint: &ElasticJoint, held: &Held, a: &Arrangement) -> [f64; 2] {
+fn speeds(joint: &ElasticJoint, held: &HeldJoint, a: &Arrangement) -> [f64; 2] {
     let stable = |kd: &f64| a.stable(joint, held, 0.1, *kd);
     let [least, largest] = [speed_gains().find(stable), speed_gains().rfind(stable)];
     [least, largest].map(|end| end.unwrap_or(f64::NAN))

@@ -33,7 +33,7 @@ mod touchdown;
 use std::path::{Path, PathBuf};
 
 use config::Setup;
-use config::scene::Integrator;
+use config::method::Integrator;
 use environment::Environment;
 use serde::Serialize;
 use serde_json::json;
@@ -58,7 +58,7 @@ pub struct Finding {
     /// What was found.
     pub measured: f64,
     /// How the two are compared.
-    pub rule: Rule,
+    pub rule: LimitRule,
     /// How the program tells it; empty where the method does not fail.
     pub reported: String,
     /// Whether it did tell.
@@ -68,7 +68,7 @@ pub struct Finding {
 /// How a measured number is compared with the predicted one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Rule {
+pub enum LimitRule {
     /// Relative deviation at most this.
     Within(f64),
     /// Not more than predicted.
@@ -134,13 +134,13 @@ const COLUMNS: &[Column] = &[
 
 /// The study's arguments.
 #[derive(clap::Args, Clone, Debug)]
-pub struct Limits {
+pub struct LimitsStudy {
     /// Directory of the picture of stable joint control.
     #[arg(long, value_name = "DIR", default_value = "runs/study/limits")]
     pub out: PathBuf,
 }
 
-impl Study for Limits {
+impl Study for LimitsStudy {
     fn run(&self, given: &Given<'_>) -> Result<Sheet> {
         let mut sheet = sheet(&run(given.config)?);
         sheet.draw(&self.out, "joint_control.png", &joint_chart::figure())?;
@@ -174,17 +174,17 @@ impl Bench {
 
 /// What is the same of several findings.
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct LimitRow {
     id: &'static str,
     unit: &'static str,
-    rule: Rule,
+    rule: LimitRule,
 }
 
-const fn row(id: &'static str, unit: &'static str, rule: Rule) -> Row {
-    Row { id, unit, rule }
+const fn row(id: &'static str, unit: &'static str, rule: LimitRule) -> LimitRow {
+    LimitRow { id, unit, rule }
 }
 
-impl Row {
+impl LimitRow {
     /// Method and regime, with what was predicted and what was measured.
     fn of(self, regime: impl Into<String>, [predicted, measured]: [f64; 2]) -> Finding {
         let Self { id, unit, rule } = self;
@@ -217,9 +217,9 @@ impl Finding {
     /// Whether the prediction is met and the failure is reported.
     pub fn ok(&self) -> bool {
         let met = match self.rule {
-            Rule::Within(most) => self.deviation().abs() <= most,
-            Rule::AtMost => self.measured <= self.predicted,
-            Rule::AtLeast => self.measured >= self.predicted,
+            LimitRule::Within(most) => self.deviation().abs() <= most,
+            LimitRule::AtMost => self.measured <= self.predicted,
+            LimitRule::AtLeast => self.measured >= self.predicted,
         };
         met && self.told
     }
@@ -239,9 +239,9 @@ fn stepper(n: usize) -> Stepper {
 pub fn sheet(findings: &[Finding]) -> Sheet {
     let row = |f: &Finding| {
         let (deviation, allowed) = match f.rule {
-            Rule::Within(most) => (format!("{:+.2} %", 100.0 * f.deviation()), percent(most)),
-            Rule::AtMost => (String::new(), "at most".into()),
-            Rule::AtLeast => (String::new(), "at least".into()),
+            LimitRule::Within(most) => (format!("{:+.2} %", 100.0 * f.deviation()), percent(most)),
+            LimitRule::AtMost => (String::new(), "at most".into()),
+            LimitRule::AtLeast => (String::new(), "at least".into()),
         };
         let mut row = json!(f);
         (row["deviation"], row["allowed"], row["ok"]) = (deviation.into(), allowed.into(), f.ok().into());

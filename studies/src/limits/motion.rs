@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::search::slope;
 
-use super::Rule::{AtLeast, AtMost, Within};
+use super::LimitRule::{AtLeast, AtMost, Within};
 use super::{Bench, Finding, Findings, Result, row, stepper};
 
 pub(super) fn all(bench: &Bench) -> Findings {

@@ -7,7 +7,7 @@ use planner::collocation::Collocation;
 
 use crate::search::slope;
 
-use super::Rule::Within;
+use super::LimitRule::Within;
 use super::{Bench, Findings, row, stepper};
 
 const HEIGHT: f64 = 0.9;
@@ -17,7 +17,7 @@ const KNOTS: usize = 97;
 
 /// w^2 \[1/s^2\]
 fn growth() -> f64 {
-    -multibody::GRAVITY.z / HEIGHT
+    multibody::GRAVITY_ACCELERATION / HEIGHT
 }
 
 fn load(t: f64) -> f64 {

@@ -1,14 +1,15 @@
 //! Speeds from counts (F26), and numbers that are none, from wherever they come.
 
-use config::scene::{Integrator, Scene};
+use config::method::Integrator;
+use config::scene::Scene;
 use config::sensors::PerJoint;
 use lowlevel::JointLoop;
 use messages::command::PushCommand;
 use messages::{EventCode, JointMode, JointTargets, MAX_JOINTS, Wrench};
 use sim_backend::sensors::{SensorSet, Truth};
 
-use super::Rule::{AtMost, Within};
-use super::held::Held;
+use super::LimitRule::{AtMost, Within};
+use super::held::HeldRobot;
 use super::{Bench, Finding, Findings, Result, row};
 
 pub(super) fn all(bench: &Bench) -> Findings {
@@ -26,7 +27,7 @@ pub(super) fn all(bench: &Bench) -> Findings {
 fn quantised_speed(bench: &Bench) -> Findings {
     let robot = &bench.setup.robot;
     let (cycle, bits) = (1e-3, 65_536.0);
-    let mut errors = config::Sensors::default();
+    let mut errors = config::SensorErrors::default();
     errors.encoder.counts = PerJoint { all: Some(bits), own: Vec::new() };
     errors.encoder.speed_by_difference = true;
     let hanging = [Wrench { force: [0.0; 3], moment: [0.0; 3] }; 2];
@@ -63,7 +64,7 @@ fn target(bench: &Bench) -> Finding {
     let mut answer = messages::BusFrames::default();
     let mut sensors = messages::Sensors { power: 1, ..Default::default() };
     sensors.drive_status.fill(u32::from(
-        drives::cia402::status_of(drives::cia402::State::OperationEnabled) | drives::cia402::REFERENCED,
+        drives::cia402::status_of(drives::cia402::DriveState::OperationEnabled) | drives::cia402::REFERENCED,
     ));
     for tick in 1..20 {
         sensors.header.tick = tick;
@@ -91,7 +92,7 @@ fn target(bench: &Bench) -> Finding {
 fn push(bench: &Bench, depth: u8, name: &str, force: f64) -> Result<Finding> {
     let integrator = if depth == 1 { Integrator::Euler } else { Integrator::SemiImplicit };
     let scene = Scene { depth, integrator, substeps: 4, ..bench.setup.scene.clone() };
-    let mut held = Held::new(bench, &scene)?;
+    let mut held = HeldRobot::new(bench, &scene)?;
     let mut seen = messages::Sensors::default();
     let (mut bad, mut events) = (0, Vec::new());
     for cycle in 0..100 {

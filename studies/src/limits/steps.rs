@@ -2,28 +2,34 @@
 //!
 //! Predicted from eigenvalues of the linearised equations, measured by bisection: does a change of 1e-7 grow?
 
-use ::contact::point::{self, Law};
+use ::contact::point::{self, ContactLaw};
 use chain::ending::is_doubt;
-use config::scene::{Integrator, Scene};
+use config::method::Integrator;
+use config::scene::Scene;
 use messages::EventCode;
 use nalgebra::Complex;
-use sim_backend::drive::Drive;
+use sim_backend::drive::JointCubic;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs};
 use sim_backend::step_limit::{eigenvalues, euler_limit, runge_kutta_limit};
 
-use super::Rule::{AtMost, Within};
-use super::held::Held;
+use super::LimitRule::{AtMost, Within};
+use super::held::HeldRobot;
 use super::{Bench, Findings, Result, largest_stable, row, stepper};
 
 /// Where the stability region of the classical Runge-Kutta method ends on the real axis.
 const REAL_AXIS: f64 = 2.785_293_563_405_282;
 
 /// The contact points of the robot; penetration is not taken back, so that the layer stands alone.
-fn law(bench: &Bench) -> Law {
+fn law(bench: &Bench) -> ContactLaw {
     let c = &bench.setup.robot.contact;
     let stiffness = [c.tangential_stiffness, c.tangential_stiffness, c.normal_stiffness];
-    Law { stiffness, damping: stiffness.map(|k| k * c.damping_time), friction: c.friction, recovery: 0.0 }
+    ContactLaw {
+        stiffness,
+        damping: stiffness.map(|k| k * c.damping_time),
+        friction: c.friction,
+        recovery: 0.0,
+    }
 }
 
 /// F1, F4: a node in the air relaxes with B/K.
@@ -54,12 +60,12 @@ pub(super) fn free_layer(bench: &Bench) -> Findings {
 
 /// F2: a mass, and a toe, on one layer: m s^2 + B s + K = 0.
 pub(super) fn mass_on_layer(_: &Bench) -> Findings {
-    let law = Law { stiffness: [2e5; 3], damping: [2e3; 3], friction: 0.6, recovery: 0.0 };
+    let law = ContactLaw { stiffness: [2e5; 3], damping: [2e3; 3], friction: 0.6, recovery: 0.0 };
     let finding = |(name, m): (&str, f64)| {
         let (k, b) = (law.stiffness[2], law.damping[2]);
         let root = Complex::new(b * b - 4.0 * m * k, 0.0).sqrt();
         let values = [1.0, -1.0].map(|sign| (root * sign - b) / (2.0 * m));
-        let at_rest = [0.0, 0.0, multibody::GRAVITY.z.abs() * m / k];
+        let at_rest = [0.0, 0.0, multibody::GRAVITY_ACCELERATION * m / k];
         let stable = |h: f64| {
             let (mut method, mut x) = (stepper(3), at_rest);
             (x[0], x[1]) = (-at_rest[2], 1e-7);
@@ -83,7 +89,7 @@ pub(super) fn mass_on_layer(_: &Bench) -> Findings {
 struct Standing {
     plant: Plant,
     state: Vec<f64>,
-    drives: Vec<Drive>,
+    drives: Vec<JointCubic>,
 }
 
 const POWERED: PlantInputs = PlantInputs::POWERED;
@@ -93,7 +99,7 @@ impl Standing {
     fn new(bench: &Bench, depth: u8, h: f64, seconds: f64) -> Result<Self> {
         let mut plant = bench.plant(depth)?;
         let state = plant.standing(bench.pose());
-        let drives = bench.pose().iter().map(|&q| Drive::resting(q)).collect();
+        let drives = bench.pose().iter().map(|&q| JointCubic::resting(q)).collect();
         let mut standing = Self { plant, state, drives };
         let mut state = standing.state.clone();
         standing.advance(Integrator::Euler, h, (seconds / h) as usize, &mut state);
@@ -147,10 +153,10 @@ fn told(bench: &Bench, depth: u8, integrator: Integrator, limit: f64) -> Result<
         force_step,
         ..bench.setup.scene.clone()
     };
-    let refused = Held::new(bench, &scene(1.05, false)).is_err();
+    let refused = HeldRobot::new(bench, &scene(1.05, false)).is_err();
     for times in [1.05, 1.2, 1.5, 2.0, 3.0, 5.0, 8.0] {
         let scene = scene(times, true);
-        let event = Held::new(bench, &scene)?.first_event((3.0 / scene.cycle) as usize);
+        let event = HeldRobot::new(bench, &scene)?.first_event((3.0 / scene.cycle) as usize);
         if let Some(code) = event.filter(|code| is_doubt(*code) || *code == EventCode::Fallen) {
             return Ok((format!("refused at load; if forced {code:?} from {times} times on"), refused));
         }

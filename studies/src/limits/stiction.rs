@@ -1,13 +1,14 @@
 //! Dry friction as a sign chatters, as a ramp it creeps; as a set it rests (F5, F6).
 
 use ::drives::{Friction, HarmonicFriction};
-use config::scene::{Integrator, Scene};
+use config::method::Integrator;
+use config::scene::Scene;
 use sim_backend::SimBackend;
-use sim_backend::stiff::{Limits, Stiff, Why};
+use sim_backend::stiff::{GiveUpReason, Stiff, StiffLimits};
 
 use crate::search::slope;
 
-use super::Rule::{AtMost, Within};
+use super::LimitRule::{AtMost, Within};
 use super::{Bench, Findings, row};
 
 /// A gear of dry friction only \[N m\], a rotor \[kg m^2\], a step \[s\].
@@ -91,7 +92,7 @@ pub(super) fn adaptive(_: &Bench) -> Findings {
         (dx[0], dx[1]) = (x[1], load - friction * (f64::from(x[1] > 0.0) - f64::from(x[1] < 0.0)));
     };
     let mut advance = |tolerance: f64, most_calls: u32| {
-        let limits = Limits { most_calls, ..Limits::of_tolerance(tolerance) };
+        let limits = StiffLimits { most_calls, ..StiffLimits::of_tolerance(tolerance) };
         Stiff::new(limits).advance(0.0, seconds, &mut [0.0, 0.0], &mut rate)
     };
     let mut points = Vec::new();
@@ -99,7 +100,7 @@ pub(super) fn adaptive(_: &Bench) -> Findings {
         points.push([tolerance, f64::from(advance(tolerance, 10_000_000)?.calls)]);
     }
     let ended = advance(1e-6, 20_000);
-    let told = matches!(ended, Err(gave_up) if gave_up.why == Why::Calls && gave_up.state == 1);
+    let told = matches!(ended, Err(gave_up) if gave_up.why == GiveUpReason::Calls && gave_up.state == 1);
     let regime = "BDF on sign(w) T_0 at rest: power of the tolerance in its evaluations";
     let numbers = [-1.0, slope(&points)];
     Ok(vec![row("F5", "", Within(0.15)).of(regime, numbers).says("GaveUp: calls, state that chatters", told)])

@@ -3,15 +3,15 @@
 //! In contact the mass swings as m z'' = -B z' - K z - m g with z from the height of touchdown, where the node begins to
 //! rest: a damped oscillation in closed form. The mass is slow enough never to lift off again.
 
-use ::contact::point::{self, Law};
+use ::contact::point::{self, ContactLaw};
 
 use crate::search::slope;
 
-use super::Rule::Within;
+use super::LimitRule::Within;
 use super::{Bench, Findings, row, stepper};
 
 const MASS: f64 = 60.0;
-const LAW: Law = Law { stiffness: [2e5; 3], damping: [2e3; 3], friction: 0.6, recovery: 0.0 };
+const LAW: ContactLaw = ContactLaw { stiffness: [2e5; 3], damping: [2e3; 3], friction: 0.6, recovery: 0.0 };
 /// \[m/s\] Speed at touchdown.
 const FALL: f64 = -0.1;
 /// \[s\] From touchdown to the comparison.

@@ -6,7 +6,7 @@
 use super::demand::{Demand, What};
 
 /// One walk.
-pub(super) struct Entry {
+pub(super) struct ScorecardEntry {
     /// Its name in the table, for `--only`.
     pub(super) name: &'static str,
     /// File in `scenes/`.
@@ -50,8 +50,8 @@ const fn turn(rad: f64) -> Demand {
     Demand::near(What::StepTurn, rad, "thesis 8.1: \"around corners\"")
 }
 
-const fn lola(name: &'static str, scene: &'static str, demands: &'static [Demand]) -> Entry {
-    Entry { name, scene, forward: None, depth: 3, cycles: LOLA, demands }
+const fn lola(name: &'static str, scene: &'static str, demands: &'static [Demand]) -> ScorecardEntry {
+    ScorecardEntry { name, scene, forward: None, depth: 3, cycles: LOLA, demands }
 }
 
 /// To the end of its way, which only who gets over what lies on it reaches.
@@ -59,7 +59,7 @@ const fn gets_to(m: f64, published: &'static str) -> Demand {
     Demand::least(What::Forward, m, published)
 }
 
-const fn johnnie(name: &'static str, depth: u8) -> Entry {
+const fn johnnie(name: &'static str, depth: u8) -> ScorecardEntry {
     const DEMANDS: &[Demand] = &[
         speed(2.5, "thesis 5.6: the gait optimized for it"),
         length(0.457, "thesis 5.6"),
@@ -67,15 +67,15 @@ const fn johnnie(name: &'static str, depth: u8) -> Entry {
         UPRIGHT,
         NO_PEAK,
     ];
-    Entry { name, scene: "johnnie_25kmh", forward: None, depth, cycles: JOHNNIE, demands: DEMANDS }
+    ScorecardEntry { name, scene: "johnnie_25kmh", forward: None, depth, cycles: JOHNNIE, demands: DEMANDS }
 }
 
-const fn fastest(name: &'static str, demands: &'static [Demand]) -> Entry {
-    Entry { name, scene: "walk_3kmh", forward: Some(3.34), depth: 3, cycles: LOLA, demands }
+const fn fastest(name: &'static str, demands: &'static [Demand]) -> ScorecardEntry {
+    ScorecardEntry { name, scene: "walk_3kmh", forward: Some(3.34), depth: 3, cycles: LOLA, demands }
 }
 
 /// Walks, in the order of the table.
-pub(super) const ENTRIES: &[Entry] = &[
+pub(super) const ENTRIES: &[ScorecardEntry] = &[
     lola("0 km/h", "walk_in_place", &[duration(1.2, "G: 1.2 s"), UPRIGHT, TRACKS, NO_PEAK]),
     lola(
         "1 km/h",

@@ -2,7 +2,7 @@
 
 use super::entries::FASTEST;
 use super::walk::{set_up, walk, walk_at};
-use super::{Order, Result, Row};
+use super::{Result, ScorecardOptions, ScorecardRow};
 
 /// \[km/h\] Rungs; the last one is Lola's design speed.
 const LADDER: [f64; 5] = [3.34, 3.6, 4.0, 4.5, 5.0];
@@ -12,7 +12,7 @@ const RESOLUTION: f64 = 0.05;
 const REACHED: f64 = 0.97;
 
 /// One rung: the speed that was held \[km/h\], or why it was not; processor time \[s\], model.
-fn rung(order: &Order<'_>, kmh: f64, cycle: f64) -> Result<(Result<f64>, f64, String)> {
+fn rung(order: &ScorecardOptions<'_>, kmh: f64, cycle: f64) -> Result<(Result<f64>, f64, String)> {
     let mut setup = set_up(order, FASTEST.0, 3, cycle)?;
     let most = 3.6 * setup.gait.step.by_speed.last().map_or(0.0, |row| row[0]);
     if kmh > most {
@@ -35,7 +35,7 @@ fn rung(order: &Order<'_>, kmh: f64, cycle: f64) -> Result<(Result<f64>, f64, St
 }
 
 /// The row.
-pub(super) fn rows(order: &Order<'_>, cycle: f64) -> Result<Vec<Row>> {
+pub(super) fn rows(order: &ScorecardOptions<'_>, cycle: f64) -> Result<Vec<ScorecardRow>> {
     let demand = &FASTEST.1;
     let (mut held, mut cpu_s, mut depth) = (None, 0.0, String::new());
     let (mut low, mut high, mut note) = (0.0, f64::INFINITY, String::from("the ladder ends here"));
@@ -60,7 +60,7 @@ pub(super) fn rows(order: &Order<'_>, cycle: f64) -> Result<Vec<Row>> {
             Err(why) => (high, note) = (kmh, why),
         }
     }
-    Ok(vec![Row {
+    Ok(vec![ScorecardRow {
         entry: "as fast as it goes".into(),
         scene: FASTEST.0.into(),
         what: demand.what.name().into(),

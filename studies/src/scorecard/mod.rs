@@ -28,7 +28,7 @@ pub type Progress<'a> = &'a (dyn Fn(usize, usize, &str) + Sync);
 
 /// What is to be walked.
 #[derive(Clone, Copy, Debug)]
-pub struct Order<'a> {
+pub struct ScorecardOptions<'a> {
     /// Configuration directory.
     pub config: &'a Path,
     /// Only entries whose name contains this.
@@ -51,7 +51,7 @@ pub struct Scorecard {
     /// \[s\] Processor time of everything.
     pub cpu_s: f64,
     /// One row per demand.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ScorecardRow>,
 }
 
 /// Whether a goal was met.
@@ -68,7 +68,7 @@ pub enum Goal {
 
 /// One demand.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct ScorecardRow {
     /// What is walked.
     pub entry: String,
     /// With which scene.
@@ -96,16 +96,16 @@ pub struct Row {
 }
 
 /// One piece of work: its name, and what finds its rows.
-struct Task<'a> {
+struct ScorecardTask<'a> {
     name: String,
-    work: Box<dyn Fn() -> Result<Vec<Row>> + Send + Sync + 'a>,
+    work: Box<dyn Fn() -> Result<Vec<ScorecardRow>> + Send + Sync + 'a>,
 }
 
 /// Walks everything.
 ///
 /// # Errors
 /// A configuration is wrong, or no entry has this name.
-pub fn run(order: &Order<'_>, progress: Progress<'_>) -> Result<Scorecard> {
+pub fn run(order: &ScorecardOptions<'_>, progress: Progress<'_>) -> Result<Scorecard> {
     let mut tasks = tasks(order);
     if let Some(only) = order.only {
         let known: Vec<String> = tasks.iter().map(|task| task.name.clone()).collect();
@@ -118,7 +118,9 @@ pub fn run(order: &Order<'_>, progress: Progress<'_>) -> Result<Scorecard> {
     let goals = rows.iter().filter(|row| row.goal != Goal::Measured).count();
     let met = rows.iter().filter(|row| row.goal == Goal::Met).count();
     // Rows of one walk share its processor time.
-    let alone = |a: &Row, b: &Row| a.entry == b.entry && a.cycle_s == b.cycle_s && a.cpu_s == b.cpu_s;
+    let alone = |a: &ScorecardRow, b: &ScorecardRow| {
+        a.entry == b.entry && a.cycle_s == b.cycle_s && a.cpu_s == b.cpu_s
+    };
     let cpu_s = rows.chunk_by(alone).map(|walk| walk[0].cpu_s).sum();
     Ok(Scorecard { seed: order.seed, met, goals, cpu_s, rows })
 }
@@ -127,16 +129,16 @@ pub fn run(order: &Order<'_>, progress: Progress<'_>) -> Result<Scorecard> {
 ///
 /// # Errors
 /// A configuration is wrong.
-pub fn pictured(order: &Order<'_>) -> Result<Vec<Setup>> {
+pub fn pictured(order: &ScorecardOptions<'_>) -> Result<Vec<Setup>> {
     let chosen = ENTRIES.iter().filter(|entry| PICTURED.contains(&entry.name));
     let asked = chosen.filter(|entry| order.only.is_none_or(|only| entry.name.contains(only)));
     asked.map(|entry| walk::set_up(order, entry.scene, entry.depth, entry.cycles[0])).collect()
 }
 
-fn tasks<'a>(order: &'a Order<'a>) -> Vec<Task<'a>> {
+fn tasks<'a>(order: &'a ScorecardOptions<'a>) -> Vec<ScorecardTask<'a>> {
     let mut tasks = Vec::new();
-    let mut add = |name: String, work: Box<dyn Fn() -> Result<Vec<Row>> + Send + Sync + 'a>| {
-        tasks.push(Task { name, work });
+    let mut add = |name: String, work: Box<dyn Fn() -> Result<Vec<ScorecardRow>> + Send + Sync + 'a>| {
+        tasks.push(ScorecardTask { name, work });
     };
     for entry in ENTRIES {
         for &cycle in &entry.cycles[..if order.quick { 1 } else { entry.cycles.len() }] {
@@ -153,7 +155,7 @@ fn tasks<'a>(order: &'a Order<'a>) -> Vec<Task<'a>> {
 
 /// All tasks on all cores; rows in their order. The last ones, which take longest, are begun first, so that no core
 /// waits for them at the end.
-fn perform(tasks: &[Task<'_>], progress: Progress<'_>) -> Result<Vec<Row>> {
+fn perform(tasks: &[ScorecardTask<'_>], progress: Progress<'_>) -> Result<Vec<ScorecardRow>> {
     let done = AtomicUsize::new(0);
     let mut found = parallel::map(tasks.len(), |k| {
         let task = &tasks[tasks.len() - 1 - k];
@@ -177,11 +179,13 @@ impl Scorecard {
     /// A heading and a table per walk.
     pub fn sheet(&self) -> Sheet {
         let mut sheet = Sheet::default();
-        let walk = |a: &Row, b: &Row| a.entry == b.entry && a.cycle_s == b.cycle_s && a.depth == b.depth;
+        let walk = |a: &ScorecardRow, b: &ScorecardRow| {
+            a.entry == b.entry && a.cycle_s == b.cycle_s && a.depth == b.depth
+        };
         for rows in self.rows.chunk_by(walk) {
-            let Row { entry, scene, depth, cycle_s, cpu_s, .. } = &rows[0];
+            let ScorecardRow { entry, scene, depth, cycle_s, cpu_s, .. } = &rows[0];
             sheet.line(format!("{entry} ({scene}): {depth}, cycle {} ms, {cpu_s:.1} s CPU", 1e3 * cycle_s));
-            let shown = |row: &Row| {
+            let shown = |row: &ScorecardRow| {
                 let ours = row.ours.map_or("-".into(), |x| format!("{} {}", figure(x), row.unit));
                 let goal = match row.goal {
                     Goal::Met => "met",

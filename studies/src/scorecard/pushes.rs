@@ -4,7 +4,7 @@ use realtime::clock::thread_time;
 
 use super::entries::{PUSHED, PUSHES};
 use super::walk::set_up;
-use super::{Goal, Order, Result, Row};
+use super::{Goal, Result, ScorecardOptions, ScorecardRow};
 use crate::push;
 
 /// Instants spread evenly over a step, from the beginning of the right foot's single support on; all of them, or with
@@ -12,7 +12,7 @@ use crate::push;
 const INSTANTS: [usize; 2] = [5, 2];
 
 /// Rows of one direction.
-pub(super) fn rows(order: &Order<'_>, direction: usize, cycle: f64) -> Result<Vec<Row>> {
+pub(super) fn rows(order: &ScorecardOptions<'_>, direction: usize, cycle: f64) -> Result<Vec<ScorecardRow>> {
     let (name, axis, published) = PUSHES[direction];
     let begun = thread_time();
     let mut setup = set_up(order, PUSHED, 3, cycle)?;
@@ -26,7 +26,7 @@ pub(super) fn rows(order: &Order<'_>, direction: usize, cycle: f64) -> Result<Ve
         .collect::<Result<_>>()?;
     let least = survived.iter().copied().fold(f64::INFINITY, f64::min);
     let each: Vec<String> = survived.iter().map(|x| format!("{x:.3}")).collect();
-    Ok(vec![Row {
+    Ok(vec![ScorecardRow {
         entry: "pushes of 0.1 s at 1 km/h".into(),
         scene: PUSHED.into(),
         what: format!("{name}, least of the instants"),

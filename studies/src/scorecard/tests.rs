@@ -1,7 +1,7 @@
 use super::*;
 
-fn order(root: &Path) -> Order<'_> {
-    Order { config: root, only: None, quick: true, seed: 1 }
+fn order(root: &Path) -> ScorecardOptions<'_> {
+    ScorecardOptions { config: root, only: None, quick: true, seed: 1 }
 }
 
 /// Every entry's scene is there, and takes the model and cycles of the entry.
@@ -22,7 +22,7 @@ fn every_entry_can_be_set_up() {
 #[test]
 fn a_walk_is_a_row_for_each_demand_and_the_same_one_twice() {
     let root = config::root(None);
-    let order = Order { only: Some("turning on the spot, 1 ms"), ..order(&root) };
+    let order = ScorecardOptions { only: Some("turning on the spot, 1 ms"), ..order(&root) };
     let (tell, told) = std::sync::mpsc::channel();
     let report = run(&order, &|done, of, name| tell.send((done, of, name.to_string())).unwrap()).unwrap();
     assert_eq!(told.recv().unwrap(), (1, 1, "turning on the spot, 1 ms".to_string()));
@@ -40,7 +40,7 @@ fn a_walk_is_a_row_for_each_demand_and_the_same_one_twice() {
 fn a_fall_is_shown() {
     let root = config::root(None);
     const DEMANDS: &[demand::Demand] = &[demand::Demand::near(demand::What::Speed, 2.0, "")];
-    let entry = entries::Entry {
+    let entry = entries::ScorecardEntry {
         name: "too slow a controller",
         scene: "walk_2kmh",
         forward: None,
@@ -56,6 +56,6 @@ fn a_fall_is_shown() {
 #[test]
 fn a_name_that_no_entry_has_is_refused() {
     let root = config::root(None);
-    let error = run(&Order { only: Some("moonwalk"), ..order(&root) }, &|_, _, _| ()).unwrap_err();
+    let error = run(&ScorecardOptions { only: Some("moonwalk"), ..order(&root) }, &|_, _, _| ()).unwrap_err();
     assert!(error.to_string().contains("moonwalk") && error.to_string().contains("turning on the spot"));
 }

@@ -1,13 +1,13 @@
 //! One walk of the scorecard: set up, walked to its end or its fall, judged.
 
 use config::Setup;
-use config::scene::Integrator;
-use config::tolerance::Method;
+use config::method::Integrator;
+use config::method::Method;
 use messages::{Command, EventCode, Process};
 use realtime::clock::thread_time;
 
-use super::entries::Entry;
-use super::{Order, Result, Row};
+use super::entries::ScorecardEntry;
+use super::{Result, ScorecardOptions, ScorecardRow};
 use chain::Chain;
 use chain::figures::{Figures, Gatherer};
 
@@ -30,7 +30,7 @@ impl Walked {
 }
 
 /// The scene of an entry with the entry's model and this bus cycle \[s\].
-pub(super) fn set_up(order: &Order<'_>, scene: &str, depth: u8, cycle: f64) -> Result<Setup> {
+pub(super) fn set_up(order: &ScorecardOptions<'_>, scene: &str, depth: u8, cycle: f64) -> Result<Setup> {
     let mut setup = Setup::load(order.config, scene).map_err(|e| e.to_string())?;
     let integrator = if depth == 1 { Integrator::Euler } else { Integrator::SemiImplicit };
     let step = STEPS[usize::from(depth > 1)];
@@ -82,7 +82,11 @@ fn end(who: Process, code: EventCode, time: f64) -> Option<String> {
 }
 
 /// All rows of an entry with one bus cycle.
-pub(super) fn rows(order: &Order<'_>, entry: &Entry, cycle: f64) -> Result<Vec<Row>> {
+pub(super) fn rows(
+    order: &ScorecardOptions<'_>,
+    entry: &ScorecardEntry,
+    cycle: f64,
+) -> Result<Vec<ScorecardRow>> {
     let mut setup = set_up(order, entry.scene, entry.depth, cycle)?;
     if let Some(kmh) = entry.forward {
         walk_at(&mut setup, kmh);
@@ -91,7 +95,7 @@ pub(super) fn rows(order: &Order<'_>, entry: &Entry, cycle: f64) -> Result<Vec<R
     let f = &walked.figures;
     let row = |demand: &super::demand::Demand| {
         let ours = walked.well().then(|| demand.what.of(f));
-        Row {
+        ScorecardRow {
             entry: entry.name.into(),
             scene: entry.scene.into(),
             what: demand.what.name().into(),

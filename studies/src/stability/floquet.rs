@@ -90,7 +90,7 @@ const LISTS: &[Column] = &[plain("/0", ""), scientific("/1", "", 2)];
 
 /// The gait of one scene.
 #[derive(Clone, Debug, Serialize)]
-struct Row {
+struct FloquetRow {
     /// Name of the scene.
     scene: String,
     /// \[s\] A stride.
@@ -159,7 +159,7 @@ impl Study for Floquet {
     }
 }
 
-fn of_scene(mut setup: Setup, step: f64) -> Result<Row, Error> {
+fn of_scene(mut setup: Setup, step: f64) -> Result<FloquetRow, Error> {
     walk_on(&mut setup);
     let (begin, end) = stride(&setup, SETTLED)?;
     let mut chain = Chain::new(&setup)?;
@@ -168,7 +168,7 @@ fn of_scene(mut setup: Setup, step: f64) -> Result<Row, Error> {
     }
     (0..begin).for_each(|_| _ = chain.step());
     let period = end - begin;
-    let section = Section::of(&mut chain, step);
+    let section = PoincareSection::of(&mut chain, step);
     let start = &chain;
     let map = |x: &[f64]| {
         let mut chain = start.clone();
@@ -183,9 +183,9 @@ fn of_scene(mut setup: Setup, step: f64) -> Result<Row, Error> {
         at.map(|(_, (a, b))| (a - b).powi(2)).sum::<f64>().sqrt()
     };
     let falls = "the robot falls after the small disturbance of the check";
-    let pushed = section.apart(Section::pushed(start), start, period).ok_or(falls)?;
+    let pushed = section.apart(PoincareSection::pushed(start), start, period).ok_or(falls)?;
     let shaken = section.apart(section.shaken(start), start, period).ok_or(falls)?;
-    Ok(Row {
+    Ok(FloquetRow {
         scene: setup.scene.name.clone(),
         period_s: period as f64 * setup.scene.cycle,
         states: section.steps.len(),
@@ -217,14 +217,14 @@ fn after(chain: &mut Chain, cycles: u64) -> bool {
 }
 
 /// What is disturbed and looked at.
-struct Section {
+struct PoincareSection {
     /// Group of every state.
     groups: Vec<usize>,
     /// Its step.
     steps: Vec<f64>,
 }
 
-impl Section {
+impl PoincareSection {
     fn of(chain: &mut Chain, step: f64) -> Self {
         let (sim, controller) = chain.parts();
         let memory = controller.memory().map(|m| m.len());

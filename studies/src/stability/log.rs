@@ -22,7 +22,7 @@ const COLUMNS: &[Column] = &[
 
 /// What a log says.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Contact {
+pub(super) struct ContactStability {
     /// \[1\] Cycles in which something carries the robot, all others being left out.
     pub(super) cycles: usize,
     /// Distances to what must not be crossed.
@@ -110,13 +110,13 @@ pub fn robot_of(log: &Path) -> Result<String, String> {
 }
 
 /// What can be said about these cycles.
-pub(super) fn judge(instants: &[Instant]) -> Contact {
+pub(super) fn judge(instants: &[Instant]) -> ContactStability {
     let most = |value: &dyn Fn(&Instant) -> f64| {
         instants.iter().map(value).filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()))
     };
     let nearest = instants.iter().filter(|i| i.cone.is_finite()).min_by(|a, b| a.cone.total_cmp(&b.cone));
     let square: f64 = instants.iter().map(|i| i.imbalance * i.imbalance).sum();
-    Contact {
+    ContactStability {
         cycles: instants.len(),
         margins: MARGINS.iter().map(|m| margin(*m, instants)).collect(),
         momentum_rate_max_n_m: std::array::from_fn(|k| most(&|i| i.momentum_rate[k])),

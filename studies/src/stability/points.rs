@@ -85,7 +85,7 @@ pub(crate) fn zero_rate(ground: &Load, com: &Vector3<f64>, other: &Vector3<f64>,
 /// p* (3.18) of the inverted pendulum of height c_z - z; none if the centre of gravity is not above the plane.
 pub fn capture(com: &Vector3<f64>, velocity: &Vector3<f64>, z: f64) -> Option<Point> {
     let height = com.z - z;
-    let time = (height / -multibody::GRAVITY.z).sqrt();
+    let time = (height / multibody::GRAVITY_ACCELERATION).sqrt();
     (height > 0.0).then(|| [com.x + velocity.x * time, com.y + velocity.y * time])
 }
 
@@ -110,7 +110,7 @@ pub fn margin(polygon: &[Point], p: Point) -> Option<f64> {
 mod tests {
     use super::*;
 
-    const G: f64 = 9.81;
+    const G: f64 = multibody::GRAVITY_ACCELERATION;
     const SQUARE: [Point; 4] = [[-0.1, -0.05], [0.2, -0.05], [0.2, 0.05], [-0.1, 0.05]];
 
     fn push(force: [f64; 3], at: [f64; 3]) -> Load {

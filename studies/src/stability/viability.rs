@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use config::Setup;
 use config::sensors::PerJoint;
-use config::terrain::{Shape, TerrainObject, TerrainPose};
+use config::terrain::{ObjectShape, TerrainObject, TerrainPose};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -105,7 +105,7 @@ pub(super) struct Survived {
 type Apply = dyn Fn(&mut Setup, f64) + Sync;
 
 /// An error that a scene can have.
-struct Kind {
+struct ErrorSource {
     name: String,
     unit: &'static str,
     /// Tried at most, in the unit; zero on a side that does not exist.
@@ -117,7 +117,7 @@ struct Kind {
     apply: Box<Apply>,
 }
 
-impl Kind {
+impl ErrorSource {
     fn new(
         name: impl Into<String>,
         unit: &'static str,
@@ -191,36 +191,42 @@ impl Survived {
 }
 
 /// All errors that make sense for a scene in which the robot gets `way` \[m\] far.
-fn kinds(setup: &Setup, way: f64) -> Vec<Kind> {
+fn kinds(setup: &Setup, way: f64) -> Vec<ErrorSource> {
     let mut all = Vec::new();
     for (axis, name) in ["roll", "pitch"].into_iter().enumerate() {
-        all.push(Kind::new(format!("IMU bias, {name}"), "deg", [-20.0, 20.0], 0.1, move |s, x| {
+        all.push(ErrorSource::new(format!("IMU bias, {name}"), "deg", [-20.0, 20.0], 0.1, move |s, x| {
             s.scene.sensors.imu.bias[axis] = x.to_radians();
         }));
     }
     for joint in JOINTS.into_iter().filter(|joint| setup.robot.joint(joint).is_some()) {
         let name = format!("calibration of {}", joint.replace('_', " "));
-        all.push(Kind::new(name, "deg", [-20.0, 20.0], 0.1, move |s, x| {
+        all.push(ErrorSource::new(name, "deg", [-20.0, 20.0], 0.1, move |s, x| {
             let own = vec![(joint.to_string(), x.to_radians())];
-            s.scene.unknown.joint_offset = PerJoint { all: None, own };
+            s.scene.plant_mismatch.joint_offset = PerJoint { all: None, own };
         }));
     }
     for (axis, name) in ["roll", "pitch"].into_iter().enumerate() {
-        all.push(Kind::new(format!("tilt of the ground, {name}"), "deg", [-15.0, 15.0], 0.1, move |s, x| {
-            s.scene.unknown.ground_tilt[axis] = x.to_radians();
-        }));
+        all.push(ErrorSource::new(
+            format!("tilt of the ground, {name}"),
+            "deg",
+            [-15.0, 15.0],
+            0.1,
+            move |s, x| {
+                s.scene.plant_mismatch.ground_tilt[axis] = x.to_radians();
+            },
+        ));
     }
-    let stiffness = Kind::new("stiffness of the soles, factor", "1", [-8.0, 6.0], 0.1, |s, x| {
-        s.scene.unknown.contact_stiffness = x.exp2();
+    let stiffness = ErrorSource::new("stiffness of the soles, factor", "1", [-8.0, 6.0], 0.1, |s, x| {
+        s.scene.plant_mismatch.contact_stiffness = x.exp2();
     });
-    all.push(Kind { factor: true, ..stiffness });
-    all.push(Kind::new("delay of all sensors", "ms", [0.0, 100.0], 1.0, |s, x| {
+    all.push(ErrorSource { factor: true, ..stiffness });
+    all.push(ErrorSource::new("delay of all sensors", "ms", [0.0, 100.0], 1.0, |s, x| {
         let (delay, sensors) = (x.round() * 1e-3, &mut s.scene.sensors);
         (sensors.encoder.delay, sensors.motor_encoder.delay) = (delay, delay);
         (sensors.force_torque.delay, sensors.imu.delay) = (delay, delay);
     }));
     if way > BOARD.0 + 0.5 * BOARD.1[0] {
-        all.push(Kind::new("height of a board in the way", "mm", [0.0, 100.0], 0.5, |s, x| {
+        all.push(ErrorSource::new("height of a board in the way", "mm", [0.0, 100.0], 0.5, |s, x| {
             s.scene.objects.push(board(x * 1e-3));
         }));
     }
@@ -231,7 +237,7 @@ fn board(height: f64) -> TerrainObject {
     let (x, [length, width]) = BOARD;
     TerrainObject {
         name: "board".into(),
-        shape: Shape::Box([length, width, height]),
+        shape: ObjectShape::Box([length, width, height]),
         pose: TerrainPose { position: [x, 0.0, 0.5 * height], rotation: [0.0; 3] },
         friction: None,
         appears: 0.0,
@@ -242,7 +248,7 @@ fn board(height: f64) -> TerrainObject {
 }
 
 /// The border on one side: value, whether it is beyond what was tried, lesser values that are not survived.
-fn side(setup: &Setup, kind: &Kind, side: usize, fine: f64) -> Result<(f64, bool, Vec<f64>), String> {
+fn side(setup: &Setup, kind: &ErrorSource, side: usize, fine: f64) -> Result<(f64, bool, Vec<f64>), String> {
     let most = kind.tried[side];
     if most == 0.0 {
         return Ok((0.0, false, Vec::new()));
@@ -266,7 +272,7 @@ fn holes(found: f64, sign: f64, survives: impl Fn(f64) -> bool) -> Vec<f64> {
     LESS.into_iter().map(|s| s * found).filter(|x| *x != 0.0 && !survives(sign * x)).collect()
 }
 
-fn survived(kind: &Kind, found: &[(f64, bool, Vec<f64>)]) -> Survived {
+fn survived(kind: &ErrorSource, found: &[(f64, bool, Vec<f64>)]) -> Survived {
     let shown = |x: f64| if kind.factor { x.exp2() } else { x };
     Survived {
         name: kind.name.clone(),
@@ -330,7 +336,7 @@ mod tests {
     #[test]
     fn a_scene_that_is_not_survived_has_no_way() {
         let mut setup = walking();
-        setup.scene.unknown.ground_tilt = [0.0, 40f64.to_radians()];
+        setup.scene.plant_mismatch.ground_tilt = [0.0, 40f64.to_radians()];
         assert_eq!(walk(&setup), None);
     }
 }

@@ -55,7 +55,7 @@ impl Instant {
 }
 
 /// Bodies and soles behind a log.
-pub struct Robot {
+pub struct LoggedRobot {
     model: Model,
     data: Data,
     info: RobotInfo,
@@ -81,7 +81,8 @@ pub fn read(path: &Path, friction: f64) -> Result<(RobotInfo, String, Vec<Instan
             states.len()
         ));
     }
-    let mut robot = Robot::new(log.robot(), friction).map_err(|e| format!("{}: {e}", path.display()))?;
+    let mut robot =
+        LoggedRobot::new(log.robot(), friction).map_err(|e| format!("{}: {e}", path.display()))?;
     let instants: Vec<Instant> =
         states.windows(3).filter_map(|w| robot.instant([&w[0], &w[1], &w[2]])).collect();
     if instants.is_empty() {
@@ -93,7 +94,7 @@ pub fn read(path: &Path, friction: f64) -> Result<(RobotInfo, String, Vec<Instan
     Ok((log.robot().clone(), log.run().scene.clone(), instants))
 }
 
-impl Robot {
+impl LoggedRobot {
     /// # Errors
     /// The URDF and the names beside it do not fit.
     pub fn new(info: &RobotInfo, friction: f64) -> Result<Self, String> {

@@ -8,7 +8,7 @@ use std::path::Path;
 use config::Robot;
 use config::robot::Drive;
 use drives::fixed_table::whole_angle;
-use drives::lookup::Table;
+use drives::lookup::LookupTable;
 use drives::{FixedTable, Transmission};
 use serde::Serialize;
 
@@ -74,14 +74,14 @@ pub(super) fn of_sizes(
             Transmission::Ankle(_) => name == "ankle",
         };
         if let Some(drive) = robot.drives.iter().find(of) {
-            linkages.push(Bench::new(&robot, drive)?.measured(name, sizes)?);
+            linkages.push(LinkageBench::new(&robot, drive)?.measured(name, sizes)?);
         }
     }
     Ok(linkages)
 }
 
 /// A linkage, and where it is evaluated.
-struct Bench {
+struct LinkageBench {
     transmission: Transmission,
     /// \[rad\] Of its joints.
     ranges: [[f64; 2]; 3],
@@ -90,7 +90,7 @@ struct Bench {
     places: Vec<[f64; 3]>,
 }
 
-impl Bench {
+impl LinkageBench {
     fn new(robot: &Robot, drive: &Drive) -> Result<Self, Box<dyn Error>> {
         let ranges = [0, 1, 2].map(|i| drive.joints.get(i).map_or([0.0; 2], |j| robot.joints[*j].range));
         let whole = (1..=PLACES).map(|i| place(i, ranges)).collect::<Result<Vec<_>, _>>()?;
@@ -110,7 +110,7 @@ impl Bench {
         let ranges = &self.ranges;
         let grid = if self.ankle() { [ranges[1], ranges[2]] } else { [ranges[0]; 2] };
         let fixed = FixedTable::new(&self.transmission, *ranges, [points; 2])?;
-        let real = Table::new(&self.transmission, grid, [points; 2])?;
+        let real = LookupTable::new(&self.transmission, grid, [points; 2])?;
         let (mut angle, mut ratio, mut joint) = ([0.0_f64; 2], [0.0_f64; 2], 0.0_f64);
         for q in &self.places {
             let exact = self.transmission.at(*q, [0.0; 3])?;

@@ -17,7 +17,7 @@ use crate::sheet::{Column, fixed, plain, scientific};
 use crate::{Error, Given, Sheet, Study};
 
 use linkage::{Linkage, Size};
-use walking::Walk;
+use walking::TableWalk;
 
 /// A table of one size; pairs: in integers, in floating point.
 const SIZES: &[Column] = &[

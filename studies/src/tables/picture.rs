@@ -3,10 +3,10 @@
 use drawing::color::{BLUE, GREEN, GREY, VERMILION};
 use drawing::{Chart, Color, Figure, Pen};
 
-use super::{Linkage, Size, Walk};
+use super::{Linkage, Size, TableWalk};
 
 /// The picture.
-pub(super) fn figure(linkages: &[Linkage], walks: &[Walk]) -> Figure {
+pub(super) fn figure(linkages: &[Linkage], walks: &[TableWalk]) -> Figure {
     let about = "Lola's knee and inner ankle, whole ranges of their joints; linear interpolation, largest of 20000 errors; the \
                  numbers are points in each dimension.";
     Figure::new("Look-up tables of the linkages in 32-bit integers", about)
@@ -23,7 +23,7 @@ pub(super) fn figure(linkages: &[Linkage], walks: &[Walk]) -> Figure {
 }
 
 /// A number of a walk.
-type OfWalk = fn(&Walk) -> f64;
+type OfWalk = fn(&TableWalk) -> f64;
 
 fn color(linkage: &Linkage) -> Color {
     if linkage.name == "knee" { BLUE } else { VERMILION }
@@ -79,7 +79,7 @@ fn over_time(linkages: &[Linkage]) -> Chart {
     chart
 }
 
-fn over_points(walks: &[Walk]) -> Chart {
+fn over_points(walks: &[TableWalk]) -> Chart {
     let mut chart = Chart::new(
         "walking at 2 km/h, targets every 3.5 ms (dashed: no tables)",
         "points of the tables in each dimension",

@@ -26,7 +26,7 @@ const STEP: f64 = 2.5e-4;
 
 /// One walk.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Walk {
+pub(super) struct TableWalk {
     /// Robot, law, numbers.
     pub what: String,
     /// Points of the tables, if it is a walk for the chart over them; 0: computed directly.
@@ -46,7 +46,7 @@ pub(super) struct Walk {
 }
 
 /// Everything.
-pub(super) fn all(config: &Path, tell: &impl Fn(&str)) -> Result<Vec<Walk>, Box<dyn Error>> {
+pub(super) fn all(config: &Path, tell: &impl Fn(&str)) -> Result<Vec<TableWalk>, Box<dyn Error>> {
     let mut walks = Vec::new();
     let scene = Setup::load(config, "walk_tables")?;
     let counts = scene.scene.joint_control.and_then(|control| control.resolution.encoder_counts);
@@ -55,7 +55,7 @@ pub(super) fn all(config: &Path, tell: &impl Fn(&str)) -> Result<Vec<Walk>, Box<
         let mut setup = scene.clone();
         resolve(&mut setup, Resolution { table_points, encoder_counts: counts });
         let walk = walk(setup, format!("Lola, cascade, {name}, counts"), tell)?;
-        walks.push(Walk { table_points: Some(table_points.unwrap_or(0)), ..walk });
+        walks.push(TableWalk { table_points: Some(table_points.unwrap_or(0)), ..walk });
     }
     for cycle in CYCLES {
         for (bus, classic) in [("CAN FD", false), ("classic CAN", true)] {
@@ -90,7 +90,7 @@ fn cycled(setup: &mut Setup, cycle: f64) {
     (setup.scene.cycle, setup.scene.substeps) = (cycle, (cycle / STEP).round() as u32);
 }
 
-fn walk(setup: Setup, what: String, tell: &impl Fn(&str)) -> Result<Walk, Box<dyn Error>> {
+fn walk(setup: Setup, what: String, tell: &impl Fn(&str)) -> Result<TableWalk, Box<dyn Error>> {
     tell(&what);
     let cycle = setup.scene.cycle;
     let mut chain = Chain::new(&setup)?;
@@ -113,7 +113,7 @@ fn walk(setup: Setup, what: String, tell: &impl Fn(&str)) -> Result<Walk, Box<dy
         }
     }
     let f = gatherer.figures(&setup, 0.0, None);
-    Ok(Walk {
+    Ok(TableWalk {
         what,
         table_points: None,
         cycle_s: cycle,

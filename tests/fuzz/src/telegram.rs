@@ -5,15 +5,15 @@
 mod wire;
 
 use crate::{byte, chunk};
-use sercos::header::{Channel, HEADER, Header, Kind, Phase};
-use sercos::{Side, Stage};
+use sercos::header::{CommunicationPhase, HEADER, RingChannel, TelegramHeader, TelegramKind};
+use sercos::{PortSide, Stage};
 use wire::Wire;
 
 /// The first byte chooses the ring; then telegrams: a byte that chooses the head, and perhaps the end it comes from.
 pub(crate) fn telegram(mut bytes: &[u8]) {
     let Some(first) = byte(&mut bytes) else { return };
     let mut wire = Wire::new(&[3, 7, 12], first & 1 == 0);
-    let until = if first & 2 == 0 { Stage::Running } else { Stage::Starting(Phase::Cp2) };
+    let until = if first & 2 == 0 { Stage::Running } else { Stage::Starting(CommunicationPhase::Cp2) };
     for _ in 0..2000 {
         if wire.cycle() == until {
             break;
@@ -23,11 +23,11 @@ pub(crate) fn telegram(mut bytes: &[u8]) {
         let cycle = byte(&mut bytes).unwrap_or(0);
         let data = chunk(&mut bytes, 6);
         let frame = if head == 0xff { data.to_vec() } else { telegram_of(head, cycle, data) };
-        let (port, end) = if cycle & 0x80 == 0 { (0, Side::Left) } else { (1, Side::Right) };
+        let (port, end) = if cycle & 0x80 == 0 { (0, PortSide::Left) } else { (1, PortSide::Right) };
         wire.master.begin();
         wire.master.take(port, &frame);
         wire.chain.take(end, &frame, &mut |side, frame| {
-            wire.master.take(if side == Side::Left { 0 } else { 1 }, frame);
+            wire.master.take(if side == PortSide::Left { 0 } else { 1 }, frame);
         });
         wire.master.end();
         if cycle & 0x40 != 0 {
@@ -43,12 +43,12 @@ pub(crate) fn telegram(mut bytes: &[u8]) {
 fn telegram_of(head: u8, cycle: u8, data: &[u8]) -> Vec<u8> {
     let mut frame = vec![0; HEADER];
     frame.extend(data);
-    let header = Header {
+    let header = TelegramHeader {
         source: wire::MACS[0],
-        channel: if head & 1 == 0 { Channel::P } else { Channel::S },
-        kind: if head & 2 == 0 { Kind::At } else { Kind::Mdt },
+        channel: if head & 1 == 0 { RingChannel::P } else { RingChannel::S },
+        kind: if head & 2 == 0 { TelegramKind::At } else { TelegramKind::Mdt },
         number: head >> 2 & 3,
-        phase: Phase::ALL[usize::from(head >> 4 & 7) % Phase::ALL.len()],
+        phase: CommunicationPhase::ALL[usize::from(head >> 4 & 7) % CommunicationPhase::ALL.len()],
         switching: head & 0x80 != 0,
         cycle: Some(cycle & 7),
     };

@@ -112,7 +112,7 @@ pub(crate) fn run_file(bytes: &[u8]) {
     let dir = Path::new("/nowhere");
     if let Ok(run) = ipc::Run::parse(dir, text) {
         let _ = run.bus.parse::<BusAddress>();
-        let _ = run.method.as_deref().map(str::parse::<config::tolerance::Method>);
+        let _ = run.method.as_deref().map(str::parse::<config::method::Method>);
         assert_eq!(ipc::Run::parse(dir, &run.to_text()).expect("it was written"), run);
     }
 }

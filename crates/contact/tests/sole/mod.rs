@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use contact::hexahedron::{Elasticity, Volume};
-use contact::{Ground, Layer, Material, Memory, Outcome, Pad, Settings, Twist};
+use contact::hexahedron::{LinearElasticity, Volume};
+use contact::{Ground, Layer, Material, Memory, Pad, PadLoad, SegmentMotion, Settings};
 use nalgebra::Vector3;
 
 /// \[s\]
@@ -20,7 +20,7 @@ pub(crate) struct Sole {
 
 /// A layer of a pad of Lola's size.
 pub(crate) fn layer(poisson: f64, bricks: [usize; 3]) -> Layer {
-    let elasticity = Elasticity { modulus: 4.643e5, poisson };
+    let elasticity = LinearElasticity { modulus: 4.643e5, poisson };
     let size = [0.06, 0.04, 0.012];
     Layer::new(&Material { size, bricks, elasticity, volume: Volume::Full, damping_time: ALPHA }).unwrap()
 }
@@ -39,7 +39,7 @@ impl Sole {
     }
 
     /// One evaluation; the undeformed sole is `height` above level ground.
-    pub(crate) fn rates(&mut self, height: f64, twist: &Twist, settings: &Settings) -> Outcome {
+    pub(crate) fn rates(&mut self, height: f64, twist: &SegmentMotion, settings: &Settings) -> PadLoad {
         for (i, ground) in self.ground.iter_mut().enumerate() {
             *ground = Some(Ground { gap: height + self.d[3 * i + 2], normal: Vector3::z() });
         }
@@ -47,7 +47,13 @@ impl Sole {
     }
 
     /// One step of explicit Euler.
-    pub(crate) fn step(&mut self, h: f64, height: f64, twist: &Twist, settings: &Settings) -> Outcome {
+    pub(crate) fn step(
+        &mut self,
+        h: f64,
+        height: f64,
+        twist: &SegmentMotion,
+        settings: &Settings,
+    ) -> PadLoad {
         let outcome = self.rates(height, twist, settings);
         self.advance(h);
         outcome
@@ -58,9 +64,9 @@ impl Sole {
         &mut self,
         h: f64,
         of: &dyn Fn(f64) -> Option<Ground>,
-        twist: &Twist,
+        twist: &SegmentMotion,
         settings: &Settings,
-    ) -> Outcome {
+    ) -> PadLoad {
         for i in 0..self.ground.len() {
             let below = of(self.pad.place(i).x);
             self.ground[i] = below.map(|g| Ground { gap: g.gap + self.d[3 * i + 2], ..g });

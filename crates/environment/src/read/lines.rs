@@ -3,7 +3,7 @@
 use std::io::{BufRead, Read, Result, Seek, SeekFrom};
 
 /// Bytes that end with each line, whatever the reader asks for.
-pub(super) struct Lines<'a> {
+pub(super) struct LineReader<'a> {
     bytes: &'a [u8],
     at: usize,
     /// End of the line `at` lies in.
@@ -12,13 +12,13 @@ pub(super) struct Lines<'a> {
     pub(super) line: usize,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> LineReader<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0, end: 0, line: 0 }
     }
 }
 
-impl BufRead for Lines<'_> {
+impl BufRead for LineReader<'_> {
     fn fill_buf(&mut self) -> Result<&[u8]> {
         if self.at == self.end && self.at < self.bytes.len() {
             let rest = &self.bytes[self.at..];
@@ -33,7 +33,7 @@ impl BufRead for Lines<'_> {
     }
 }
 
-impl Read for Lines<'_> {
+impl Read for LineReader<'_> {
     fn read(&mut self, into: &mut [u8]) -> Result<usize> {
         let line = self.fill_buf()?;
         let n = line.len().min(into.len());
@@ -43,7 +43,7 @@ impl Read for Lines<'_> {
     }
 }
 
-impl Seek for Lines<'_> {
+impl Seek for LineReader<'_> {
     /// Back to the beginning is all that readers need, and all there is.
     fn seek(&mut self, to: SeekFrom) -> Result<u64> {
         if to != SeekFrom::Start(0) {

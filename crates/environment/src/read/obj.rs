@@ -1,6 +1,6 @@
 //! Wavefront OBJ: positions and faces; polygons are taken as convex. Materials, normals and texture are left out.
 
-use super::lines::Lines;
+use super::lines::LineReader;
 use super::{FileFault, Soup};
 
 pub(super) fn read(bytes: &[u8]) -> Result<Soup, FileFault> {
@@ -10,7 +10,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, FileFault> {
         ignore_points: true,
         ..Default::default()
     };
-    let mut lines = Lines::new(bytes);
+    let mut lines = LineReader::new(bytes);
     let no_materials = |_: &std::path::Path| Ok(Default::default());
     let (models, _) = tobj::load_obj_buf(&mut lines, &options, no_materials).map_err(|e| {
         use tobj::LoadError::{FaceNormalOutOfBounds, FaceTexCoordOutOfBounds, FaceVertexOutOfBounds};

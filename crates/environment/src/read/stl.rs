@@ -3,7 +3,7 @@
 //! Binary files may begin with `solid`, too, and a wrong count in a binary header may ask for any amount of memory. So a
 //! file is binary if its length is the one its header announces, text if it begins with `solid`, and refused otherwise.
 
-use super::lines::Lines;
+use super::lines::LineReader;
 use super::{FileFault, Soup};
 
 /// \[byte\] Header with the number of triangles; one triangle.
@@ -47,7 +47,7 @@ fn text(bytes: &[u8]) -> Result<Soup, FileFault> {
     // A nameless solid lacks the space that the library looks for.
     let nameless = bytes.get(5).is_some_and(|b| matches!(b, b'\n' | b'\r'));
     let named = nameless.then(|| [b"solid mesh", &bytes[5..]].concat());
-    let mut lines = Lines::new(named.as_deref().unwrap_or(bytes));
+    let mut lines = LineReader::new(named.as_deref().unwrap_or(bytes));
     let result = match stl_io::create_stl_reader(&mut lines) {
         Ok(mut reader) => collect(&mut *reader).map_err(|(_, e)| e),
         Err(e) => Err(e.to_string()),

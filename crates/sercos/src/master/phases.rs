@@ -1,21 +1,21 @@
 //! End of the master's cycle, phase by phase: evaluates what came in and decides what comes next.
 
-use super::{ANNOUNCED, GIVE_UP, Master, Node, State, VALID};
+use super::{ANNOUNCED, GIVE_UP, Master, MasterState, Node, VALID};
 use crate::device::{Connection, Status, Topology};
-use crate::header::Phase;
+use crate::header::CommunicationPhase;
 use crate::layout::CONNECTION;
-use crate::ring::{STABLE, Shape};
+use crate::ring::{RingShape, STABLE};
 use crate::service::Progress;
 use crate::telegram::{cp0, long, word};
-use crate::trouble::{Event, Trouble};
+use crate::trouble::{RingEvent, StartTrouble};
 
 impl Master {
-    fn shape(&self) -> Shape {
-        Shape::of(self.seen[0], self.seen[1])
+    fn shape(&self) -> RingShape {
+        RingShape::of(self.seen[0], self.seen[1])
     }
 
-    fn wanted_shape(&self) -> Shape {
-        if self.setup.ports[1].is_some() { Shape::Ring } else { Shape::LineP }
+    fn wanted_shape(&self) -> RingShape {
+        if self.setup.ports[1].is_some() { RingShape::Ring } else { RingShape::LineP }
     }
 
     pub(super) fn identify(&mut self, cycles: u32, stable: u32) {
@@ -29,34 +29,34 @@ impl Master {
             self.found.extend(cp0::addresses(data).take(cp0::SLAVES));
         }
         self.state = match trouble {
-            Some(trouble) if cycles >= GIVE_UP => State::Failed(trouble),
+            Some(trouble) if cycles >= GIVE_UP => MasterState::Failed(trouble),
             None if stable >= STABLE => {
                 self.number_nodes();
                 self.switch()
             }
-            None if cycles >= GIVE_UP => State::Failed(Trouble::Unstable),
-            _ => State::Identify { cycles, stable },
+            None if cycles >= GIVE_UP => MasterState::Failed(StartTrouble::Unstable),
+            _ => MasterState::Identify { cycles, stable },
         };
     }
 
     /// Problem of the ring in this cycle of CP0.
-    fn check_ring(&self, port: usize) -> Option<Trouble> {
+    fn check_ring(&self, port: usize) -> Option<StartTrouble> {
         match self.shape() {
-            Shape::Nothing => return Some(Trouble::NoTelegrams),
-            shape if shape != self.wanted_shape() => return Some(Trouble::Shape(shape)),
+            RingShape::Nothing => return Some(StartTrouble::NoTelegrams),
+            shape if shape != self.wanted_shape() => return Some(StartTrouble::Shape(shape)),
             _ => {}
         }
         let data = self.received[port][0].data();
         let expected = |address| self.nodes.iter().any(|n| n.station.address == address);
         let seen = |address| cp0::addresses(data).filter(|a| *a == address).count();
         if let Some(address) = cp0::addresses(data).find(|a| !expected(*a) || seen(*a) > 1) {
-            return Some(Trouble::Stranger(address));
+            return Some(StartTrouble::Stranger(address));
         }
         let (found, expected) = (cp0::addresses(data).count(), self.nodes.len());
         if found == 0 {
-            return Some(Trouble::Count { found, expected });
+            return Some(StartTrouble::Count { found, expected });
         }
-        self.nodes.iter().map(|n| n.station.address).find(|a| seen(*a) == 0).map(Trouble::Missing)
+        self.nodes.iter().map(|n| n.station.address).find(|a| seen(*a) == 0).map(StartTrouble::Missing)
     }
 
     fn number_nodes(&mut self) {
@@ -67,21 +67,21 @@ impl Master {
     }
 
     /// The next phase is announced.
-    fn switch(&mut self) -> State {
-        self.phase = self.phase.next().unwrap_or(Phase::Cp4);
-        State::Announce(ANNOUNCED - 1)
+    fn switch(&mut self) -> MasterState {
+        self.phase = self.phase.next().unwrap_or(CommunicationPhase::Cp4);
+        MasterState::Announce(ANNOUNCED - 1)
     }
 
     pub(super) fn enter_next(&mut self) {
-        self.tell(Event::Phase(self.phase));
+        self.tell(RingEvent::Phase(self.phase));
         for node in &mut self.nodes {
             (node.asked, node.busy) = (0, false);
         }
         self.state = match self.phase {
-            Phase::Cp0 => State::Identify { cycles: 0, stable: 0 },
-            Phase::Cp1 => State::Validate { cycles: 0, valid: 0 },
-            Phase::Cp2 | Phase::Cp3 => State::Ask,
-            Phase::Cp4 => State::Run,
+            CommunicationPhase::Cp0 => MasterState::Identify { cycles: 0, stable: 0 },
+            CommunicationPhase::Cp1 => MasterState::Validate { cycles: 0, valid: 0 },
+            CommunicationPhase::Cp2 | CommunicationPhase::Cp3 => MasterState::Ask,
+            CommunicationPhase::Cp4 => MasterState::Run,
         };
     }
 
@@ -117,7 +117,7 @@ impl Master {
         if self.shape() == self.wanted_shape() {
             self.open = 0;
             if std::mem::take(&mut self.broken) {
-                self.tell(Event::RingClosed);
+                self.tell(RingEvent::RingClosed);
             }
             return;
         }
@@ -130,7 +130,7 @@ impl Master {
                 self.nodes.iter().find(is).map(|n| n.station.address)
             };
             let ends = (end(Topology::LoopP), end(Topology::LoopS));
-            self.tell(Event::RingBroken(ends.0, ends.1));
+            self.tell(RingEvent::RingBroken(ends.0, ends.1));
         }
     }
 
@@ -139,11 +139,11 @@ impl Master {
         let silent = self.nodes.iter().find(|n| n.status.is_none()).map(|n| n.station.address);
         self.state = match silent {
             None if valid >= VALID => self.switch(),
-            None => State::Validate { cycles, valid: valid + 1 },
+            None => MasterState::Validate { cycles, valid: valid + 1 },
             Some(address) if cycles >= GIVE_UP => {
-                State::Failed(Trouble::Silent { address, phase: self.phase })
+                MasterState::Failed(StartTrouble::Silent { address, phase: self.phase })
             }
-            Some(_) => State::Validate { cycles, valid: 0 },
+            Some(_) => MasterState::Validate { cycles, valid: 0 },
         };
     }
 
@@ -153,7 +153,7 @@ impl Master {
         for i in 0..self.nodes.len() {
             match self.ask_station(i) {
                 Ok(finished) => done &= finished,
-                Err(trouble) => return self.state = State::Failed(trouble),
+                Err(trouble) => return self.state = MasterState::Failed(trouble),
             }
         }
         if done {
@@ -162,9 +162,9 @@ impl Master {
     }
 
     /// One step with station `i`; whether it has answered everything.
-    fn ask_station(&mut self, i: usize) -> Result<bool, Trouble> {
+    fn ask_station(&mut self, i: usize) -> Result<bool, StartTrouble> {
         let (answer, place) = (self.answer(i), self.places(i).at_service);
-        let list = usize::from(self.phase == Phase::Cp3);
+        let list = usize::from(self.phase == CommunicationPhase::Cp3);
         let node = &mut self.nodes[i];
         // A request under way: one step of the handshake per cycle.
         if node.busy {
@@ -180,7 +180,7 @@ impl Master {
                 Progress::Done => (node.busy, node.asked) = (false, node.asked + 1),
                 Progress::Refused(refusal) => {
                     let (address, idn) = (node.station.address, node.requests[list][node.asked].idn());
-                    return Err(Trouble::Refused { address, idn, refusal });
+                    return Err(StartTrouble::Refused { address, idn, refusal });
                 }
             }
         }
@@ -230,7 +230,7 @@ impl Master {
         if node.fresh {
             node.missed = 0;
             if std::mem::take(&mut node.lost) {
-                self.tell(Event::Back(address));
+                self.tell(RingEvent::Back(address));
             }
             return;
         }
@@ -244,7 +244,7 @@ impl Master {
         self.counts.missed += 1;
         self.counts.longest = self.counts.longest.max(missed);
         if lost {
-            self.tell(Event::Lost(address));
+            self.tell(RingEvent::Lost(address));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use realtime::clock;
 use rustix::thread::{LinkNameSpaceType, move_into_link_name_space};
-use sercos::{Far, Near, Setup, Slave, Station};
+use sercos::{Far, MasterSetup, Near, Slave, Station};
 use std::fs::File;
 use std::os::fd::AsFd;
 use std::process::Command;
@@ -95,8 +95,9 @@ impl Veth {
                 }
                 answer(&mut far);
             }
-            let sum =
-                |of: fn(sercos::Counts) -> u64| far.chain().slaves().iter().map(|s| of(s.counts())).sum();
+            let sum = |of: fn(sercos::SlaveCounts) -> u64| {
+                far.chain().slaves().iter().map(|s| of(s.counts())).sum()
+            };
             counts.0.store(sum(|c| c.foreign), Ordering::Relaxed);
             counts.1.store(sum(|c| c.malformed), Ordering::Relaxed);
         });
@@ -125,9 +126,9 @@ fn answer(far: &mut Far) {
     far.answer();
 }
 
-pub(crate) fn setup() -> Setup {
+pub(crate) fn setup() -> MasterSetup {
     let station = |address: &u16| Station { address: *address, command: DATA, feedback: DATA };
-    Setup {
+    MasterSetup {
         cycle: CYCLE as u32,
         losses: LOSSES,
         // The host may stop everybody for a while: that is no loss.

@@ -1,7 +1,7 @@
 //! A master and a chain of slaves that are joined in memory: one call is one cycle.
 
 use sercos::header::Mac;
-use sercos::{Chain, Event, Master, Setup, Side, Slave, Stage, Station};
+use sercos::{Master, MasterSetup, PortSide, RingEvent, Slave, SlaveChain, Stage, Station};
 
 /// Hardware addresses of the master's ports.
 pub(crate) const MACS: [Mac; 2] = [[2, 0, 0, 0, 0, 1], [2, 0, 0, 0, 0, 2]];
@@ -11,8 +11,8 @@ pub(crate) const LOSSES: u16 = 2;
 /// Both sides.
 pub(crate) struct Wire {
     pub(crate) master: Master,
-    pub(crate) chain: Chain,
-    pub(crate) events: Vec<Event>,
+    pub(crate) chain: SlaveChain,
+    pub(crate) events: Vec<RingEvent>,
 }
 
 /// Stations with these addresses, each with some data of its own length.
@@ -21,8 +21,8 @@ pub(crate) fn stations(addresses: &[u16]) -> Vec<Station> {
     addresses.iter().enumerate().map(station).collect()
 }
 
-pub(crate) fn setup(addresses: &[u16], two_ports: bool) -> Setup {
-    Setup {
+pub(crate) fn setup(addresses: &[u16], two_ports: bool) -> MasterSetup {
+    MasterSetup {
         cycle: 1_000_000,
         losses: LOSSES,
         beat_losses: LOSSES,
@@ -36,7 +36,7 @@ impl Wire {
     pub(crate) fn new(addresses: &[u16], two_ports: bool) -> Self {
         let setup = setup(addresses, two_ports);
         let slaves = setup.stations.iter().map(|s| Slave::new(s.address, s.command, s.feedback)).collect();
-        let mut chain = Chain::new(slaves, false);
+        let mut chain = SlaveChain::new(slaves, false);
         if !two_ports {
             chain.set_cable(addresses.len(), false);
         }
@@ -51,8 +51,8 @@ impl Wire {
     /// One cycle; a telegram that comes back, at this port, may be lost.
     pub(crate) fn cycle_with(&mut self, mut keeps: impl FnMut(usize, &[u8]) -> bool) -> Stage {
         self.master.begin();
-        let mut sent: Vec<(Side, Vec<u8>)> = Vec::new();
-        for (port, end) in [(0, Side::Left), (1, Side::Right)] {
+        let mut sent: Vec<(PortSide, Vec<u8>)> = Vec::new();
+        for (port, end) in [(0, PortSide::Left), (1, PortSide::Right)] {
             sent.extend(self.master.telegrams(port).map(|t| (end, t.to_vec())));
         }
         if sent.is_empty() {
@@ -61,7 +61,7 @@ impl Wire {
         for (end, frame) in sent {
             let master = &mut self.master;
             self.chain.take(end, &frame, &mut |side, frame| {
-                let port = if side == Side::Left { 0 } else { 1 };
+                let port = if side == PortSide::Left { 0 } else { 1 };
                 if keeps(port, frame) {
                     master.take(port, frame);
                 }

@@ -1,4 +1,5 @@
-//! Forward dynamics in O(n) by articulated bodies.
+//! Reference algorithm, which only tests and benchmarks call: forward dynamics in O(n) by articulated bodies, to be compared
+//! with [`Model::forward_dynamics`].
 //!
 //! A body with everything it carries, joints free to move, answers to an acceleration (dw, a) of its origin with
 //!

@@ -1,7 +1,7 @@
-//! Plant mismatch, `[unknown]` of a scene: differences between the simulated robot and the model of the robot's software.
+//! Plant mismatch, `[plant_mismatch]` of a scene: differences between the simulated robot and the model of the robot's software.
 //!
 //! ```toml
-//! [unknown]
+//! [plant_mismatch]
 //! ground_tilt = [0.0, 2.0] # [deg] roll and pitch of the ground about the origin; positive pitch: downhill along x
 //! contact_stiffness = 0.5 # [1] of the soles, over the robot's
 //! joint_offset_rad = { right_knee_flexion = 0.01 } # [rad] encoders read as much too much
@@ -13,9 +13,9 @@
 use crate::section::Section;
 use crate::sensors::PerJoint;
 
-/// `[unknown]` of a scene. The default is a robot and a world as the software believes.
+/// `[plant_mismatch]` of a scene. The default is a robot and a world as the software believes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unknown {
+pub struct PlantMismatch {
     /// \[rad\] Roll and pitch of the ground: turned about x, then y of the world, about the origin.
     pub ground_tilt: [f64; 2],
     /// \[1\] Stiffness of the soles over the robot's.
@@ -24,13 +24,13 @@ pub struct Unknown {
     pub joint_offset: PerJoint,
 }
 
-impl Default for Unknown {
+impl Default for PlantMismatch {
     fn default() -> Self {
         Self { ground_tilt: [0.0; 2], contact_stiffness: 1.0, joint_offset: PerJoint::default() }
     }
 }
 
-impl Unknown {
+impl PlantMismatch {
     pub(crate) fn build(table: &Section<'_, '_>) -> Self {
         let mut built = Self::default();
         if table.has("ground_tilt") {

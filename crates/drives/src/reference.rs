@@ -1,4 +1,4 @@
-//! From motor angles back to joint angles, for encoders on the motors. A harmonic drive divides, a knee has a closed form
+//! Reference algorithm, which only tests call: from motor angles back to joint angles. A harmonic drive divides, a knee has a closed form
 //! ([`Knee::joint_angle`](crate::Knee::joint_angle)), an ankle takes Newton's method on both of its motors.
 
 use crate::{Ankle, OutOfDomain, Transmission};

@@ -1,4 +1,4 @@
-//! Natural cubic splines and their gradients in the control points (thesis appendix E, errata 2.15).
+//! Reference, which only tests call: natural cubic splines and their gradients in the control points (thesis appendix E, errata 2.15).
 //!
 //! | symbol | name | unit |
 //! |---|---|---|

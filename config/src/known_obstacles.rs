@@ -1,0 +1,51 @@
+//! Objects that a scene calls known, as triangles in I_0: stand-in for the vision system of the thesis.
+
+use std::error::Error;
+
+use environment::{Mesh, Pose};
+use multibody::{Data, Model};
+use nalgebra::Vector3;
+
+use crate::terrain::ObjectShape;
+use crate::{Robot, Setup};
+
+/// Corners of a triangle \[m\] @I_0.
+pub type Triangle = [[f64; 3]; 3];
+
+impl Setup {
+    /// The triangles of each known object.
+    ///
+    /// # Errors
+    /// A mesh cannot be read, or the robot's data do not fit together.
+    pub fn known_obstacles(&self) -> Result<Vec<Vec<Triangle>>, Box<dyn Error>> {
+        let begin = middle_of_soles(&self.robot, &self.robot.poses[&self.scene.start_pose])?;
+        let mut obstacles = Vec::new();
+        for object in self.scene.objects.iter().filter(|o| o.known) {
+            let mesh = match &object.shape {
+                ObjectShape::Box(size) => Mesh::cuboid(*size)?,
+                ObjectShape::Mesh { file, bytes, scale } => Mesh::parse(file, bytes, *scale)?,
+            };
+            let pose = Pose::new(object.pose.position, object.pose.rotation);
+            let place = |v: Vector3<f64>| <[f64; 3]>::from(pose.rotation * v + pose.position - begin);
+            obstacles.push(mesh.faces().map(|corners| corners.map(place)).collect());
+        }
+        Ok(obstacles)
+    }
+}
+
+/// Origin of I_0: on the ground, in the middle between the soles of a robot whose torso stands over the origin.
+fn middle_of_soles(robot: &Robot, pose: &[f64]) -> Result<Vector3<f64>, Box<dyn Error>> {
+    let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
+    let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?;
+    let mut data = Data::new(&model);
+    let mut q = model.neutral();
+    q[7..].copy_from_slice(pose);
+    model.forward_kinematics(&mut data, &q);
+    let mut middle = Vector3::zeros();
+    for foot in &robot.feet {
+        let sole = model.frame(&foot.link, foot.sole)?;
+        middle += model.frame_pose(&data, &sole).translation.vector * 0.5;
+    }
+    middle.z = 0.0;
+    Ok(middle)
+}
