@@ -39,7 +39,7 @@ impl Exit {
     /// Of a run without errors; `signal`: one asked for the end.
     pub fn of(ending: &Ending, signal: bool) -> Self {
         match ending.end().0 {
-            End::Diverged => Self::Error,
+            WalkEnd::Diverged => Self::Error,
             _ if ending.fell().is_some() => Self::Fell,
             _ if signal => Self::Interrupted,
             WalkEnd::PowerOff(_) | WalkEnd::Stopped(_) => Self::NotDone,
