@@ -79,7 +79,7 @@ pub fn serve(run: &Run, tcp: &Tcp, stop: &Stop) -> Result<(), String> {
     while !stop.asked() {
         let busy = exchange.turn(clock::now(), &mut |report| match report {
             BrokerEvent::Refused(address) => {
-                events.write(EventCode::CommandRefused, Detail::Message(address.into()))
+                events.write(EventCode::CommandRefused, Detail::Message(address.into()));
             }
             BrokerEvent::Denied(live, code) => events.denied(&live, code),
             BrokerEvent::Lost(messages) => events.write(EventCode::MessagesLost, Detail::Count(messages)),

@@ -155,10 +155,10 @@ impl StartUpSequence {
         match (self.state, next) {
             (StartUp::NotHomed, StartUp::NotHomed) => {}
             (_, StartUp::NotHomed) => {
-                self.events.push(EventCode::NotHomed, Detail::Joint(unknown.unwrap_or(0)))
+                self.events.push(EventCode::NotHomed, Detail::Joint(unknown.unwrap_or(0)));
             }
             (StartUp::Homing, StartUp::Enabling) => {
-                self.events.push(EventCode::Homed, Detail::Cycles(self.cycles.into()))
+                self.events.push(EventCode::Homed, Detail::Cycles(self.cycles.into()));
             }
             (StartUp::Enabling, StartUp::Enabling) if self.cycles == ENABLE_CYCLES => {
                 self.events.push(EventCode::DriveNotEnabled, Detail::Joint(off.unwrap_or(0)));

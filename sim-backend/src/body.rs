@@ -129,10 +129,10 @@ impl SimulatedBody {
         for event in self.plant.advance(time) {
             match *event {
                 environment::ObjectEvent::Refused(i) => {
-                    events.push(EventCode::ObjectHeld, Detail::Number(i as u64))
+                    events.push(EventCode::ObjectHeld, Detail::Number(i as u64));
                 }
                 environment::ObjectEvent::Resumed(i) => {
-                    events.push(EventCode::ObjectResumed, Detail::Number(i as u64))
+                    events.push(EventCode::ObjectResumed, Detail::Number(i as u64));
                 }
                 environment::ObjectEvent::Appeared(_) | environment::ObjectEvent::Vanished(_) => {}
             }
