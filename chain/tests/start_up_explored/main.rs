@@ -39,7 +39,7 @@ impl Search {
     fn explore(faults: u8) -> Self {
         let mut search = Self { seen: HashMap::new(), steps: 0, fault: None };
         let happens = Happens::all();
-        let starts = HashMap::from([true, false].map(|known| World::new(known)).map(|w| (w.key(), w)));
+        let starts = HashMap::from([true, false].map(World::new).map(|w| (w.key(), w)));
         // States to be gone on from: with as many faults as now, and with one more.
         let mut front: Vec<u64> = starts.keys().copied().collect();
         let mut with_less = Vec::new();
