@@ -1,25 +1,23 @@
-//! Strangers against a standing robot, in every way that a connection allows: nothing moves, the operator's commands go
-//! through, and each `gangwerk estop` is answered. Floods of commands, and the memory of all processes under them.
+//! Strangers against a robot that stands, in every way that a connection allows: nothing moves, the operator's commands go
+//! through, and each `gangwerk estop` is answered. The same while it walks: `attacks/walking.rs`. Floods of commands, and the
+//! memory of all processes under them.
 //!
 //! `GANGWERK_SOAK_SECONDS=3600` makes the soak longer.
 
+#[path = "attacks/strangers.rs"]
+mod strangers;
+#[path = "attacks/walking.rs"]
+mod walking;
+
+use broker::StreamClient;
 use broker::connection::UNANSWERED;
-use broker::message::{MAX_BYTES, VERSION, service, service_message, write_command};
-use broker::{StreamClient, keys};
 use harness::{Running, Site, doze, turn};
 use ipc::{Reader, Space};
-use messages::command_text::COMMANDS;
 use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, POWER, SIM_STATE};
-use messages::{Command, ControllerState, GaitState, JointTargets, Power, Process, SimState, Stamp};
+use messages::{Command, ControllerState, GaitState, JointTargets, Power, Process, SimState};
 use realtime::clock::{SECOND, now};
-use std::io::{Read, Write};
-use std::net::{Ipv4Addr, SocketAddr, TcpStream};
-use std::os::unix::fs::PermissionsExt;
-use std::os::unix::process::CommandExt;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::time::Duration;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use strangers::{ATTACKS, Place, under, with_door};
 
 const EXE: &str = harness::executable!();
 /// Emergency stops asked for under each attack.
@@ -37,10 +35,7 @@ struct Robot {
 
 impl Robot {
     fn standing() -> Self {
-        let site = Site::patient(EXE);
-        write_key(&site.path("keys"), "7a");
-        let keys = format!("tcp_keys = \"{}\"", site.path("keys").display());
-        site.edit("system.toml", "tcp_keys = \"\"", &keys);
+        let site = with_door(Site::patient(EXE));
         site.scene("wait", 100_000.0, "[[command]]\ntime = 0.2\ntopic = \"walk/stand\"\n");
         let mut run = site.run("wait", &["--no-log"]);
         let space = run.space();
@@ -72,218 +67,6 @@ impl Robot {
     }
 }
 
-fn write_key(path: &Path, digits: &str) {
-    std::fs::write(path, format!("op all {}\n", digits.repeat(32))).unwrap();
-    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o600)).unwrap();
-}
-
-/// Where an attack goes on until it is told to end.
-#[derive(Clone)]
-struct Place {
-    tcp: SocketAddr,
-    dir: PathBuf,
-    over: Arc<AtomicBool>,
-    /// Times that it was done.
-    done: Arc<AtomicU64>,
-}
-
-impl Place {
-    fn again(&self) -> bool {
-        self.done.fetch_add(1, Relaxed);
-        !self.over.load(Relaxed)
-    }
-
-    fn stream(&self) -> Option<TcpStream> {
-        let stream = TcpStream::connect(self.tcp).ok()?;
-        stream.set_read_timeout(Some(Duration::from_secs(3))).ok()?;
-        stream.set_write_timeout(Some(Duration::from_secs(3))).ok()?;
-        Some(stream)
-    }
-}
-
-/// Every command that a stranger may not give; stops are everybody's.
-fn forbidden() -> impl Iterator<Item = Command> {
-    let all = COMMANDS.iter().map(|info| info.example());
-    all.filter(|c| !matches!(c, Command::Stop | Command::EmergencyStop))
-}
-
-fn frame(message: &[u8]) -> Vec<u8> {
-    [&(message.len() as u32).to_le_bytes(), message].concat()
-}
-
-fn bytes_of(command: &Command, sequence: u64) -> Vec<u8> {
-    let mut buffer = [0; MAX_BYTES];
-    let stamp = Stamp { sequence, sent_ns: now(), ..Stamp::default() };
-    frame(write_command(command, command.priority(), &stamp, &mut buffer).unwrap())
-}
-
-fn hello() -> Vec<u8> {
-    let payload = [&VERSION.to_le_bytes()[..], &[0; 8], &[0; 16], b"stranger"].concat();
-    frame(&service_message(service::HELLO, 1, now(), &payload))
-}
-
-/// Every command without a key, also under numbers that were used before.
-fn every_command(place: &Place) {
-    while place.again() {
-        let Ok(mut client) = StreamClient::connect_tcp(place.tcp, "stranger", None) else { continue };
-        for command in forbidden() {
-            if let Ok(who) = client.publish(&command) {
-                panic!("{command:?} was taken by {who}");
-            }
-        }
-    }
-}
-
-/// The key's name with another secret.
-fn wrong_key(place: &Place) {
-    let own = std::thread::current().id();
-    let path = std::env::temp_dir().join(format!("gangwerk-wrong-key-{}-{own:?}", std::process::id()));
-    write_key(&path, "7b");
-    let key = keys::load(&path).unwrap().remove(0);
-    std::fs::remove_file(path).unwrap();
-    while place.again() {
-        let client = StreamClient::connect_tcp(place.tcp, "stranger", Some(&key));
-        assert!(client.is_err(), "a wrong key opened a connection");
-    }
-}
-
-/// Every command cut at every byte, and the connection closed, or kept, there.
-fn truncated(place: &Place) {
-    let mut kept = Vec::new();
-    while place.again() {
-        for command in forbidden() {
-            let whole = [hello(), bytes_of(&command, 2)].concat();
-            for n in 1..whole.len() {
-                let Some(mut stream) = place.stream() else { continue };
-                let _ = stream.write_all(&whole[..n]);
-                if n % 16 == 0 {
-                    kept.push(stream);
-                }
-                if place.over.load(Relaxed) {
-                    return;
-                }
-            }
-            kept.truncate(32);
-        }
-    }
-}
-
-/// Lengths that no frame has, with as much as fits behind them.
-fn oversized(place: &Place) {
-    while place.again() {
-        for length in [u32::MAX, 1 << 31, 1 << 20, 600, 0] {
-            if let Some(mut stream) = place.stream() {
-                let _ =
-                    stream.write_all(&length.to_le_bytes()).and_then(|()| stream.write_all(&[7; 100_000]));
-                let _ = stream.read(&mut [0; 512]);
-            }
-        }
-    }
-}
-
-/// Many connections, each with one byte every tenth of a second.
-fn slow_writers(place: &Place) {
-    let bytes = hello();
-    let mut streams: Vec<Option<TcpStream>> = (0..100).map(|_| place.stream()).collect();
-    for n in 0.. {
-        for stream in &mut streams {
-            let sent = stream.as_mut().is_some_and(|s| s.write_all(&[bytes[n % bytes.len()]]).is_ok());
-            if !sent {
-                *stream = place.stream();
-            }
-        }
-        if !place.again() {
-            return;
-        }
-        doze(0.1);
-    }
-}
-
-/// Subscribes to everything, asks for the longest answer again and again, and reads nothing.
-fn slow_readers(place: &Place) {
-    while place.again() {
-        let mut streams: Vec<TcpStream> = (0..8).filter_map(|_| place.stream()).collect();
-        for stream in &mut streams {
-            let _ = stream.write_all(&hello());
-            let subscribe = service_message(service::SUBSCRIBE, 2, now(), &[0xff, 0, 0, 0]);
-            let _ = stream.write_all(&frame(&subscribe));
-            for n in 3..40 {
-                let _ = stream.write_all(&frame(&service_message(service::DESCRIBE, n, now(), &[])));
-            }
-        }
-        doze(0.5);
-    }
-}
-
-/// As many connections as there is time for; some stay open, with a frame of nobody's.
-fn connections(place: &Place) {
-    let mut open = Vec::new();
-    while place.again() {
-        if let Some(mut stream) = place.stream() {
-            let _ = stream.write_all(&frame(&service_message(77, 1, 0, &[])));
-            open.push(stream);
-        }
-        if open.len() == 200 {
-            open.clear();
-        }
-    }
-}
-
-/// Another user's programs at the run directory, which he cannot enter.
-fn another_user(place: &Place) {
-    while place.again() {
-        for info in COMMANDS.iter().filter(|info| !info.name.ends_with("stop")).step_by(5) {
-            let mut program = std::process::Command::new(EXE);
-            program.args(["topic", "pub", info.name, "--dir"]).arg(&place.dir).uid(65534).gid(65534);
-            let Ok(said) = program.output() else { return };
-            assert!(!said.status.success(), "{said:?}");
-        }
-    }
-}
-
-type Attack = (&'static str, fn(&Place));
-
-const ATTACKS: [Attack; 8] = [
-    ("every command without a key", every_command),
-    ("wrong key", wrong_key),
-    ("frames cut at every byte", truncated),
-    ("lengths that no frame has", oversized),
-    ("slow writers", slow_writers),
-    ("slow readers", slow_readers),
-    ("connections", connections),
-    ("another user", another_user),
-];
-
-/// Ends the attack.
-struct Over<'a>(&'a AtomicBool);
-
-impl Drop for Over<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Relaxed);
-    }
-}
-
-/// Does something while the attack goes on; returns how often it was done.
-fn under(robot: &mut Robot, attack: fn(&Place), mut meanwhile: impl FnMut(&mut Robot, &Place)) -> u64 {
-    let place = Place {
-        tcp: (Ipv4Addr::LOCALHOST, robot.site.port()).into(),
-        dir: robot.site.run_dir(),
-        over: Arc::default(),
-        done: Arc::default(),
-    };
-    std::thread::scope(|scope| {
-        let attackers: Vec<_> = (0..2).map(|_| scope.spawn(|| attack(&place))).collect();
-        // Also if something is found.
-        let over = Over(&place.over);
-        meanwhile(robot, &place);
-        drop(over);
-        for attacker in attackers {
-            attacker.join().unwrap_or_else(|e| std::panic::resume_unwind(e));
-        }
-    });
-    place.done.load(Relaxed)
-}
-
 #[test]
 fn strangers_move_nothing_and_hold_up_neither_operator_nor_emergency_stop() {
     let _turn = turn();
@@ -294,10 +77,12 @@ fn strangers_move_nothing_and_hold_up_neither_operator_nor_emergency_stop() {
         doze(1.0);
         robot.moved(&mut since)
     };
-    for (name, attack) in ATTACKS {
+    for attack in ATTACKS {
+        let (name, _) = attack;
         let enough = if name == "connections" { CONNECTIONS as u64 } else { 1 };
         let mut moved = 0.0f64;
-        let done = under(&mut robot, attack, |robot, place| {
+        let place = Place::of(&robot.site);
+        let done = under(&place, &[attack], || {
             let begun = now();
             // The operator comes anew each time: what is shown is that his place is free.
             while now() - begun < 2 * SECOND || place.done.load(Relaxed) < enough {
@@ -319,10 +104,10 @@ fn strangers_move_nothing_and_hold_up_neither_operator_nor_emergency_stop() {
         assert_eq!(power.latest().map(|p| p.on), Some(1), "{name}: {}", robot.run.err());
         assert!(robot.run.is_alive(), "{name}: {}", robot.run.err());
     }
-    for (name, attack) in ATTACKS {
-        under(&mut robot, attack, |robot, _| {
+    for attack in ATTACKS {
+        under(&Place::of(&robot.site), &[attack], || {
             let answered = (0..STOPS).filter(|_| robot.stop()).count();
-            assert_eq!(answered, STOPS, "{name}");
+            assert_eq!(answered, STOPS, "{}", attack.0);
         });
     }
     assert_eq!(power.latest().map(|p| p.on), Some(0));

@@ -84,6 +84,17 @@ fn hashes(site: &Site) -> BTreeMap<String, u64> {
         .unwrap()
 }
 
+/// What every process of the last run did is done again from the log by its real step, byte for byte.
+#[track_caller]
+fn replays(site: &Site, log: &str, least: u64) {
+    for process in cli::replay::PROCESSES {
+        let done = cli::replay::replay(&site.path(log), process);
+        let done = done.unwrap_or_else(|e| panic!("{}: {e}", process.name()));
+        println!("{}: {done}", process.name());
+        assert!(done.cycles >= least && !done.cut, "{}: {done}", process.name());
+    }
+}
+
 #[test]
 fn lola_walks_over_sercos_as_over_shared_memory() {
     let Some(ring) = Ring::new('w') else { return };
@@ -97,6 +108,7 @@ fn lola_walks_over_sercos_as_over_shared_memory() {
         assert!(over.contains_key("/gangwerk/joint_targets") && over.contains_key("/gangwerk/sensors"));
         let different: Vec<_> = shared.keys().filter(|name| shared.get(*name) != over.get(*name)).collect();
         assert!(different.is_empty() && shared.len() == over.len(), "{bus}: {different:?}");
+        replays(&site, "walk.mcap", (SECONDS * 1e3) as u64);
     }
 }
 
@@ -125,6 +137,7 @@ fn a_cable_pulled_while_walking_changes_nothing() {
         assert!(format!("{}{}", said.out, said.err).contains(event), "{event} of {said:#?}");
     }
     assert_eq!(shared["/gangwerk/joint_targets"], hashes(&site)["/gangwerk/joint_targets"]);
+    replays(&site, "walk.mcap", (8.0 * SECONDS * 1e3) as u64);
 }
 
 /// The host stops the joint loop for longer than the slaves bear: they leave operation, and are taken back. Nothing moves
@@ -172,6 +185,8 @@ fn slaves_that_fell_out_after_a_stall_are_taken_back_and_the_robot_waits_for_its
     assert!(run.err().contains("drives fell out of the operation of the field bus"), "told to the operator");
     run.interrupt();
     run.end();
+    // In real time, with the bus that was silent, and what its master said, in the log.
+    replays(&site, "stand.mcap", 1000);
 }
 
 /// Each of them is one error with what to do, and nothing has moved.

@@ -5,6 +5,8 @@
 //! send      targets ──► state ──► setpoints: follow, brake or track ──► checks ──► frames, watchdog reset
 //! ```
 
+mod explored;
+
 use codec::frames::{DriveCommand, Received, decode_sensors, encode_targets};
 use config::{Robot, System};
 use messages::{
@@ -16,7 +18,7 @@ use crate::limits::following_limit;
 use crate::line_guard::LineGuard;
 use crate::reports::{Reports, drive_fault};
 use crate::setpoints::Setpoints;
-use crate::start_up::{StartUpSequence, is_enabled};
+use crate::start_up::{StartUpSequence, is_enabled, knows_angle};
 use crate::target_age::TargetAge;
 use drives::cia402::{Wanted, controlword};
 
@@ -175,6 +177,7 @@ impl JointLoop {
         let needed = (0..self.robot.joints.len()).filter(|&j| !self.spares(j));
         let tripped = needed.clone().find_map(|j| drive_fault(&self.sensors, j));
         let off = needed.clone().find(|&j| !is_enabled(&self.sensors, j));
+        let lost = needed.clone().find(|&j| self.start_up.ready() && !knows_angle(&self.sensors, j));
         let mute = self.guard.cause();
         match self.state {
             _ if !powered => Off,
@@ -184,8 +187,12 @@ impl JointLoop {
             Hold | Track if tripped.is_some() => {
                 self.stop(EventCode::DriveTripped, tripped.unwrap_or_default())
             }
+            // The others are held: to let go of them all, so that it can be homed, is for a robot that is not yet on.
+            Hold | Track if lost.is_some() => {
+                self.stop(EventCode::NotHomed, Detail::Joint(lost.unwrap_or(0)))
+            }
             Off => Hold,
-            Hold if mode == JointMode::Track && !late && self.start_up.ready() => Track,
+            Hold if mode == JointMode::Track && !late && off.is_none() && self.start_up.ready() => Track,
             Hold => Hold,
             Track if cause.is_some() => self.stop(cause.unwrap_or(EventCode::SafeStop), Detail::Nothing),
             Track if off.is_some() => self.stop(EventCode::DriveNotEnabled, Detail::Joint(off.unwrap_or(0))),

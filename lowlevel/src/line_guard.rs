@@ -10,6 +10,8 @@
 //! counted. A reading that cannot be ([`crate::reading`]) makes its node missing for the cycle. A controller that left the
 //! bus is a stop and no power ([`EventCode::BusOff`]), until it takes part again.
 
+use std::hash::{Hash, Hasher};
+
 use codec::frames::Received;
 use codec::layout::{Carries, FrameLayout};
 use config::{Robot, System};
@@ -148,15 +150,21 @@ impl LineGuard {
         self.doubt_states(sensors);
     }
 
-    /// A drive that is no longer enabled is believed the second time it says so: a bent bit says it once.
+    /// A drive that is no longer enabled is believed the second time it says so: a bent bit says it once. Without supply it is
+    /// believed at once, so that nothing of before is left when the supply comes back.
     fn doubt_states(&mut self, sensors: &mut Sensors) {
+        let powered = sensors.power == 1;
         for (j, doubted) in self.doubted.iter_mut().enumerate() {
             let (before, now) = (self.believed.drive_status[j], &mut sensors.drive_status[j]);
-            let falls = before & STATE == ENABLED && *now & STATE != ENABLED;
+            let falls = powered && before & STATE == ENABLED && *now & STATE != ENABLED;
             if falls && !*doubted {
-                *now = before;
+                // All but what the joint says of its reference, which is doubted on its own.
+                let reference = u32::from(REFERENCED);
+                *now = before & !reference | *now & reference;
             }
-            *doubted = falls && !*doubted;
+            // What was doubted stays so over a cycle in which nothing was heard.
+            let heard = self.nodes[self.node_of[j]].missed == 0;
+            *doubted = if falls { !*doubted } else { *doubted && !heard };
         }
     }
 
@@ -205,6 +213,15 @@ impl LineGuard {
     /// True if a joint was read in this cycle.
     pub(crate) fn reads(&self, joint: usize) -> bool {
         self.nodes[self.node_of[joint]].missed == 0
+    }
+
+    /// Hashes what decides what comes next; what was believed in this cycle is no part of it.
+    pub(crate) fn hash_state(&self, h: &mut impl Hasher) {
+        for node in &self.nodes {
+            let missed = node.missed.min(self.missed.max(self.carried_on) + 1);
+            (missed, node.known, node.line as u8).hash(h);
+        }
+        (self.doubted, self.referenced).hash(h);
     }
 
     pub(crate) fn counters(&self) -> BusCounters {
@@ -291,7 +308,8 @@ impl LineGuard {
         }
     }
 
-    /// Vote of the nodes on the supply: one flipped bit neither stops the robot nor wakes it.
+    /// Vote of the nodes on the supply: one flipped bit neither stops the robot nor wakes it, even if there are but two of them;
+    /// then it stays as it was believed.
     fn most_say_powered(&self, frames: &BusFrames) -> bool {
         let mut votes = 0;
         for frame in frames.as_slice() {
@@ -304,6 +322,6 @@ impl LineGuard {
                 votes += if signal.get(&frame.data) == 1 { 1 } else { -1 };
             }
         }
-        votes > 0
+        votes > 0 || votes == 0 && self.believed.power == 1
     }
 }

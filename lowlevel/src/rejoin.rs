@@ -34,6 +34,11 @@ impl Rejoin {
         Setpoint { angle: target.angle + next.angle, speed: target.speed + next.speed }
     }
 
+    /// What is left of the offset.
+    pub(crate) fn offset(&self) -> Option<Setpoint> {
+        self.offset
+    }
+
     /// No offset left: targets are followed as they are.
     pub(crate) fn is_over(&self) -> bool {
         self.offset.is_none()

@@ -1,5 +1,7 @@
 //! Setpoints of the joints: last word on every target before it goes to the drives.
 
+use std::hash::{Hash, Hasher};
+
 use config::Robot;
 use messages::{JointTargets, MAX_JOINTS, Sensors};
 
@@ -25,6 +27,15 @@ impl Setpoints {
             last: [Setpoint { angle: 0.0, speed: 0.0 }; MAX_JOINTS],
             tracked: false,
             rejoin: [Rejoin::default(); MAX_JOINTS],
+        }
+    }
+
+    /// Hashes what decides what comes next for so many joints.
+    pub(crate) fn hash_state(&self, joints: usize, h: &mut impl Hasher) {
+        self.tracked.hash(h);
+        for (last, rejoin) in self.last.iter().zip(&self.rejoin).take(joints) {
+            let offset = rejoin.offset().map(|o| (o.angle.to_bits(), o.speed.to_bits()));
+            (last.angle.to_bits(), last.speed.to_bits(), offset).hash(h);
         }
     }
 

@@ -11,6 +11,8 @@
 //! Nothing is followed before every drive is in Operation enabled. No drive is switched on while a joint does not know its
 //! angle, but to find it out.
 
+use std::hash::{Hash, Hasher};
+
 use drives::cia402::{DriveState, REFERENCED, Wanted, state_of};
 use messages::{Command, Detail, EventCode, EventQueue, Reason, Sensors, StartUp, Verdict, Wrench};
 
@@ -18,16 +20,27 @@ use messages::{Command, Detail, EventCode, EventQueue, Reason, Sensors, StartUp,
 const UNLOADED: f64 = 0.15;
 /// Share of the weight on both feet, at any time since the supply is on, from which a robot that was not hung up stands.
 const STOOD: f64 = 0.5;
-/// Share of the weight on both feet, for [`LANDED_CYCLES`], from which a robot that was lowered stands.
+/// Share of the weight on both feet, for [`StartUpTiming::landed`], from which a robot that was lowered stands.
 const LANDED: f64 = 0.9;
-/// \[1\]
-const LANDED_CYCLES: u32 = 100;
-/// Readings of which the zero of a force sensor is the mean.
-const ZERO_CYCLES: u32 = 100;
 /// Cycles for switching all drives on; after these it is reported.
 const ENABLE_CYCLES: u32 = 100;
-/// Cycles for which a reset is passed on to drives with a fault.
-const RESET_CYCLES: u32 = 100;
+
+/// Lengths of what is counted \[1\].
+#[derive(Clone, Copy, Debug)]
+pub struct StartUpTiming {
+    /// Cycles in which the feet carry before the robot stands.
+    pub landed: u32,
+    /// Readings of which the zero of a force sensor is the mean.
+    pub zero: u32,
+    /// Cycles for which a reset is passed on to drives with a fault.
+    pub reset: u32,
+}
+
+impl Default for StartUpTiming {
+    fn default() -> Self {
+        Self { landed: 100, zero: 100, reset: 100 }
+    }
+}
 
 /// Force sensors that are set to zero.
 #[derive(Clone, Debug, Default)]
@@ -43,6 +56,7 @@ struct ForceZero {
 #[derive(Clone, Debug)]
 pub(crate) struct StartUpSequence {
     state: StartUp,
+    timing: StartUpTiming,
     joints: usize,
     /// \[N\]
     weight: f64,
@@ -63,6 +77,7 @@ impl StartUpSequence {
     pub(crate) fn new(joints: usize, weight: f64) -> Self {
         Self {
             state: StartUp::Off,
+            timing: StartUpTiming::default(),
             joints,
             weight,
             most_load: 0.0,
@@ -72,6 +87,22 @@ impl StartUpSequence {
             landed: 0,
             reset: 0,
             events: EventQueue::default(),
+        }
+    }
+
+    pub(crate) fn set_timing(&mut self, timing: StartUpTiming) {
+        self.timing = timing;
+    }
+
+    /// Hashes what decides what comes next.
+    pub(crate) fn hash_state(&self, h: &mut impl Hasher) {
+        let landed = self.landed.min(self.timing.landed);
+        (self.state as u64, self.most_load.to_bits(), landed, self.reset, self.zero.left).hash(h);
+        for wrench in self.zero.offset.iter().chain(&self.raw) {
+            wrench.force.iter().chain(&wrench.moment).for_each(|x| x.to_bits().hash(h));
+        }
+        if self.zero.left > 0 {
+            self.zero.sum.as_flattened().iter().for_each(|x| x.to_bits().hash(h));
         }
     }
 
@@ -110,7 +141,7 @@ impl StartUpSequence {
     /// Why it is refused.
     pub(crate) fn command(&mut self, command: &Command, sensors: &Sensors) -> Verdict {
         match command {
-            Command::Reset => self.reset = RESET_CYCLES,
+            Command::Reset => self.reset = self.timing.reset,
             Command::Home if self.state == StartUp::NotHomed => self.enter(StartUp::Homing),
             Command::Home if self.state == StartUp::Homing => {}
             Command::Home => {
@@ -129,7 +160,7 @@ impl StartUpSequence {
         self.cycles = self.cycles.saturating_add(1);
         self.reset = self.reset.saturating_sub(1);
         // Drives: the first that does not know its angle, and the first that does not follow.
-        let unknown = (0..self.joints).find(|&j| sensors.drive_status[j] & u32::from(REFERENCED) == 0);
+        let unknown = (0..self.joints).find(|&j| !knows_angle(sensors, j));
         let stands = self.state == StartUp::Standing;
         let off = (0..self.joints).find(|&j| !(is_enabled(sensors, j) || stands && spares(j)));
         let load: f64 = sensors.foot_wrench.iter().map(|w| w.force[2]).sum();
@@ -147,7 +178,7 @@ impl StartUpSequence {
             _ if unknown.is_some() => StartUp::NotHomed,
             _ if off.is_some() => StartUp::Enabling,
             StartUp::Hanging => StartUp::Hanging,
-            StartUp::Zeroed if self.landed >= LANDED_CYCLES => StartUp::Standing,
+            StartUp::Zeroed if self.landed >= self.timing.landed => StartUp::Standing,
             StartUp::Zeroed => StartUp::Zeroed,
             _ if self.most_load > STOOD * self.weight => StartUp::Standing,
             _ => StartUp::Hanging,
@@ -179,12 +210,19 @@ impl StartUpSequence {
     }
 
     /// Demand on the drive of joint `j`.
+    ///
+    /// A robot that is stopped, or stands without a joint that it spares, may have joints that do not know their angles. Those
+    /// are held by their own drives, which may have found out meanwhile and would take a target for another angle than is
+    /// meant. No further drive is switched on.
     pub(crate) fn wanted(&self, j: usize, sensors: &Sensors) -> Wanted {
-        let unknown = sensors.drive_status[j] & u32::from(REFERENCED) == 0;
+        let unknown = |j: usize| !knows_angle(sensors, j);
         match self.state {
             StartUp::Off if self.reset > 0 => Wanted::Reset,
             StartUp::Off | StartUp::NotHomed => Wanted::Ready,
-            StartUp::Homing if !unknown => Wanted::Ready,
+            StartUp::Homing if !unknown(j) => Wanted::Ready,
+            StartUp::Homing => Wanted::Operation,
+            _ if !has_torque(sensors, j) && (0..self.joints).any(unknown) => Wanted::Ready,
+            _ if unknown(j) => Wanted::Stop,
             _ => Wanted::Operation,
         }
     }
@@ -205,7 +243,7 @@ impl StartUpSequence {
         };
         if verdict.is_ok() {
             self.zero.sum = [[0.0; 6]; 2];
-            self.zero.left = ZERO_CYCLES;
+            self.zero.left = self.timing.zero;
         } else {
             self.events.push(EventCode::ZeroRefused, Detail::Newtons(load as u64));
         }
@@ -229,7 +267,7 @@ impl StartUpSequence {
         }
         self.zero.left -= 1;
         if self.zero.left == 0 {
-            let mean = self.zero.sum.map(|sum| sum.map(|x| x / f64::from(ZERO_CYCLES)));
+            let mean = self.zero.sum.map(|sum| sum.map(|x| x / f64::from(self.timing.zero)));
             self.zero.offset = mean.map(|[a, b, c, d, e, f]| Wrench { force: [a, b, c], moment: [d, e, f] });
             let most = mean.iter().flat_map(|m| &m[..3]).fold(0.0f64, |most, x| most.max(x.abs()));
             self.events.push(EventCode::ForceZeroed, Detail::Newtons(most.round() as u64));
@@ -241,6 +279,19 @@ impl StartUpSequence {
 /// True if the drive of joint `j` follows its targets.
 pub(crate) fn is_enabled(sensors: &Sensors, j: usize) -> bool {
     state_of(sensors.drive_status[j] as u16) == Some(DriveState::OperationEnabled)
+}
+
+/// True if joint `j` knows its angle.
+pub(crate) fn knows_angle(sensors: &Sensors, j: usize) -> bool {
+    sensors.drive_status[j] & u32::from(REFERENCED) != 0
+}
+
+/// True if the drive of joint `j` holds it.
+fn has_torque(sensors: &Sensors, j: usize) -> bool {
+    matches!(
+        state_of(sensors.drive_status[j] as u16),
+        Some(DriveState::OperationEnabled | DriveState::QuickStop)
+    )
 }
 
 /// \[N\] Larger normal force of both feet, without its sign.

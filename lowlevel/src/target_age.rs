@@ -1,5 +1,7 @@
 //! Age of the joint targets, in cycles.
 
+use std::hash::{Hash, Hasher};
+
 use messages::JointTargets;
 
 /// Age of the joint targets.
@@ -27,6 +29,11 @@ impl TargetAge {
             Some(tick) => (self.used, self.cycles) = (tick, 0),
             None => self.cycles = self.cycles.saturating_add(1),
         }
+    }
+
+    /// Hashes what decides what comes next, at this tick.
+    pub(crate) fn hash_state(&self, tick: u64, h: &mut impl Hasher) {
+        (tick > self.used, self.cycles.min(self.limit + 1)).hash(h);
     }
 
     /// Cycles since targets were new.

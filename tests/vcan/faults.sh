@@ -61,4 +61,6 @@ line.bind(("vcan3",))
 line.send(struct.pack("=IB3x8s", 0x20000040, 8, bytes(8)))'
 step "a cable is pulled: the run says which node is silent" pulled
 step "it is plugged in again: frames are heard and read again, the robot stays stopped, its joints at rest" plugged
+step "the joint loop does that again from the log, byte for byte" replayed "$work/fault/can_2kmh.mcap"
 step "a controller leaves the bus: the run says which, and the joints come to rest" bus_off
+step "and that" replayed "$work/fault/can_2kmh.mcap"

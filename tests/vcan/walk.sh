@@ -29,3 +29,4 @@ step "Lola walks 2 km/h over nine lines" walks
 step "the joint loop allocated nothing and lost nothing" counted
 step "candump heard each message of the DBC once per cycle, on its line" every_frame
 step "cantools decodes to the values of the log" decode
+step "the joint loop does it again from the log, byte for byte" replayed "$work/walk/can_2kmh.mcap"

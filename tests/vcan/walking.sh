@@ -34,3 +34,9 @@ recorded() {
     listened_out
     return $code
 }
+
+# replayed LOG: what the joint loop read and wrote over the lines, done again from the log by its real step.
+replayed() {
+    said=$("$GANGWERK" replay "$1" --process lowlevel 2>&1) || because "$said" || return 1
+    echo "        $said"
+}

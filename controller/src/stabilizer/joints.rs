@@ -13,6 +13,9 @@ const RAMP: f64 = 0.5;
 /// \[1\] Times what the drives can accelerate, asked of them: a little less than what the joint loop passes, which knows the
 /// measured angles, and these lag.
 const ASKED: f64 = 0.97 * WITH_LOAD;
+/// \[rad\] and \[rad/s\] Targets smaller than this are zero: what decays for seconds would become subnormal otherwise, first in
+/// the products of the kinematics, and stay so.
+const GONE: f64 = 1e-30;
 
 /// Joint targets: q_d, q_d' at the end of the last cycle.
 #[derive(Clone)]
@@ -98,8 +101,9 @@ impl JointState {
             let held = angle.clamp(low.min(self.angle[j]), high.max(self.angle[j]));
             limited += u64::from(speed != wanted[j] || held != angle);
             if held.is_finite() {
-                self.speed[j] = if held == angle { speed } else { 0.0 };
-                self.angle[j] = held;
+                let kept = |x: f64| if x.abs() < GONE { 0.0 } else { x };
+                self.speed[j] = if held == angle { kept(speed) } else { 0.0 };
+                self.angle[j] = kept(held);
             }
         }
         limited

@@ -6,6 +6,7 @@
 //! - [`CountingAllocator`]: counts what the cycle's thread allocates after arming.
 //! - [`black_box`], [`last_words`]: what a process leaves when it dies.
 //! - [`Stop`]: the request to end, by signal.
+//! - [`subnormals`]: whether arithmetic met numbers that cost a hundred times as much.
 //! - [`preflight`]: what this machine gives to real time; [`cyclictest()`]: the same, measured.
 
 pub mod allocations;
@@ -19,6 +20,7 @@ mod period;
 mod preflight;
 mod sanitizer;
 mod stop;
+pub mod subnormals;
 mod thread;
 
 pub use allocations::CountingAllocator;

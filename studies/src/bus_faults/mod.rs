@@ -21,7 +21,7 @@ use serde_json::json;
 use crate::sheet::{Column, plain};
 use crate::{Error, Given, Sheet, Study, push};
 use cases::Case;
-use chain::parallel;
+use chain::{Chain, parallel};
 use trial::FaultTrial;
 
 /// The walk that is disturbed, unless another one is.
@@ -171,12 +171,7 @@ impl FaultFindings {
 pub fn run(config: &Path, scene: &str, instants: usize) -> Result<FaultFindings, Error> {
     let setup = Setup::load(config, scene)?;
     let starts = push::at_instants(&setup, instants)?;
-    let cases = cases::all(&setup);
-    let trials = parallel::map(cases.len() * instants, |k| {
-        Some(trial::run(&starts[k % instants], &cases[k / instants].faults))
-    });
-    let trials: Vec<FaultTrial> = trials.into_iter().flatten().collect::<Result<_, _>>()?;
-    let rows = cases.iter().zip(trials.chunks(instants)).map(|(case, trials)| row(case, trials)).collect();
+    let rows = rows(&starts, &cases::all(&setup))?;
     let lengths = cases::BURSTS;
     let bursts = parallel::map(lengths.len() * 2 * instants, |k| {
         let fault = cases::burst(lengths[k / (2 * instants)], k / instants % 2 == 1);
@@ -194,6 +189,32 @@ pub fn run(config: &Path, scene: &str, instants: usize) -> Result<FaultFindings,
         }
     });
     Ok(FaultFindings { cycle_s: setup.scene.cycle, instants, rows, bursts: bursts.collect() })
+}
+
+/// Those of the cases whose names are wanted, without the bursts.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_some(
+    config: &Path,
+    scene: &str,
+    instants: usize,
+    wanted: impl Fn(&str) -> bool,
+) -> Result<Vec<FaultCaseRow>, Error> {
+    let setup = Setup::load(config, scene)?;
+    let mut cases = cases::all(&setup);
+    cases.retain(|case| wanted(&case.name));
+    rows(&push::at_instants(&setup, instants)?, &cases)
+}
+
+/// Each case, begun at each of these instants.
+fn rows(starts: &[Chain], cases: &[Case]) -> Result<Vec<FaultCaseRow>, Error> {
+    let instants = starts.len();
+    let trials = parallel::map(cases.len() * instants, |k| {
+        Some(trial::run(&starts[k % instants], &cases[k / instants].faults))
+    });
+    let trials: Vec<FaultTrial> = trials.into_iter().flatten().collect::<Result<_, _>>()?;
+    Ok(cases.iter().zip(trials.chunks(instants)).map(|(case, trials)| row(case, trials)).collect())
 }
 
 /// The worst of all instants.
