@@ -101,7 +101,7 @@ impl JointState {
             let held = angle.clamp(low.min(self.angle[j]), high.max(self.angle[j]));
             limited += u64::from(speed != wanted[j] || held != angle);
             if held.is_finite() {
-                let kept = |x: f64| if x.abs() < GONE { 0.0 } else { x };
+                let kept = |x: f64| if x.abs() < GONE { 0.0f64.copysign(x) } else { x };
                 self.speed[j] = if held == angle { kept(speed) } else { 0.0 };
                 self.angle[j] = kept(held);
             }
