@@ -3,14 +3,14 @@
 //! That joints rest before a stopped robot falls is not demanded here: as it topples, its gears give way behind motors that
 //! hold. `GANGWERK_BUS_FAULTS=8` tries all of them at so many instants of a stride.
 
-use studies::bus_faults::{Row, run_some};
+use studies::bus_faults::{FaultCaseRow, run_some};
 
 const SCENE: &str = "walk_2kmh_type3";
 /// Those that are tried in any case: one that is borne, and one that ends in a stop.
 const SOME: [&str; 2] = ["knee silent for 10 cycles", "knee silent for ever"];
 
 /// Demands that are not met, but for joints at rest.
-fn unmet(row: &Row) -> Vec<&str> {
+fn unmet(row: &FaultCaseRow) -> Vec<&str> {
     row.unmet.split("; ").filter(|demand| !demand.is_empty() && !demand.contains("at rest")).collect()
 }
 
