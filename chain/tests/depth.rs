@@ -1,11 +1,14 @@
 //! `depth = "auto"`: what is chosen, what is said, and whether the estimate of the error holds.
+//!
+//! `GANGWERK_SCENES=10` makes up ten scenes instead of two.
 
 use chain::depth::{Choice, choose, judge, trial::MethodTrial};
 use config::method::Integrator::{Euler, SemiImplicit};
 use config::method::Method;
 use config::tolerance::{Output, Tolerance};
 use config::{Setup, root};
-use messages::command::PushCommand;
+use messages::Command;
+use messages::command::{PushCommand, VelocityCommand};
 
 /// Lola stands up; [`Tolerance::trial`] \[s\] of it.
 fn standing(trial: f64, outputs: &[(Output, f64)]) -> Setup {
@@ -90,4 +93,68 @@ fn estimates_hold_against_the_deepest_model() {
             assert!(estimate.complete && error <= estimate.error(), "{method}: {error} {estimate:?}");
         }
     }
+}
+
+/// Numbers between 0 and 1, the same in every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+}
+
+/// Steps on the spot first; what matters, a push or a faster walk, comes more than three seconds after that.
+fn late(random: &mut Random) -> Setup {
+    let mut setup = Setup::load(&root(None), "walk_1kmh").unwrap();
+    let velocity = |forward: f64| Command::Velocity(VelocityCommand { forward, left: 0.0, turn: 0.0 });
+    let time = random.within(5.5, 6.0);
+    setup.scene.duration = 7.5;
+    setup.scene.commands = vec![(0.1, Command::Stand), (2.2, velocity(0.02))];
+    if random.next() < 0.5 {
+        setup.scene.commands.push((time, velocity(random.within(0.3, 0.5))));
+    } else {
+        let [x, y] = [random.within(-60.0, 60.0), random.within(-60.0, 60.0)];
+        setup.scene.pushes = vec![(time, PushCommand { force: [x, y, 0.0], duration: 0.1 })];
+    }
+    setup
+}
+
+/// Estimates of the cheapest methods against the deepest model, on scenes in which what matters comes late.
+#[test]
+fn estimates_hold_where_what_matters_comes_late() {
+    let scenes = std::env::var("GANGWERK_SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(2);
+    let mut random = Random(20);
+    let setups: Vec<Setup> = (0..scenes).map(|_| late(&mut random)).collect();
+    chain::parallel::map(scenes, |k| {
+        let mut setup = setups[k].clone();
+        let cycles = (setup.scene.duration / setup.scene.cycle).round() as usize;
+        let deepest = Method { depth: 5, integrator: SemiImplicit, substeps: 10 };
+        let truth = MethodTrial::run(&setup, deepest, cycles).unwrap();
+        let method = Method { depth: 1, integrator: Euler, substeps: 1 };
+        let own = MethodTrial::run(&setup, method, cycles).unwrap();
+        let outputs = [Output::Inclination, Output::FootForce, Output::JointAngle];
+        setup.scene.auto = Some(Tolerance { outputs: outputs.map(|o| (o, f64::MAX)).to_vec(), trial: None });
+        for (estimate, output) in judge(&setup, method).unwrap().estimates.iter().zip(outputs) {
+            let error = own.distance(&truth, output);
+            println!("scene {k} {output:?}: off by {error:.2e}, estimated {:.2e}", estimate.error());
+            assert!(error.is_finite() && error <= estimate.error(), "scene {k}: {error} {estimate:?}");
+        }
+    });
+}
+
+#[test]
+fn a_trial_that_is_cut_short_says_what_it_did_not_see() {
+    let mut setup = standing(0.2, &[(Output::Inclination, 0.05)]);
+    let all = chosen(&setup);
+    assert!(all.not_seen_s.is_some_and(|last| last > 0.2) == setup.scene.commands.iter().any(|c| c.0 > 0.2));
+    setup.scene.pushes = vec![(0.7, PushCommand { force: [1.0, 0.0, 0.0], duration: 0.1 })];
+    let cut = chosen(&setup);
+    assert!(cut.not_seen_s.is_some_and(|last| last >= 0.8 - 1e-9), "{cut:?}");
+    assert!(cut.reason().contains("was not tried: tolerance.trial ends before"), "{}", cut.reason());
 }

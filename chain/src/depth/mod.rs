@@ -18,9 +18,9 @@
 //! ones before it are too long, so that a strict scene costs no trials of deep types for shallow ones.
 //! `chain/tests/depth.rs` holds estimates against that truth.
 //!
-//! A scene is tried from its begin until [`WALKING`] seconds after its first walking command or push, but never beyond its
-//! end; `tolerance.trial` says otherwise. What happens later in the scene is not seen. The order of methods is a table, and
-//! no clock decides: every run chooses alike.
+//! A scene is tried from its begin until [`WALKING`] seconds after the last thing that it makes happen: command, push, fault
+//! of the bus; one with objects, which a robot meets at any time, to its end. `tolerance.trial` says otherwise, and then the
+//! reason names what was not seen. The order of methods is a table, and no clock decides: every run chooses alike.
 
 pub mod trial;
 
@@ -32,12 +32,11 @@ use config::method::Integrator::{self, Euler, SemiImplicit};
 use config::method::Method;
 use config::tolerance::Output;
 use config::{Robot, Scene, Setup};
-use messages::Command;
 use serde::Serialize;
 
 use self::trial::MethodTrial;
 
-/// \[s\] Of what matters, walking or a push, a trial lasts this long.
+/// \[s\] Trial after the last thing that a scene makes happen.
 pub const WALKING: f64 = 3.0;
 /// By how much the difference to half the step underestimates the error of a method of first order: 1 / (1 - 1/2).
 const FIRST_ORDER: f64 = 2.0;
@@ -62,6 +61,8 @@ pub struct Choice {
     pub method: Method,
     /// \[s\] How much of the scene was tried.
     pub trial_s: f64,
+    /// \[s\] The last thing that the scene makes happen, if that was not tried.
+    pub not_seen_s: Option<f64>,
     /// Methods in the order in which they were tried, the chosen one last.
     pub tried: Vec<Tried>,
     /// Trials that were simulated, of these methods and of finer ones.
@@ -153,6 +154,10 @@ impl Choice {
         }
         let (trials, cpu) = (self.trials, self.cpu_s);
         let _ = write!(text, "; {trials} trials of {:.1} s took {cpu:.1} s", self.trial_s);
+        if let Some(time) = self.not_seen_s {
+            let _ =
+                write!(text, "; what happens until {time:.1} s was not tried: tolerance.trial ends before");
+        }
         text
     }
 }
@@ -317,17 +322,31 @@ impl<'s, F: FnMut(&str)> Trials<'s, F> {
 
     fn choice(self, method: Method, tried: Vec<Tried>) -> Choice {
         let (trials, trial_s) = (self.done.len(), self.seconds());
-        Choice { method, trial_s, tried, trials, cpu_s: self.done.values().map(|t| t.cpu_s).sum() }
+        let not_seen_s = Some(last_happening(&self.setup.scene)).filter(|last| *last > trial_s);
+        Choice {
+            method,
+            trial_s,
+            not_seen_s,
+            tried,
+            trials,
+            cpu_s: self.done.values().map(|t| t.cpu_s).sum(),
+        }
     }
 }
 
 /// \[s\] How much of a scene is tried.
 fn length(scene: &Scene) -> f64 {
-    let steps =
-        |command: &Command| matches!(command, Command::Start | Command::Velocity(_) | Command::Step(_));
-    let walks = scene.commands.iter().filter(|(_, command)| steps(command)).map(|(time, _)| *time);
-    let pushes = scene.pushes.iter().map(|(time, _)| *time);
-    let first = walks.chain(pushes).reduce(f64::min).unwrap_or(0.0);
     let asked = scene.auto.as_ref().and_then(|tolerance| tolerance.trial);
-    asked.unwrap_or(first + WALKING).min(scene.duration)
+    asked.unwrap_or(last_happening(scene) + WALKING).min(scene.duration)
+}
+
+/// \[s\] The last thing that a scene makes happen; its end if it has objects.
+fn last_happening(scene: &Scene) -> f64 {
+    if !scene.objects.is_empty() {
+        return scene.duration;
+    }
+    let commands = scene.commands.iter().map(|(time, _)| *time);
+    let pushes = scene.pushes.iter().map(|(time, push)| time + push.duration);
+    let faults = scene.bus_faults.iter().map(|fault| fault.time);
+    commands.chain(pushes).chain(faults).fold(0.0, f64::max).min(scene.duration)
 }
