@@ -115,7 +115,7 @@ impl View {
 
     /// Whether the simulated robot has fallen, so long ago that it lies still.
     pub(super) fn lies(&mut self) -> bool {
-        let fell = self.ending.fell();
+        let fell = self.ending.fell().or(self.ending.diverged());
         self.sim.latest().is_some_and(|sim| fell.is_some_and(|fell| sim.time > fell + AFTER_FALL))
     }
 

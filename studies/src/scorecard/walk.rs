@@ -75,7 +75,7 @@ fn end(who: Process, code: EventCode, time: f64) -> Option<String> {
         EventCode::SafeStop => "is stopped by the joint loop",
         EventCode::PowerOff => "loses the motor supply",
         EventCode::CommandRefused => "does not take the command",
-        EventCode::Diverged => "simulation diverges",
+        EventCode::Diverged | EventCode::ForceImplausible => "simulation diverges",
         _ => return None,
     };
     Some(format!("{what} at {time:.1} s ({})", who.name()))
