@@ -14,6 +14,8 @@ use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 pub struct System {
     /// One row per process, in the order of [`Process::ALL`].
     pub processes: Vec<ProcessRow>,
+    /// All processes, in the order in which `gangwerk run` starts them; each has built everything before the next begins.
+    pub start_order: Vec<Process>,
     /// Cycles without a reset after which the watchdog cuts the motor supply.
     pub watchdog_missed: u32,
     /// Cycles without a move of the watchdog's toggle after which the relay of the motor supply falls. A watchdog that missed
@@ -90,6 +92,7 @@ impl System {
     fn build(top: &Section<'_, '_>) -> Self {
         let system = Self {
             processes: top.table("process", processes).unwrap_or_default(),
+            start_order: start_order(top),
             watchdog_missed: top.integer("watchdog_missed", 1..=1000) as u32,
             toggle_missed: top.integer("toggle_missed", 1..=1000) as u32,
             targets_missed: top.integer("targets_missed", 1..=1000) as u32,
@@ -164,6 +167,20 @@ fn tcp_listen(top: &Section<'_, '_>) -> Option<SocketAddr> {
         top.problem("tcp_listen", format!("`{text}` {must}"));
     }
     address
+}
+
+/// Every process once.
+fn start_order(top: &Section<'_, '_>) -> Vec<Process> {
+    let names = top.texts("start_order");
+    let process = |name: &String| Process::ALL.into_iter().find(|p| p.name() == name);
+    let order: Vec<Process> = names.iter().filter_map(process).collect();
+    let once = |process| order.iter().filter(|p| **p == process).count() == 1;
+    let whole = names.len() == order.len() && Process::ALL.into_iter().all(once);
+    if !whole && top.has("start_order") {
+        let all = Process::ALL.map(Process::name).join(", ");
+        top.problem("start_order", format!("must name each process once: {all}"));
+    }
+    order
 }
 
 /// One table `[process.NAME]` for each process.

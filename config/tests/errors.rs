@@ -430,6 +430,18 @@ fn system_row_of_no_process() {
 }
 
 #[test]
+fn start_order_that_is_not_every_process_once() {
+    for wrong in ["\"planner\", \"planner\", ", "\"planer\", ", ""] {
+        let copy = Copy::new("order").spoil("system.toml", "\"planner\", ", wrong);
+        let error = text(&System::load(&copy.path("system.toml")).unwrap_err());
+        assert!(
+            error.contains("start_order: must name each process once: broker, logger, "),
+            "{wrong}: {error}"
+        );
+    }
+}
+
+#[test]
 fn emergency_stop_below_a_process() {
     let copy = Copy::new("estop").spoil("system.toml", "priority = 85", "priority = 80");
     let error = text(&System::load(&copy.path("system.toml")).unwrap_err());

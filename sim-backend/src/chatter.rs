@@ -7,7 +7,7 @@ const TURNS: u32 = 28;
 /// \[m/s, rad/s\] Smallest change of a speed in a step that counts; rounding errors also turn round.
 const LEAST: f64 = 1e-3;
 /// \[1\] Smallest ratio of a change to the one before that counts: a disturbance that dies out is none.
-const LASTING: f64 = 0.5;
+const LASTING: f64 = 0.9;
 
 /// Watch over the speeds of a state.
 #[derive(Clone, Debug, Default)]

@@ -103,11 +103,11 @@ struct Supervisor {
 }
 
 impl Supervisor {
-    /// Starts the processes one after the other; each has built everything before the next begins. Who waits longer for
+    /// Starts the processes one after the other, in the order of `start_order`; each has built everything before the next begins. Who waits longer for
     /// peers, `peer_timeout`, waits longer for their start, too.
     fn start(&mut self, setup: &Setup) -> Result<(), Box<dyn Error>> {
         let patience = START_PATIENCE.max(self.patience);
-        for process in Process::ALL {
+        for &process in &setup.system.start_order {
             let wanted = match process {
                 Process::Logger => self.run.log.is_some(),
                 Process::SimBackend => self.run.robot,

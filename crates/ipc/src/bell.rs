@@ -69,6 +69,8 @@ impl<S: Service> Ringing<S> {
 
     pub(crate) fn connect(&self) {
         self.0.for_each_listener(|_, _| CallbackProgression::Continue);
+        // The first datagram of a connection makes its socket one that does not block: two system calls.
+        self.ring();
     }
 }
 
@@ -131,7 +133,7 @@ impl Bell {
         }
     }
 
-    /// Connects to everyone who waits by now, without a sound. To be called before arming: the first ring after
+    /// Connects to everyone who waits by now, and wakes them once. To be called before arming: the first ring after
     /// somebody new began to wait would otherwise make the connection, and allocate.
     pub fn connect(&self) {
         for bell in &self.0 {
