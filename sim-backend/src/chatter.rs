@@ -28,18 +28,19 @@ impl ChatterWatch {
 
     /// Looks at the speeds at the end of a step; the index of one that chatters, where that begins.
     pub(crate) fn look(&mut self, speeds: &[f64]) -> Option<usize> {
-        let mut worst = None;
-        for (i, &speed) in speeds.iter().enumerate() {
-            let change = speed - self.before[i];
-            let turned = change * self.changes[i] < 0.0
-                && change.abs() > LEAST
-                && change.abs() > LASTING * self.changes[i].abs();
-            (self.before[i], self.changes[i]) = (speed, change);
-            self.turns[i] = self.turns[i] << 1 | u32::from(turned);
-            if self.turns[i].count_ones() >= TURNS {
-                worst = worst.or(Some(i));
-            }
+        // Without a branch for each speed: this is done in every step of the simulation.
+        let mut any = false;
+        let memory = self.before.iter_mut().zip(&mut self.changes).zip(&mut self.turns);
+        for (((before, last), turns), &speed) in memory.zip(speeds) {
+            let change = speed - *before;
+            let size = change.abs();
+            let turned = (change * *last < 0.0) & (size > LEAST) & (size > LASTING * last.abs());
+            (*before, *last) = (speed, change);
+            *turns = *turns << 1 | u32::from(turned);
+            any |= turned;
         }
+        let chatters = |turns: &u32| turns.count_ones() >= TURNS;
+        let worst = if any { self.turns.iter().position(chatters) } else { None };
         let begins = self.quiet >= STEPS;
         self.quiet = if worst.is_some() { 0 } else { self.quiet.saturating_add(1) };
         worst.filter(|_| begins)
