@@ -23,7 +23,7 @@ impl Integrator {
     pub const WORDS: [&str; 4] = ["euler", "rk4", "semi_implicit", "bdf"];
 }
 
-/// How deep a model is and how it is integrated; as text `type 2, semi_implicit x 4`.
+/// Depth of a model and how it is integrated; as text `type 2, semi_implicit x 4`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Method {
     /// Modelling depth, 1 to 5.

@@ -197,9 +197,7 @@ impl JointLoop {
             Track if cause.is_some() => self.stop(cause.unwrap_or(EventCode::SafeStop), Detail::Nothing),
             Track if off.is_some() => self.stop(EventCode::DriveNotEnabled, Detail::Joint(off.unwrap_or(0))),
             Track if late => self.stop(EventCode::TargetsStale, Detail::Cycles(self.age.cycles().into())),
-            Track if mode == JointMode::Stop => {
-                self.stop(EventCode::SafeStop, Detail::Cause(EventCode::None))
-            }
+            Track if mode == JointMode::Stop => self.stop(EventCode::SafeStop, Detail::Nothing),
             Track if mode == JointMode::Track => Track,
             Track => Hold,
         }

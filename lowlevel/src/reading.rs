@@ -8,9 +8,6 @@ use config::Robot;
 use config::system::BusLimits;
 use messages::{MAX_JOINTS, Sensors};
 
-/// \[m/s^2\] Standard gravity, unit of the threshold `jump_force`; bodies of models fall with `GRAVITY_ACCELERATION` of
-/// `crates/multibody`.
-const STANDARD_GRAVITY: f64 = 9.806_65;
 /// \[m\] Lever of the largest believable force at a foot's sensor.
 const LEVER: f64 = 0.3;
 /// \[rad/s\] Fastest the upper body turns.
@@ -87,7 +84,7 @@ impl ReadingBounds {
         for (j, joint) in robot.joints.iter().enumerate() {
             (speed[j], range[j]) = (joint.speed_limit, joint.range);
         }
-        Self { dt, limits, speed, range, force: limits.jump_force * robot.total_mass * STANDARD_GRAVITY }
+        Self { dt, limits, speed, range, force: limits.jump_force * robot.weight() }
     }
 
     /// Moves what a node reads on by one cycle, or holds it there: what is believed while nothing better comes.

@@ -26,6 +26,13 @@ impl ChatterWatch {
         Self { before: speeds.to_vec(), changes: vec![0.0; n], turns: vec![0; n], quiet: STEPS }
     }
 
+    /// Begins anew with these speeds.
+    pub(crate) fn restart(&mut self, speeds: &[f64]) {
+        self.before.copy_from_slice(speeds);
+        self.changes.fill(0.0);
+        self.turns.fill(0);
+    }
+
     /// Looks at the speeds at the end of a step; the index of one that chatters, where that begins.
     pub(crate) fn look(&mut self, speeds: &[f64]) -> Option<usize> {
         // Without a branch for each speed: this is done in every step of the simulation.

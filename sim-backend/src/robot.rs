@@ -13,6 +13,7 @@ use config::{Robot, Scene};
 use fieldbus::Injector;
 use messages::command::{LowerCommand, PushCommand};
 use messages::{BusFrames, Detail, EventCode, EventQueue, Power, SimState};
+use nalgebra::Vector3;
 
 use crate::body::SimulatedBody;
 use crate::fall::FallWatch;
@@ -27,7 +28,7 @@ use crate::step_limit;
 /// Cycles without their frames that are made good for at most: by then every drive has come to rest by itself.
 const MOST_OVERWRITTEN: u64 = 100;
 
-/// \[1\] Load on both feet in weights of the robot, from which on no robot's feet can be what carries it.
+/// \[1\] Force on a foot in weights of the robot, from which on its numbers are no robot's.
 const IMPLAUSIBLE: f64 = 100.0;
 
 /// A robot in simulation.
@@ -265,15 +266,16 @@ impl SimBackend {
         let snapshot = self.body.snapshot(dt, self.joints.references(), inputs);
         let (goals, motions) = self.joints.goals_and_motions();
         self.body.joints(goals, motions);
+        // Before the fall: a robot that its own numbers throw has not fallen.
+        let load = snapshot.foot_wrench.iter().map(|w| Vector3::from(w.force).norm()).fold(0.0, f64::max);
+        if load > IMPLAUSIBLE * self.body.weight() && !self.fall.lies() {
+            self.events.push(EventCode::ForceImplausible, Detail::Newtons(load as u64));
+            self.come_to_rest();
+        }
         if self.fall.begins(self.body.state()) {
             self.events.push(EventCode::Fallen, Detail::Nothing);
         }
         if self.fall.lands(self.body.state()) {
-            self.come_to_rest();
-        }
-        let load: f64 = snapshot.foot_wrench.iter().map(|w| w.force[2]).sum();
-        if load > IMPLAUSIBLE * self.body.weight() && !self.fall.lies() {
-            self.events.push(EventCode::ForceImplausible, Detail::Newtons(load as u64));
             self.come_to_rest();
         }
         let time = self.time();

@@ -79,7 +79,7 @@ pub fn runge_kutta_limit(values: &[Complex<f64>]) -> f64 {
 pub struct StepLimit {
     /// \[s\] 0 if no step is.
     pub step: f64,
-    /// What the robot does where it is the smallest.
+    /// Motion of the robot in which it is the smallest.
     pub regime: &'static str,
 }
 

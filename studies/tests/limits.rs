@@ -17,7 +17,8 @@ fn methods_fail_where_predicted_and_tell() {
     assert!(sheet.json().to_string().contains("\"F26\""));
 }
 
-/// What the page lacks of a finding: its row, or its numbers, to a thousandth; numbers of rounding errors to ten times.
+/// Difference of the page from a finding, if any: no row, or numbers off by more than a thousandth, those of rounding errors by
+/// more than ten times.
 fn not_on_page(page: &str, f: &Finding) -> Option<String> {
     let regime = f.regime.replace('|', "\\|");
     let Some(row) = page.lines().find(|line| line.contains(&format!("| {regime} |"))) else {

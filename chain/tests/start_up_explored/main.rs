@@ -74,7 +74,7 @@ impl Search {
         search
     }
 
-    /// Where a state began, and what led to it.
+    /// Start of a state's history, and the steps from there.
     fn story(&self, mut key: u64) -> (u64, Vec<Happens>) {
         let mut story = Vec::new();
         while let Some(reached) = self.seen.get(&key) {
@@ -97,7 +97,7 @@ fn nothing_is_led_before_its_time_and_no_stop_is_lost() {
     assert_eq!(search.fault, None);
     assert!(search.seen.len() > 10_000, "these are not all");
 }
-/// What the search takes for equal is equal: random histories, in which each state is left in each way once, and what comes
+/// Equality of states, tested: random histories, in which each state is left in each way once, and what comes
 /// of it held against what came of it before.
 #[test]
 fn equal_states_act_alike() {

@@ -15,7 +15,7 @@ pub(crate) struct Seen {
     pub(crate) happens: Happens,
     pub(crate) before: LoopState,
     pub(crate) after: LoopState,
-    /// What the joint loop says.
+    /// State as the joint loop reports it.
     pub(crate) start_up: u64,
     pub(crate) powered: bool,
     /// Drives in Operation enabled, and those with torque.
@@ -28,7 +28,7 @@ pub(crate) struct Seen {
     pub(crate) control: [u16; JOINTS],
 }
 
-/// What the rules keep.
+/// Memory of the rules.
 #[derive(Clone, Debug, Default, Hash)]
 pub(crate) struct Rules {
     closed: bool,
@@ -61,7 +61,7 @@ impl Rules {
         self.home |= commands.contains(&Command::Home);
     }
 
-    /// Whether the relay is closed now.
+    /// True while the relay is closed.
     pub(crate) fn relay(&mut self, closed: bool) {
         if !closed {
             (self.been_on, self.complete, self.carried) = Default::default();

@@ -68,7 +68,7 @@ const COMMANDS: [&[Command]; 6] = [
 const BITS: [u16; 7] = [0, 1, 2, 3, 5, 6, 15];
 
 impl Happens {
-    /// Whether a bit arrives bent.
+    /// True for a bit that arrives bent.
     fn bends(self) -> bool {
         matches!(self, Self::Bent(..) | Self::SupplyBent(_))
     }
@@ -148,7 +148,7 @@ impl World {
         }
     }
 
-    /// What the local controllers say.
+    /// Frames from the local controllers.
     fn frames(&self, happens: Happens) -> Option<BusFrames> {
         let header = Header { tick: self.tick, stamp_ns: 0, epoch: 0 };
         let mut said = Sensors { header, power: u64::from(self.relay.is_closed()), ..Sensors::default() };
@@ -222,7 +222,7 @@ impl World {
         }
     }
 
-    /// Whether this may happen now.
+    /// True if this may happen now.
     pub(crate) fn may(&self, happens: Happens) -> bool {
         !self.lied || !happens.bends()
     }

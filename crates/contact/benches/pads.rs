@@ -95,6 +95,7 @@ fn measure(pads: &[Pad], seen: &[Vec<Instance>], settings: &Settings, cold: bool
     let mut memories: Vec<Memory> = pads.iter().map(Pad::memory).collect();
     let mut dd = vec![0.0; 3 * pads[0].layer().nodes()];
     let mut row = Row { times: vec![f64::INFINITY; STATES], sweeps: 0.0, residual: 0.0, kinds: [0; 3] };
+    // Times: of several runs the shortest, since whatever else the machine does only adds.
     for run in 0..RUNS {
         for k in 0..STATES {
             if cold {
@@ -111,6 +112,7 @@ fn measure(pads: &[Pad], seen: &[Vec<Instance>], settings: &Settings, cold: bool
             }
         }
     }
+    // Sweeps and residuals in a run of their own, which is not timed.
     memories.iter_mut().for_each(Memory::clear);
     for k in 0..STATES {
         for ((pad, memory), seen) in pads.iter().zip(&mut memories).zip(seen) {
@@ -137,6 +139,7 @@ fn main() {
         let pads: Vec<Pad> =
             (0..PADS).map(|_| Pad::new(layer.clone(), Vector3::new(0.1, 0.05, 0.0))).collect();
         for scene in &SCENES {
+            // Eight pads, each an eighth of a period later than the one before: not all in the same state.
             let seen: Vec<_> =
                 (0..PADS).map(|k| record(&pads[k], scene, k as f64 * TAU / PADS as f64)).collect();
             println!("\nnu = {poisson}, {}", scene.name);

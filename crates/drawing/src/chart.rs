@@ -178,6 +178,7 @@ impl Chart {
 
     /// Smallest rectangle around everything drawn, with a little room; `[lo, hi]` of x and of y.
     fn ranges(&self) -> [[f64; 2]; 2] {
+        // Notes and labels find room where there is some; they ask for none.
         let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for mark in &self.marks {
             let points = match mark {
@@ -198,6 +199,7 @@ impl Chart {
         let [x, y] = range.map(|[lo, hi]| if lo <= hi { [lo, hi] } else { [0.0, 1.0] });
         let y = if self.robust { peaks::cut(y, self.line_values(), self.least_height) } else { y };
         let x = if x[0] == x[1] { [x[0] - 0.5, x[1] + 0.5] } else { x };
+        // A constant line gets a height, so that its rounding errors do not fill the chart.
         let least = self.least_height.max(1e-9 * y[0].abs().max(y[1].abs())).max(1e-12);
         let (middle, half) = ((y[0] + y[1]) / 2.0, ((y[1] - y[0]) / 2.0).max(least / 2.0) * 1.08);
         let room = if self.equal { 0.02 * (x[1] - x[0]) } else { 0.0 };

@@ -43,6 +43,7 @@ pub(crate) fn draw<'a>(
             }
         };
         for stretch in points.chunk_by(|a, b| side(a) == side(b)).filter(|stretch| side(&stretch[0]) != 0) {
+            // One triangle at the edge, where the stretch is furthest out.
             let up = side(&stretch[0]) > 0;
             let out = |p: &&Point| if up { p[1] } else { -p[1] };
             let furthest = stretch.iter().max_by(|a, b| out(a).total_cmp(&out(b))).unwrap_or(&stretch[0]);
@@ -50,6 +51,7 @@ pub(crate) fn draw<'a>(
             let inwards = if up { 1.0 } else { -1.0 };
             let base = edge + inwards * 13.0;
             canvas.fill(&[[x, edge + inwards * 2.0], [x - 7.0, base], [x + 7.0, base]], color);
+            // Its value beside it, unless another one stands too near at the same edge.
             let last = &mut written[usize::from(up)];
             if x > *last + APART || x < *last - APART {
                 *last = x;

@@ -35,12 +35,14 @@ fn ours() -> Capture {
         let time_ns = 1_700_000_000_123_456_000 + 1_000_000 * capture.frames.len() as u64;
         capture.frames.push(Captured { time_ns, line, id, len: len as u8, data, form, way: None });
     };
+    // Classic frames, and remote ones, which have a length but no data.
     for len in 0..=8 {
         for id in [0x123, 0x7ff, EXTENDED | 0x123, EXTENDED | 0x1fff_ffff] {
             add("vcan0", id, len, FrameType::CLASSIC);
             add("vcan1", id | REMOTE, len, FrameType::CLASSIC);
         }
     }
+    // CAN FD, with and without bit rate switch and error state.
     for len in FD_LENGTHS {
         for flags in [0, 1, 2, 3] {
             add("vcan0", 0x222, len, FrameType::Fd { flags });
@@ -57,6 +59,7 @@ fn listed(capture: &Capture) -> String {
     let mut text = String::new();
     for f in &capture.frames {
         let is = |flag: u32| u8::from(f.id & flag != 0);
+        // A classic frame has no flags of CAN FD; the peer prints zeros there, too.
         let (fd, flags) = match f.form {
             FrameType::Classic { .. } => (0, 0),
             FrameType::Fd { flags } => (1, flags),

@@ -61,6 +61,7 @@ impl BusLines {
         fd: bool,
         end: BusEnd,
     ) -> Result<Self, Box<dyn std::error::Error>> {
+        // One line for all needs identifiers that say which line is meant.
         let nodes = layout.nodes.len();
         let shared = interfaces.len() == 1 && nodes > 1;
         if interfaces.len() != nodes && !shared {
@@ -75,6 +76,7 @@ impl BusLines {
                 format!("message {name}: identifier {id:#x} is used on several lines; give {nodes} interfaces, one for each").into()
             );
         }
+        // The kernel filters: a socket gets what the other end sends on its line, and not its own frames back.
         let mut sockets = Vec::new();
         for (line, interface) in interfaces.iter().enumerate() {
             let wanted = layout.messages.iter().filter(|m| m.to_drives == (end == BusEnd::Far));

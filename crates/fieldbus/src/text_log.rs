@@ -120,9 +120,11 @@ pub fn read(path: &Path, strictness: Strictness) -> Result<(Capture, BrokenLines
     let mut from = io::BufReader::new(std::fs::File::open(path).map_err(unreadable)?);
     let begin = from.fill_buf().map_err(unreadable)?;
     let first = String::from_utf8_lossy(begin).trim_start().chars().take(5).collect::<String>();
+    // By how it begins, else by its ending.
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
     let ends = |with: &str| ending.as_ref().is_some_and(|ending| ending == with);
     let (mut capture, mut broken) = match first.to_ascii_lowercase().as_str() {
+        // Vector's binary format, which is named BLF and begins with LOGG.
         first if first.starts_with("logg") => return Err(TextLogError::Binary(path.into())),
         first if ends("trc") || first.starts_with(';') => trc::parse(from),
         "date " | "base " => asc::parse(from),

@@ -40,7 +40,7 @@ impl Words {
         text
     }
 
-    /// What a detail says, by the words in braces.
+    /// Detail in words, by the place in braces.
     fn detail(&self, says: &str, detail: Detail) -> String {
         let named = |names: &[String], kind: &str, i: usize| {
             names.get(i).cloned().unwrap_or_else(|| format!("{kind} {i}"))
@@ -108,6 +108,7 @@ mod tests {
             said(EventCode::ControlLimited, 3),
             "the stabilizer meets a limit: speed, acceleration or range of a joint; once in a while is normal; walk slower if it goes on"
         );
+        // A cause is told with its own advice first, and no advice twice.
         let off = said(EventCode::PowerOff, EventCode::ResetMissed as u64);
         assert!(
             off.starts_with(
@@ -120,6 +121,7 @@ mod tests {
         assert_eq!(stop.matches("system/reset").count(), 1, "{stop}");
         let stop = said(EventCode::SafeStop, 0);
         assert!(stop.starts_with("controlled stop; secure the robot"), "{stop}");
+        // Details by the names of the robot's parts.
         assert!(said(EventCode::FollowingError, 1).contains("target: knee;"));
         assert!(
             said(EventCode::DriveTripped, 1 | 0x4210 << 16).contains("a fault: knee: error 0x4210 too hot;")

@@ -117,6 +117,7 @@ impl Data {
     /// Allocates for a model.
     pub fn new(model: &Model) -> Data {
         let (nb, nv) = (model.bodies.len(), model.nv());
+        // What does not change with q is written here once: a joint's place in its parent, unless it slides.
         let position = |b: &Body| {
             let apart = b.r != ZERO || matches!(b.kind, JointKernel::Along(_));
             Position { c: 1.0, s: 0.0, r: b.r, apart }

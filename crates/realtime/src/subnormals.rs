@@ -9,7 +9,7 @@
 #[cfg(target_arch = "x86_64")]
 const FLAGS: u32 = 1 << 1 | 1 << 4;
 
-/// Whether this thread computed with a subnormal number, or to one, since the last call; none where nobody can tell.
+/// True if this thread computed with a subnormal number, or to one, since the last call; none where nobody can tell.
 #[cfg(target_arch = "x86_64")]
 #[inline(never)]
 pub fn met() -> Option<bool> {

@@ -1,4 +1,4 @@
-//! What a search of all states needs: short times, and what tells two states apart.
+//! Support for a search of all states: short times, and a hash that tells two states apart. Only tests call it.
 
 use std::hash::{Hash, Hasher};
 
