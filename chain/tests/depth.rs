@@ -2,7 +2,7 @@
 //!
 //! `GANGWERK_SCENES=10` makes up ten scenes instead of two.
 
-use chain::depth::{Choice, choose, judge, trial::MethodTrial};
+use chain::depth::{Choice, Estimate, choose, judge, trial::MethodTrial};
 use config::method::Integrator::{Euler, SemiImplicit};
 use config::method::Method;
 use config::tolerance::{Output, Tolerance};
@@ -109,29 +109,31 @@ impl Random {
     }
 }
 
-/// Steps on the spot first; what matters, a push or a faster walk, comes more than three seconds after that.
-fn late(random: &mut Random) -> Setup {
+/// Steps on the spot first; what matters, a push or a faster walk in turn, comes more than three seconds after that.
+fn late(k: usize, random: &mut Random) -> Setup {
     let mut setup = Setup::load(&root(None), "walk_1kmh").unwrap();
     let velocity = |forward: f64| Command::Velocity(VelocityCommand { forward, left: 0.0, turn: 0.0 });
     let time = random.within(5.5, 6.0);
-    setup.scene.duration = 7.5;
+    setup.scene.duration = 8.5;
     setup.scene.commands = vec![(0.1, Command::Stand), (2.2, velocity(0.02))];
-    if random.next() < 0.5 {
-        setup.scene.commands.push((time, velocity(random.within(0.3, 0.5))));
+    if k.is_multiple_of(2) {
+        let (force, direction) = (random.within(80.0, 120.0), random.within(0.0, std::f64::consts::TAU));
+        let force = [force * direction.cos(), force * direction.sin(), 0.0];
+        setup.scene.pushes = vec![(time, PushCommand { force, duration: 0.1 })];
     } else {
-        let [x, y] = [random.within(-60.0, 60.0), random.within(-60.0, 60.0)];
-        setup.scene.pushes = vec![(time, PushCommand { force: [x, y, 0.0], duration: 0.1 })];
+        setup.scene.commands.push((time, velocity(random.within(0.4, 0.6))));
     }
     setup
 }
 
-/// Estimates of the cheapest methods against the deepest model, on scenes in which what matters comes late.
+/// Estimates of the cheapest method against the deepest model, on scenes in which what matters comes late; where the robot
+/// falls with one of them, both are infinite.
 #[test]
 fn estimates_hold_where_what_matters_comes_late() {
     let scenes = std::env::var("GANGWERK_SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(2);
     let mut random = Random(20);
-    let setups: Vec<Setup> = (0..scenes).map(|_| late(&mut random)).collect();
-    chain::parallel::map(scenes, |k| {
+    let setups: Vec<Setup> = (0..scenes).map(|k| late(k, &mut random)).collect();
+    let found = chain::parallel::map(scenes, |k| {
         let mut setup = setups[k].clone();
         let cycles = (setup.scene.duration / setup.scene.cycle).round() as usize;
         let deepest = Method { depth: 5, integrator: SemiImplicit, substeps: 10 };
@@ -140,19 +142,26 @@ fn estimates_hold_where_what_matters_comes_late() {
         let own = MethodTrial::run(&setup, method, cycles).unwrap();
         let outputs = [Output::Inclination, Output::FootForce, Output::JointAngle];
         setup.scene.auto = Some(Tolerance { outputs: outputs.map(|o| (o, f64::MAX)).to_vec(), trial: None });
-        for (estimate, output) in judge(&setup, method).unwrap().estimates.iter().zip(outputs) {
-            let error = own.distance(&truth, output);
-            println!("scene {k} {output:?}: off by {error:.2e}, estimated {:.2e}", estimate.error());
-            assert!(error.is_finite() && error <= estimate.error(), "scene {k}: {error} {estimate:?}");
-        }
+        let estimates = judge(&setup, method).unwrap().estimates;
+        let compare = |(e, output): (&Estimate, Output)| (own.distance(&truth, output), e.error());
+        estimates.iter().zip(outputs).map(compare).collect::<Vec<_>>()
     });
+    for (k, errors) in found.iter().enumerate() {
+        println!(
+            "scene {k}: {}",
+            errors.iter().map(|(e, s)| format!("{e:.2e} of {s:.2e}; ")).collect::<String>()
+        );
+    }
+    let finite = found.iter().filter(|errors| errors.iter().all(|(error, _)| error.is_finite())).count();
+    assert!(4 * finite >= 3 * scenes, "{finite} of {scenes} robots do not fall");
+    assert!(found.iter().flatten().all(|(error, estimate)| error <= estimate), "an estimate is too small");
 }
 
 #[test]
 fn a_trial_that_is_cut_short_says_what_it_did_not_see() {
     let mut setup = standing(0.2, &[(Output::Inclination, 0.05)]);
-    let all = chosen(&setup);
-    assert!(all.not_seen_s.is_some_and(|last| last > 0.2) == setup.scene.commands.iter().any(|c| c.0 > 0.2));
+    setup.scene.commands.clear();
+    assert_eq!(chosen(&setup).not_seen_s, None, "nothing happens");
     setup.scene.pushes = vec![(0.7, PushCommand { force: [1.0, 0.0, 0.0], duration: 0.1 })];
     let cut = chosen(&setup);
     assert!(cut.not_seen_s.is_some_and(|last| last >= 0.8 - 1e-9), "{cut:?}");
