@@ -196,7 +196,7 @@ struct Tried {
 const FINER: usize = 100;
 /// K_p of a leg that stands, and of one in the air.
 const POSITION_GAINS: Tried = Tried { unit: STANCE.stiffness, range: [0.01, 2.5], count: 25 };
-const POSITION_GAINS_AIR: Tried = Tried { unit: AIR.stiffness, range: [0.01, 1.2], count: 60 };
+const POSITION_GAINS_AIR: Tried = Tried { unit: AIR.stiffness, range: [0.01, 0.81], count: 41 };
 /// K_d; smaller ones than these damp so little that a second does not tell growth from decay.
 const SPEED_GAINS: Tried = Tried { unit: 1.0, range: [100.0, 4000.0], count: 25 };
 
