@@ -50,7 +50,7 @@ pub struct EncoderErrors {
     pub bias: PerJoint,
     /// Speed by finite differences of the measured angle over one cycle.
     pub speed_by_difference: bool,
-    /// \[s\] Dead time, in whole cycles.
+    /// \[s\] Dead time.
     pub delay: f64,
 }
 
@@ -73,7 +73,7 @@ pub struct ForceTorqueErrors {
     pub force_range: [f64; 3],
     /// \[N m\] Largest moment about x, y, z; infinite where there is no limit.
     pub moment_range: [f64; 3],
-    /// \[s\] Dead time, in whole cycles.
+    /// \[s\] Dead time.
     pub delay: f64,
 }
 
@@ -108,7 +108,7 @@ pub struct ImuErrors {
     pub acceleration: SignalErrors,
     /// \[s\] Between two readings, in whole cycles; 0: one in every cycle.
     pub period: f64,
-    /// \[s\] Dead time, in whole cycles.
+    /// \[s\] Dead time.
     pub delay: f64,
 }
 

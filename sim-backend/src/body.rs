@@ -6,7 +6,7 @@ use config::{Robot, Scene};
 use messages::{Detail, EventCode, EventQueue};
 
 use crate::chatter::ChatterWatch;
-use crate::drive::{JointCubic, JointMotion};
+use crate::drive::JointCubic;
 use crate::integrate::Stepper;
 use crate::layout::orientation;
 use crate::plant::{Plant, PlantInputs, Snapshot};
@@ -23,6 +23,8 @@ pub(crate) struct SimulatedBody {
     state: Vec<f64>,
     /// State at the beginning of the cycle.
     last_good: Vec<f64>,
+    /// State at the beginning of the step.
+    before: Vec<f64>,
     /// Length of a cycle \[s\], and steps in it.
     cycle: f64,
     substeps: u32,
@@ -46,6 +48,7 @@ impl SimulatedBody {
             chatter: ChatterWatch::new(&state[plant.layout().speed()]),
             chatters: None,
             last_good: state.clone(),
+            before: state.clone(),
             state,
             plant,
             cycle: scene.cycle,
@@ -79,15 +82,21 @@ impl SimulatedBody {
     }
 
     /// One cycle of time passes. Returns the first state that is not finite, if there is one: then the state is that of
-    /// the beginning of the cycle.
-    pub(crate) fn advance(&mut self, references: &[JointCubic], inputs: &PlantInputs) -> Option<usize> {
-        let Self { plant, stepper, chatter, state, last_good, .. } = self;
+    /// the beginning of the cycle. `observe` sees each step but the last, whose end is that of the cycle.
+    pub(crate) fn advance(
+        &mut self,
+        references: &[JointCubic],
+        inputs: &PlantInputs,
+        mut observe: Option<impl FnMut(&mut Plant, &[f64])>,
+    ) -> Option<usize> {
+        let Self { plant, stepper, chatter, state, last_good, before, .. } = self;
         let speed = plant.layout().speed();
         last_good.copy_from_slice(state);
         plant.sample(self.cycle, state, references, inputs);
         let h = self.cycle / f64::from(self.substeps);
-        for i in 0..self.substeps {
-            stepper.step(plant, f64::from(i) * h, h, state, references, inputs);
+        for i in 1..=self.substeps {
+            before.copy_from_slice(state);
+            stepper.step(plant, f64::from(i - 1) * h, h, state, references, inputs);
             // Whoever holds a robot in its start pose is stiffer than any explicit step bears, and lets go.
             if inputs.switches.held == 0 {
                 self.chatters =
@@ -95,11 +104,18 @@ impl SimulatedBody {
             } else {
                 chatter.restart(&state[speed.clone()]);
             }
+            if let (Some(observe), true) = (&mut observe, i < self.substeps) {
+                plant.note_step(h, before, state);
+                plant.look(f64::from(i) * h, state, references);
+                observe(plant, state);
+            }
         }
         let lost = state.iter().position(|x| !x.is_finite());
         if lost.is_some() {
             state.copy_from_slice(last_good);
+            before.copy_from_slice(last_good);
         }
+        plant.note_step(h, before, state);
         lost
     }
 
@@ -109,6 +125,7 @@ impl SimulatedBody {
         for moving in [layout.speed(), layout.rotor_speed(), layout.current()] {
             self.state[moving].fill(0.0);
         }
+        self.plant.note_rest();
     }
 
     /// Makes the quaternion of the torso a unit one again.
@@ -145,14 +162,9 @@ impl SimulatedBody {
         }
     }
 
-    /// Forces and accelerations at the end of a cycle of `dt` \[s\].
-    pub(crate) fn snapshot(&mut self, dt: f64, references: &[JointCubic], inputs: &PlantInputs) -> Snapshot {
-        self.plant.snapshot(dt, &self.state, references, inputs)
-    }
-
-    /// Motions of the joints; `goals`: of those that follow.
-    pub(crate) fn joints(&self, goals: &[JointMotion], motions: &mut [JointMotion]) {
-        self.plant.joints(&self.state, goals, motions);
+    /// Places and forces at the end of a cycle of `dt` \[s\].
+    pub(crate) fn snapshot(&mut self, dt: f64, references: &[JointCubic]) -> Snapshot {
+        self.plant.snapshot(dt, &self.state, references)
     }
 
     /// Plant and state, for sensors that ask for more than a snapshot.

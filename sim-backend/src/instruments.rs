@@ -37,7 +37,13 @@ impl Instruments {
         let force_frames = [frame(0)?, frame(1)?];
         let hanging = carried::hanging(plant.model(), &force_frames, &robot.poses[&scene.start_pose]);
         Ok(Self {
-            sensors: SensorSet::new(&scene.sensors, robot, &hanging, scene.seed, scene.cycle),
+            sensors: SensorSet::new(
+                &scene.sensors,
+                robot,
+                &hanging,
+                scene.seed,
+                (scene.cycle, scene.substeps),
+            ),
             force_frames,
             imu: Vector3::from(robot.imu),
             readings: Sensors::default(),
@@ -88,10 +94,9 @@ impl Instruments {
         events: &mut EventQueue,
     ) -> bool {
         let (plant, x) = body.parts();
-        let mut seen = Truth { motor_current: [f64::NAN; messages::MAX_JOINTS], ..Truth::default() };
-        self.see_joints(plant, x, joints, &mut seen);
-        self.see_forces(plant, snapshot, &mut seen);
-        seen.imu = self.see_imu(plant, x, snapshot);
+        let mut seen = self.see(plant, x);
+        (self.state.joint_angle, self.state.motor_angle) = (seen.joint_angle, seen.motor_angle);
+        add_reading_errors(joints, &mut seen);
         let report = self.sensors.measure(&seen, &mut self.readings);
         joints.electronics().report(&mut self.readings);
         self.write_truth(time, plant, x, snapshot, inputs);
@@ -104,33 +109,38 @@ impl Instruments {
         report.invalid == 0
     }
 
-    /// Encoders and current sensors of the drives.
-    fn see_joints(&mut self, plant: &Plant, x: &[f64], joints: &SimulatedJoints, seen: &mut Truth) {
-        for (j, m) in joints.motions().iter().enumerate() {
-            (seen.joint_angle[j], seen.joint_speed[j]) = (m.angle, m.speed);
-            self.state.joint_angle[j] = m.angle;
+    /// True if [`Instruments::observe`] is to see the steps within a cycle.
+    pub(crate) fn is_analogue(&self) -> bool {
+        self.sensors.is_analogue()
+    }
+
+    /// One more step of the integration within a cycle, which the plant has looked at.
+    pub(crate) fn observe(&mut self, plant: &mut Plant, x: &[f64], joints: &SimulatedJoints) {
+        let mut seen = self.see(plant, x);
+        add_reading_errors(joints, &mut seen);
+        self.sensors.observe(&seen);
+    }
+
+    /// What there is to be measured in a state that the plant has looked at.
+    fn see(&self, plant: &mut Plant, x: &[f64]) -> Truth {
+        let mut seen = Truth { motor_current: [f64::NAN; messages::MAX_JOINTS], ..Truth::default() };
+        for j in 0..plant.model().n() {
+            (seen.joint_angle[j], seen.joint_speed[j]) = plant.joint(j);
         }
         // A motor turns as its joint, but where an elastic gear has a rotor of its own.
         (seen.motor_angle, seen.motor_speed) = (seen.joint_angle, seen.joint_speed);
         plant.motors(x, &mut seen.motor_angle, &mut seen.motor_speed, &mut seen.motor_current);
-        self.state.motor_angle = seen.motor_angle;
-        for j in 0..joints.motions().len() {
-            let error = joints.reading_error(j);
-            if error != 0.0 {
-                seen.joint_angle[j] += error;
-                seen.motor_angle[j] += error;
-            }
-        }
+        self.see_forces(plant, &mut seen);
+        seen.imu = self.see_imu(plant, x);
+        seen
     }
 
     /// Wrenches on the force sensors: of the ground, moved there from the soles, and of the bodies below.
-    fn see_forces(&self, plant: &mut Plant, snapshot: &Snapshot, seen: &mut Truth) {
+    fn see_forces(&self, plant: &mut Plant, seen: &mut Truth) {
         for i in 0..2 {
             let pose = plant.frame_pose(&self.force_frames[i]);
-            let force = Vector3::from(snapshot.foot_wrench[i].force);
-            let sole = Vector3::new(snapshot.feet[i][0], snapshot.feet[i][1], snapshot.feet[i][2]);
-            let lever = sole - pose.translation.vector;
-            let moment = Vector3::from(snapshot.foot_wrench[i].moment) + lever.cross(&force);
+            let (sole, force, moment) = plant.sole_load(i);
+            let moment = moment + (sole - pose.translation.vector).cross(&force);
             let back = pose.rotation.inverse();
             seen.contact[i] = Wrench { force: (back * force).into(), moment: (back * moment).into() };
         }
@@ -140,16 +150,15 @@ impl Instruments {
     }
 
     /// Motion of the inertial measurement unit, which is not at the torso's origin.
-    fn see_imu(&self, plant: &Plant, x: &[f64], snapshot: &Snapshot) -> Imu {
+    fn see_imu(&self, plant: &Plant, x: &[f64]) -> Imu {
         let speed = &x[plant.layout().speed()];
         let omega = Vector3::from_column_slice(&speed[3..6]);
+        let (specific_force, angular_acceleration) = plant.torso_acceleration(x);
+        let lever = angular_acceleration.cross(&self.imu) + omega.cross(&omega.cross(&self.imu));
         Imu {
             orientation: orientation(x).coords.into(),
             angular_velocity: omega.into(),
-            acceleration: (snapshot.specific_force
-                + snapshot.angular_acceleration.cross(&self.imu)
-                + omega.cross(&omega.cross(&self.imu)))
-            .into(),
+            acceleration: (specific_force + lever).into(),
         }
     }
 
@@ -172,5 +181,16 @@ impl Instruments {
     pub(crate) fn note(&mut self, powered: bool, fallen: bool) {
         (self.readings.power, self.state.power) = (u64::from(powered), u64::from(powered));
         self.state.fallen = u64::from(fallen);
+    }
+}
+
+/// Adds what each joint's encoders read too much.
+fn add_reading_errors(joints: &SimulatedJoints, seen: &mut Truth) {
+    for j in 0..joints.motions().len() {
+        let error = joints.reading_error(j);
+        if error != 0.0 {
+            seen.joint_angle[j] += error;
+            seen.motor_angle[j] += error;
+        }
     }
 }

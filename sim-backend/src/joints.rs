@@ -9,6 +9,7 @@ use crate::depth::JointModel;
 use crate::drive::{JointCubic, JointMotion};
 use crate::drive_electronics::{Action, DriveElectronics, ReceivedCommand};
 use crate::inputs::DriveSwitches;
+use crate::plant::Plant;
 
 /// Joints of one robot, from the frames of the bus to references.
 #[derive(Clone)]
@@ -56,9 +57,11 @@ impl SimulatedJoints {
         &self.motions
     }
 
-    /// Ends of the references, and the motions of the joints to be written.
-    pub(crate) fn goals_and_motions(&mut self) -> (&[JointMotion], &mut [JointMotion]) {
-        (&self.goals, &mut self.motions)
+    /// Takes the motions of the joints from a plant that has looked at its state.
+    pub(crate) fn look(&mut self, plant: &Plant) {
+        for (j, m) in self.motions.iter_mut().enumerate() {
+            (m.angle, m.speed) = plant.joint(j);
+        }
     }
 
     /// Electronics of the drives.

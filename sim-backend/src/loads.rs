@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use crate::crane::CraneRope;
 use crate::drive::JointCubic;
 use crate::external_forces::ExternalForces;
-use crate::plant::{Plant, PlantInputs};
+use crate::plant::Plant;
 
 /// Loads on the torso of one robot.
 #[derive(Clone)]
@@ -66,7 +66,7 @@ fn hooked(
     state: &[f64],
     references: &[JointCubic],
 ) -> CraneRope {
-    let snapshot = plant.snapshot(0.0, state, references, &PlantInputs::default());
+    let snapshot = plant.snapshot(0.0, state, references);
     let torso = Vector3::from_column_slice(&state[..3]);
     let mut hook = snapshot.com - torso;
     hook.z = crane.hook;

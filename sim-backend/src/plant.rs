@@ -14,16 +14,12 @@ use crate::depth::{Depth, JointModel};
 use crate::drive::{JointCubic, JointMotion};
 use crate::external_forces::at_base;
 use crate::ground::GroundContact;
-use crate::implicit::ShaftStep;
 pub use crate::inputs::PlantInputs;
 pub use crate::layout::orientation;
 use crate::layout::{StateLayout, quaternion_rate};
 use crate::sensors::carried;
 use crate::shaft::TrainInputs;
 use crate::train::{Train, TrainFault, rotors};
-
-/// \[s\] Step of a snapshot before the first step of the state, if it is to move by implicit ones.
-const FIRST_STEP: f64 = 1e-3;
 
 /// The equations of motion of one robot.
 #[derive(Clone)]
@@ -34,8 +30,6 @@ pub struct Plant {
     layout: StateLayout,
     ground: GroundContact,
     joints: Joints,
-    /// \[s\] Length of the implicit steps by which the state moves; none if it moves by [`Plant::rate`].
-    implicit: Option<f64>,
     scratch: Scratch,
 }
 
@@ -60,11 +54,9 @@ struct Scratch {
     acceleration: Vec<f64>,
     bias: Vec<f64>,
     next: Vec<f64>,
-    rate: Vec<f64>,
-    steps: Vec<ShaftStep>,
 }
 
-/// Result of one evaluation at the end of a cycle: what sensors and logs want to know.
+/// Places and forces in a state, as sensors and logs need them.
 #[derive(Clone, Copy, Debug)]
 pub struct Snapshot {
     /// \[N, N m\] @world Ground on each foot, moment about the sole frame.
@@ -73,10 +65,6 @@ pub struct Snapshot {
     pub feet: [[f64; 4]; 2],
     /// \[m\] @world
     pub com: Vector3<f64>,
-    /// \[m/s^2\] @torso Acceleration of the torso's origin less gravity.
-    pub specific_force: Vector3<f64>,
-    /// \[rad/s^2\] @torso
-    pub angular_acceleration: Vector3<f64>,
 }
 
 impl Plant {
@@ -120,9 +108,8 @@ impl Plant {
             }
             train => (Joints::Following(train), StateLayout { joints: 0, elastic: 0, nodes, motors: 0 }),
         };
-        let scratch = Scratch::new(&model, &layout);
-        let implicit = driven.then_some(FIRST_STEP);
-        Ok(Self { model, data, depth, layout, ground, joints, implicit, scratch })
+        let scratch = Scratch::new(&model);
+        Ok(Self { model, data, depth, layout, ground, joints, scratch })
     }
 
     /// Modelling depth.
@@ -169,16 +156,9 @@ impl Plant {
         x
     }
 
-    /// Motions of the joints in a state; of joints that follow: those of their references.
-    pub fn joints(&self, x: &[f64], reference: &[JointMotion], out: &mut [JointMotion]) {
-        if let Joints::Following(_) = self.joints {
-            return out.copy_from_slice(reference);
-        }
-        let l = &self.layout;
-        let (q, v) = (&x[l.pose()][7..], &x[l.speed()][6..]);
-        for (j, m) in out.iter_mut().enumerate() {
-            *m = JointMotion { angle: q[j], speed: v[j], acceleration: self.scratch.acceleration[6 + j] };
-        }
+    /// \[rad, rad/s\] Angle and speed of joint `j` in the state that was last looked at.
+    pub fn joint(&self, j: usize) -> (f64, f64) {
+        (self.scratch.q[7 + j], self.scratch.v[6 + j])
     }
 
     /// The sampled controllers measure, at the beginning of a cycle \[s\] in state `x`, and compute what they hold in it.
@@ -195,7 +175,6 @@ impl Plant {
 
     /// The derivative of `x` with the references of `drives`, `tau` \[s\] into the cycle.
     pub fn rate(&mut self, tau: f64, x: &[f64], drives: &[JointCubic], inputs: &PlantInputs, dx: &mut [f64]) {
-        self.implicit = None;
         let l = self.layout;
         self.load(tau, x, drives);
         self.touch_ground(&x[l.layer()]);
@@ -236,7 +215,6 @@ impl Plant {
         inputs: &PlantInputs,
     ) {
         let l = self.layout;
-        self.implicit = Some(h);
         let reference = match self.joints {
             Joints::Following(_) => tau,
             Joints::Driven(_) => tau + h, // the drives work at the end of the step
@@ -266,49 +244,80 @@ impl Plant {
         }
     }
 
-    /// Forces and accelerations in a state, as sensors and logs need them.
-    pub fn snapshot(&mut self, tau: f64, x: &[f64], drives: &[JointCubic], inputs: &PlantInputs) -> Snapshot {
-        // By the same equations as the steps: implicit ones have no rate at an instant.
-        match self.implicit {
-            None => {
-                let mut rate = std::mem::take(&mut self.scratch.rate);
-                self.rate(tau, x, drives, inputs, &mut rate);
-                self.scratch.rate = rate;
-            }
-            Some(h) => self.try_acceleration(tau, h, x, drives, inputs),
-        }
-        // Of the torso: the acceleration that a sensor feels is that in the world, less gravity.
-        let (speed, change) = (&x[self.layout.speed()], &self.scratch.acceleration);
-        let omega = Vector3::from_column_slice(&speed[3..6]);
-        let acceleration =
-            Vector3::from_column_slice(&change[..3]) + omega.cross(&Vector3::from_column_slice(&speed[..3]));
-        let angular_acceleration = Vector3::from_column_slice(&change[3..6]);
-        // Of the feet, with the kinematics of all bodies: an evaluation needs only those of the limbs.
-        let Self { model, data, ground: GroundContact { feet, soles, .. }, .. } = self;
-        model.forward_kinematics_here(data);
-        let mut foot_wrench = [Wrench { force: [0.0; 3], moment: [0.0; 3] }; 2];
-        for (foot, wrench) in foot_wrench.iter_mut().enumerate() {
-            let (force, moment) =
-                feet.total(model, data, &model.frame_position(data, &soles[foot]), Some(foot));
-            *wrench = Wrench { force: force.into(), moment: moment.into() };
-        }
-        let sole_places = std::array::from_fn(|i| {
-            let pose = model.frame_pose(data, &soles[i]);
-            let (r, p) = (pose.rotation.matrix(), pose.translation.vector);
-            [p.x, p.y, p.z, r[(1, 0)].atan2(r[(0, 0)])]
-        });
-        Snapshot {
-            foot_wrench,
-            feet: sole_places,
-            com: model.cog(data),
-            specific_force: acceleration - orientation(x).inverse() * multibody::GRAVITY,
-            angular_acceleration,
+    /// Kinematics of the feet and forces of the ground in a state, `tau` \[s\] into the cycle. The next step from there
+    /// has them already.
+    pub fn look(&mut self, tau: f64, x: &[f64], drives: &[JointCubic]) {
+        self.load(tau, x, drives);
+        self.touch_ground(&x[self.layout.layer()]);
+        let Scratch { joint_acceleration, acceleration, .. } = &mut self.scratch;
+        if let Joints::Following(_) = self.joints {
+            acceleration[6..].copy_from_slice(joint_acceleration);
         }
     }
 
-    /// Wrenches that carry and move the bodies below each force sensor; after [`Plant::snapshot`], whose acceleration it takes.
+    /// Places and forces in a state.
+    pub fn snapshot(&mut self, tau: f64, x: &[f64], drives: &[JointCubic]) -> Snapshot {
+        self.look(tau, x, drives);
+        // With the kinematics of all bodies: an evaluation needs only those of the limbs.
+        self.model.forward_kinematics_here(&mut self.data);
+        let com = self.model.cog(&mut self.data);
+        let foot_wrench = std::array::from_fn(|foot| {
+            let (_, force, moment) = self.sole_load(foot);
+            Wrench { force: force.into(), moment: moment.into() }
+        });
+        let Self { model, data, ground, .. } = &*self;
+        let sole_places = std::array::from_fn(|i| {
+            let pose = model.frame_pose(data, &ground.soles[i]);
+            let (r, p) = (pose.rotation.matrix(), pose.translation.vector);
+            [p.x, p.y, p.z, r[(1, 0)].atan2(r[(0, 0)])]
+        });
+        Snapshot { foot_wrench, feet: sole_places, com }
+    }
+
+    /// Takes the mean acceleration of a step of `h` \[s\] between two states for that at its end: it is what the step's
+    /// forces did, impacts and dry friction included.
+    pub fn note_step(&mut self, h: f64, before: &[f64], x: &[f64]) {
+        let l = &self.layout;
+        let velocity = |x: &[f64]| orientation(x) * Vector3::from_column_slice(&x[l.speed()][..3]);
+        let (speed_before, speed) = (&before[l.speed()], &x[l.speed()]);
+        let acceleration = &mut self.scratch.acceleration;
+        for ((a, before), after) in acceleration.iter_mut().zip(speed_before).zip(speed) {
+            *a = (after - before) / h;
+        }
+        // Velocities of the torso's origin are in its own axes, which turn.
+        let linear = orientation(x).inverse() * ((velocity(x) - velocity(before)) / h)
+            - angular_velocity(speed).cross(&Vector3::from_column_slice(&speed[..3]));
+        acceleration[..3].copy_from_slice(linear.as_slice());
+    }
+
+    /// Nothing accelerates.
+    pub(crate) fn note_rest(&mut self) {
+        self.scratch.acceleration.fill(0.0);
+    }
+
+    /// \[m/s^2, rad/s^2\] @torso Acceleration of the torso's origin less gravity, and angular acceleration, of the step that
+    /// led to a state.
+    pub(crate) fn torso_acceleration(&self, x: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
+        let (speed, change) = (&x[self.layout.speed()], &self.scratch.acceleration);
+        let turning = angular_velocity(speed).cross(&Vector3::from_column_slice(&speed[..3]));
+        let linear = Vector3::from_column_slice(&change[..3]) + turning;
+        let specific = linear - orientation(x).inverse() * multibody::GRAVITY;
+        (specific, Vector3::from_column_slice(&change[3..6]))
+    }
+
+    /// \[m, N, N m\] @world Origin of a sole frame, force of the ground on its foot and moment about that origin, after
+    /// [`Plant::look`].
+    pub(crate) fn sole_load(&self, foot: usize) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
+        let at = self.model.frame_position(&self.data, &self.ground.soles[foot]);
+        let (force, moment) = self.ground.feet.total(&self.model, &self.data, &at, Some(foot));
+        (at, force, moment)
+    }
+
+    /// Wrenches that carry and move the bodies below each force sensor in the state that was last looked at, with the
+    /// acceleration of [`Plant::note_step`].
     pub fn carried(&mut self, sensors: &[Frame; 2]) -> [Wrench; 2] {
         let Self { model, data, scratch, .. } = self;
+        model.forward_kinematics_here(data);
         model.inverse_dynamics_here(data, &scratch.v, &scratch.acceleration, &mut scratch.bias);
         sensors.map(|frame| carried::inertial(model, data, &frame))
     }
@@ -322,7 +331,7 @@ impl Plant {
         current[..l.motors].copy_from_slice(&x[l.current()]);
     }
 
-    /// Pose of a frame after [`Plant::snapshot`].
+    /// Pose of a frame of the limbs that touch the ground, after [`Plant::look`].
     pub fn frame_pose(&self, frame: &Frame) -> nalgebra::IsometryMatrix3<f64> {
         self.model.frame_pose(&self.data, frame)
     }
@@ -385,19 +394,6 @@ impl Plant {
         }
     }
 
-    /// The acceleration that the next implicit step would find, and nothing moves.
-    fn try_acceleration(&mut self, tau: f64, h: f64, x: &[f64], drives: &[JointCubic], inputs: &PlantInputs) {
-        self.load(tau, x, drives);
-        if let Joints::Driven(train) = &self.joints {
-            self.scratch.steps.clear();
-            self.scratch.steps.extend(train.steps());
-        }
-        self.accelerate(h, x, inputs);
-        if let Joints::Driven(train) = &mut self.joints {
-            train.restore(&self.scratch.steps);
-        }
-    }
-
     /// Acceleration of the torso while the joints follow their references (2.80).
     fn base_rate(&mut self, x: &[f64], inputs: &PlantInputs) {
         let Self { model, data, ground, scratch, joints, .. } = self;
@@ -432,7 +428,7 @@ impl Plant {
 }
 
 impl Scratch {
-    fn new(model: &Model, layout: &StateLayout) -> Self {
+    fn new(model: &Model) -> Self {
         Self {
             q: model.neutral(),
             v: vec![0.0; model.nv()],
@@ -442,8 +438,6 @@ impl Scratch {
             acceleration: vec![0.0; model.nv()],
             bias: vec![0.0; model.nv()],
             next: model.neutral(),
-            rate: vec![0.0; layout.len()],
-            steps: Vec::with_capacity(model.n()),
         }
     }
 }
@@ -475,4 +469,8 @@ fn train_inputs<'a>(
         reference,
         switches: inputs.switches,
     }
+}
+
+fn angular_velocity(speed: &[f64]) -> Vector3<f64> {
+    Vector3::from_column_slice(&speed[3..6])
 }

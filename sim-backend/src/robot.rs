@@ -21,7 +21,7 @@ use crate::inputs::DriveSwitches;
 use crate::instruments::Instruments;
 use crate::joints::SimulatedJoints;
 use crate::loads::Loads;
-use crate::plant::PlantInputs;
+use crate::plant::{Plant, PlantInputs};
 use crate::power::PowerLine;
 use crate::step_limit;
 
@@ -204,7 +204,11 @@ impl SimBackend {
         let mut inputs = PlantInputs { forces, switches: DriveSwitches::default() };
         if !self.fall.lies() {
             inputs.switches = self.begin_cycle(frames, powered);
-            let lost = self.body.advance(self.joints.references(), &inputs);
+            let Self { body, joints, instruments, .. } = self;
+            let observe = instruments
+                .is_analogue()
+                .then_some(|plant: &mut Plant, x: &[f64]| instruments.observe(plant, x, joints));
+            let lost = body.advance(joints.references(), &inputs, observe);
             self.end_cycle(lost);
         }
         self.cycles += 1;
@@ -263,9 +267,8 @@ impl SimBackend {
     ///
     /// Forces first, for they are those of the motion; a robot that comes to rest on the ground does so after that.
     fn measure(&mut self, dt: f64, inputs: &PlantInputs, powered: bool) -> bool {
-        let snapshot = self.body.snapshot(dt, self.joints.references(), inputs);
-        let (goals, motions) = self.joints.goals_and_motions();
-        self.body.joints(goals, motions);
+        let snapshot = self.body.snapshot(dt, self.joints.references());
+        self.joints.look(self.body.plant());
         // Before the fall: a robot that its own numbers throw has not fallen.
         let load = snapshot.foot_wrench.iter().map(|w| Vector3::from(w.force).norm()).fold(0.0, f64::max);
         if load > IMPLAUSIBLE * self.body.weight() && !self.fall.lies() {

@@ -3,7 +3,6 @@
 
 use multibody::{Data, Model};
 
-use crate::implicit::ShaftStep;
 use crate::shaft::TrainInputs;
 use crate::train::{DriveTrain, FaultCause, Train, TrainFault};
 
@@ -77,18 +76,6 @@ impl Train {
     pub(crate) fn turn_along(&mut self, model: &Model, data: &Data) {
         for d in self.drives.iter_mut().filter(|d| d.shaft.elastic.is_some()) {
             d.step.turn_along(&d.shaft, model, data);
-        }
-    }
-
-    /// States of friction, to be restored after a trial.
-    pub(crate) fn steps(&self) -> impl Iterator<Item = ShaftStep> + '_ {
-        self.drives.iter().map(|d| d.step)
-    }
-
-    /// Restores what [`Train::steps`] gave.
-    pub(crate) fn restore(&mut self, steps: &[ShaftStep]) {
-        for (d, step) in self.drives.iter_mut().zip(steps) {
-            d.step = *step;
         }
     }
 

@@ -40,7 +40,7 @@ fn equations_of_motion() {
                 plant.rate(t, x, drives, inputs, &mut dx);
                 plant.implicit_step(t, 1e-4, x, drives, inputs);
             }
-            plant.snapshot(5e-4, x, drives, inputs);
+            plant.snapshot(5e-4, x, drives);
             plant.advance(5e-4);
         });
         assert_eq!(counts, [0, 0], "type {depth}");

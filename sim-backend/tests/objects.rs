@@ -106,6 +106,9 @@ fn inertia_below_the_force_sensors() {
             "type {depth}: {right}, {left} kg"
         );
         let mut rig = Rig::new(1).in_the_air();
+        let before = rig.x.clone();
+        rig.run(Integrator::Euler, 0.0, 1e-3, 1);
+        rig.plant.note_step(1e-3, &before, &rig.x);
         rig.snapshot(0.0);
         for wrench in rig.plant.carried(&frames) {
             let felt =

@@ -69,6 +69,51 @@ fn a_push_moves_the_momentum_by_its_impulse_and_a_large_one_fells() {
     assert!(sim.events().drain().any(|(code, _)| code == EventCode::Fallen));
 }
 
+/// A force sensor of a robot that is pushed, filtered and late, read every millisecond: against the differential equation of
+/// its filter on the forces of every twentieth of that, from a simulation with shorter cycles.
+#[test]
+fn sensors_see_what_is_between_two_readings() {
+    let (time, delay, steps) = (0.8e-3, 0.33e-3, 20);
+    let readings = |cycle: f64, substeps: u32, sensors: config::SensorErrors| {
+        let mut setup = setup();
+        (setup.scene.cycle, setup.scene.substeps, setup.scene.sensors) = (cycle, substeps, sensors);
+        let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+        let mut sensors = Sensors::default();
+        let mut cycle_of = |k: u32| {
+            if k == 1 {
+                sim.push(&PushCommand { force: [0.0, 300.0, 400.0], duration: 0.004 });
+            }
+            let (frames, _) = sim.step(None, None);
+            decode_sensors(&setup.robot.layout, frames, &mut sensors);
+            sensors.foot_wrench[0].force
+        };
+        (1..=(0.03 / cycle) as u32).map(&mut cycle_of).collect::<Vec<_>>()
+    };
+    let h = 1e-3 / f64::from(steps);
+    let fine = readings(h, 1, config::SensorErrors::default());
+    let force_torque = config::sensors::ForceTorqueErrors { filter_time: time, delay, ..Default::default() };
+    let coarse = readings(1e-3, steps, config::SensorErrors { force_torque, ..Default::default() });
+    for axis in 0..3 {
+        // Euler with a hundredth of the step, input on chords.
+        let (mut y, mut way) = (fine[0][axis], Vec::new());
+        for pair in fine.windows(2) {
+            for k in 0..100 {
+                let u = pair[0][axis] + f64::from(k) / 100.0 * (pair[1][axis] - pair[0][axis]);
+                way.push(y);
+                y += h / 100.0 / time * (u - y);
+            }
+        }
+        let swing = |x: &[[f64; 3]]| x.iter().map(|f| (f[axis] - fine[0][axis]).abs()).fold(0.0, f64::max);
+        for (i, read) in coarse.iter().enumerate().skip(2) {
+            // The first fine reading is one step after the start.
+            let t = 1e-3 * (i + 1) as f64 - delay - h;
+            let expected = way[(t / h * 100.0).round() as usize];
+            let wrong = (read[axis] - expected).abs();
+            assert!(wrong < 0.01 * swing(&fine), "axis {axis}, {i} ms: {wrong} of {}", swing(&fine));
+        }
+    }
+}
+
 #[test]
 fn two_simulations_are_bit_for_bit_the_same() {
     let setup = setup();

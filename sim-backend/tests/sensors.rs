@@ -16,7 +16,7 @@ const HANGING: [Wrench; 2] = [
 
 fn set(errors: &config::SensorErrors) -> SensorSet {
     let robot = Robot::load(&config::root(None).join("robots/lola")).unwrap();
-    SensorSet::new(errors, &robot, &HANGING, 7, CYCLE)
+    SensorSet::new(errors, &robot, &HANGING, 7, (CYCLE, 1))
 }
 
 /// A truth without zeros, but for a negative one.
@@ -389,6 +389,95 @@ fn dead_time_and_period() {
     }
 }
 
+/// Amplitude of the readings of a sine of amplitude 1 and `frequency` \[Hz\], once per [`CYCLE`], from the phases in which it
+/// may meet the readings; `look` sets it and reads it.
+fn amplitude(
+    errors: &config::SensorErrors,
+    frequency: f64,
+    look: impl Fn(&mut Truth, f64) + Copy,
+    read: impl Fn(&Sensors) -> f64,
+) -> f64 {
+    const STEPS: u32 = 50;
+    let robot = Robot::load(&config::root(None).join("robots/lola")).unwrap();
+    let mut largest = 0.0_f64;
+    for phase in 0..45 {
+        let mut set = SensorSet::new(errors, &robot, &HANGING, 7, (CYCLE, STEPS));
+        let mut truth = Truth::default();
+        truth.imu.orientation[3] = 1.0;
+        let mut at = |step: u32, truth: &mut Truth| {
+            let t = f64::from(step) * CYCLE / f64::from(STEPS);
+            look(truth, (TAU * (frequency * t + f64::from(phase) / 45.0)).sin());
+        };
+        for step in 0..60 * STEPS {
+            at(step, &mut truth);
+            if step % STEPS == 0 {
+                let reading = read(&measure(&mut set, &truth).0);
+                largest = if step > 40 * STEPS { largest.max(reading.abs()) } else { largest };
+            } else if set.is_analogue() {
+                set.observe(&truth);
+            }
+        }
+    }
+    largest
+}
+
+/// Ripple that the sampling folds to another frequency is damped before, by 1/sqrt(1 + (w T)^2): of 1 kHz, which every
+/// reading meets at the same phase, 0.157 is left behind a filter of 1 ms, and all of it behind none.
+#[test]
+fn filters_are_before_the_sampling() {
+    let force = |truth: &mut Truth, x: f64| truth.contact[0].force[2] = x;
+    let filtered = |time| feet(ForceTorqueErrors { filter_time: time, ..Default::default() });
+    for (time, frequency) in [(1e-3, 1000.0), (1e-3, 730.0), (0.4e-3, 1650.0), (3e-3, 2000.0)] {
+        let expected = 1.0 / (1.0 + (TAU * frequency * time) * (TAU * frequency * time)).sqrt();
+        let measured = amplitude(&filtered(time), frequency, force, |s| s.foot_wrench[0].force[2]);
+        close(measured, expected, 0.02 * expected);
+    }
+    close(amplitude(&filtered(0.0), 1000.0, force, |s| s.foot_wrench[0].force[2]), 1.0, 0.02);
+    let rate = |truth: &mut Truth, x: f64| truth.imu.angular_velocity[1] = x;
+    let slow = imu(ImuErrors { bandwidth: 100.0, ..Default::default() });
+    let expected = 1.0 / 101.0_f64.sqrt();
+    close(amplitude(&slow, 1000.0, rate, |s| s.imu.angular_velocity[1]), expected, 0.02 * expected);
+}
+
+/// Half a cycle of dead time is half a cycle, for every sensor.
+#[test]
+fn dead_times_need_not_be_whole_cycles() {
+    let delay = 0.0003;
+    let errors = config::SensorErrors {
+        encoder: EncoderErrors { delay, ..Default::default() },
+        motor_encoder: EncoderErrors { delay, ..Default::default() },
+        force_torque: ForceTorqueErrors { delay, ..Default::default() },
+        imu: ImuErrors { delay, ..Default::default() },
+        ..Default::default()
+    };
+    let robot = Robot::load(&config::root(None).join("robots/lola")).unwrap();
+    let (steps, mut truth) = (4, truth());
+    let mut set = SensorSet::new(&errors, &robot, &HANGING, 7, (CYCLE, steps));
+    for step in 0..40 {
+        let t = f64::from(step) * CYCLE / f64::from(steps);
+        truth.joint_angle[3] = t;
+        truth.motor_speed[4] = 2.0 * t;
+        truth.contact[1].moment[0] = 3.0 * t;
+        truth.imu.angular_velocity[2] = 4.0 * t;
+        truth.imu.orientation =
+            UnitQuaternion::from_scaled_axis(Vector3::new(0.1, 0.2, 5.0 * t)).coords.into();
+        if step % steps != 0 {
+            set.observe(&truth);
+            continue;
+        }
+        let (out, _) = measure(&mut set, &truth);
+        if step > 2 * steps {
+            let then = t - delay;
+            close(out.joint_angle[3], then, 1e-15);
+            close(out.motor_speed[4], 2.0 * then, 1e-15);
+            close(out.foot_wrench[1].moment[0], 3.0 * then, 1e-15);
+            close(out.imu.angular_velocity[2], 4.0 * then, 1e-15);
+            let there = UnitQuaternion::from_scaled_axis(Vector3::new(0.1, 0.2, 5.0 * then));
+            assert!(orientation(&out).angle_to(&there) < 1e-7, "{}", orientation(&out).angle_to(&there));
+        }
+    }
+}
+
 fn noisy() -> config::SensorErrors {
     config::SensorErrors {
         force_torque: ForceTorqueErrors { noise: [1.0, 0.1], ..Default::default() },
@@ -403,7 +492,7 @@ fn noise_is_repeatable_and_each_has_its_own() {
     let robot = Robot::load(&config::root(None).join("robots/lola")).unwrap();
     let truth = truth();
     let run = |errors: &config::SensorErrors, seed| {
-        let mut set = SensorSet::new(errors, &robot, &HANGING, seed, CYCLE);
+        let mut set = SensorSet::new(errors, &robot, &HANGING, seed, (CYCLE, 1));
         (0..50).map(|_| measure(&mut set, &truth).0).collect::<Vec<_>>()
     };
     let first = run(&noisy(), 1);

@@ -13,7 +13,7 @@ use sim_backend::drive::JointCubic;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, orientation};
 
-use crate::second::{POWERED, Second};
+use crate::second::Second;
 use crate::sheet::{Column, fixed, plain, scientific};
 
 /// Runs of which the fastest counts; one for what takes longer than real time.
@@ -95,7 +95,7 @@ fn simulate(second: &Second, plant: &mut Plant, method: Integrator, steps: u32) 
         drives.clear();
         drives.extend(second.drives(cycle));
         second.advance(plant, &mut stepper, steps, &drives, &mut x);
-        let seen = plant.snapshot(second.cycle, &x, &drives, &POWERED);
+        let seen = plant.snapshot(second.cycle, &x, &drives);
         let mut pose = [0.0; 7];
         pose.copy_from_slice(&x[..7]);
         let now = processor_time();

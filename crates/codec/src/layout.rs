@@ -108,8 +108,9 @@ impl BusSignal {
     /// Raw number of a value: rounded to nearest and saturated; NaN becomes the raw number nearest to zero.
     pub fn raw(&self, value: f64) -> i64 {
         let (low, high) = self.range();
-        // Rust's cast saturates and maps NaN to 0.
-        (((value - self.offset) / self.scale).round() as i64).clamp(low, high)
+        // Away from zero by a half, then towards it; the cast saturates and maps NaN to 0.
+        let x = (value - self.offset) / self.scale;
+        ((x + 0.5_f64.copysign(x)) as i64).clamp(low, high)
     }
 
     /// Smallest and largest raw number.

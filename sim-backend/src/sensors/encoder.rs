@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 use config::Robot;
 use messages::{Joints, MAX_JOINTS};
 
-use super::latency::Latency;
+use super::delay_line::DelayLine;
 
 /// Encoder of one joint.
 #[derive(Clone, Copy, Debug)]
@@ -42,12 +42,12 @@ pub(crate) struct Encoders {
     encoders: Vec<Encoder>,
     /// \[s\] Cycle T of the differences; none: the speed is measured by itself.
     difference: Option<f64>,
-    latency: Latency<[Joints; 2]>,
+    line: DelayLine<[Joints; 2]>,
 }
 
 impl Encoders {
-    /// Encoders for the joints of `robot`, read once per `cycle` \[s\].
-    pub(crate) fn new(errors: &config::sensors::EncoderErrors, robot: &Robot, cycle: f64) -> Self {
+    /// Encoders for the joints of `robot`, read once per `cycle` \[s\] of steps of `step` \[s\].
+    pub(crate) fn new(errors: &config::sensors::EncoderErrors, robot: &Robot, cycle: f64, step: f64) -> Self {
         let encoder = |joint: &config::robot::Joint| Encoder {
             step: errors.counts.of(&joint.name).map_or(0.0, |counts| TAU / counts),
             bias: errors.bias.of(&joint.name).unwrap_or(0.0),
@@ -56,28 +56,29 @@ impl Encoders {
         Self {
             encoders: robot.joints.iter().take(MAX_JOINTS).map(encoder).collect(),
             difference: errors.speed_by_difference.then_some(cycle),
-            latency: Latency::new(errors.delay, 0.0, cycle),
+            line: DelayLine::new(errors.delay, step),
         }
+    }
+
+    /// Angles \[rad\] and speeds \[rad/s\] at the end of one more step.
+    pub(crate) fn observe(&mut self, [angle, speed]: [&Joints; 2]) {
+        self.line.push([*angle, *speed]);
     }
 
     /// Reads all angles \[rad\] and speeds \[rad/s\]; the joints beyond the robot's stay as they are in `out`.
     ///
     /// The first difference is that of a joint at rest. An angle that is not finite is read as NaN, and so are the two
     /// speeds that would need it.
-    pub(crate) fn measure(&mut self, [angle, speed]: [&Joints; 2], out: [&mut Joints; 2]) {
-        let mut read = [[0.0; MAX_JOINTS]; 2];
+    pub(crate) fn measure(&mut self, [angles, speeds]: [&mut Joints; 2]) {
         for (j, encoder) in self.encoders.iter_mut().enumerate() {
-            let now = if angle[j].is_finite() { encoder.read(angle[j]) } else { f64::NAN };
-            read[0][j] = now;
-            read[1][j] = match self.difference {
+            let angle = self.line.chord(|x| x[0][j]);
+            let now = if angle.is_finite() { encoder.read(angle) } else { f64::NAN };
+            angles[j] = now;
+            speeds[j] = match self.difference {
                 Some(cycle) => (now - encoder.last.unwrap_or(now)) / cycle,
-                None => speed[j],
+                None => self.line.chord(|x| x[1][j]),
             };
             encoder.last = Some(now);
-        }
-        let n = self.encoders.len();
-        for (out, read) in out.into_iter().zip(self.latency.pass(read)) {
-            out[..n].copy_from_slice(&read[..n]);
         }
     }
 }

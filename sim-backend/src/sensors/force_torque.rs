@@ -9,12 +9,13 @@
 //! The strain gauges see what the bodies below press on the ankle: F = F_c - F_i. It is set to zero while hanging, where
 //! F_c = 0: F = F_c - F_i + F_0 (errata 1, 4.13). A foot that stands still and level reads F_c exactly; one that is
 //! tilted, or swings, does not. Strain gauges have an
-//! offset, too, which goes with the zero that the joint loop takes while the robot hangs. Then: anti-aliasing filter, noise, converter, range, dead time.
+//! offset, too, which goes with the zero that the joint loop takes while the robot hangs. Then, in the time of the
+//! integration: anti-aliasing filter and dead time. Then, once per cycle: noise, converter, range.
 
 use messages::Wrench;
 
 use super::converter::Converter;
-use super::latency::Latency;
+use super::delay_line::DelayLine;
 use super::low_pass::LowPass;
 use super::noise::Noise;
 
@@ -27,16 +28,16 @@ pub struct ForceTorqueSensor {
     /// Read too much.
     offset: [f64; 2],
     low_pass: [LowPass<1>; 6],
+    line: DelayLine<[f64; 6]>,
     converters: [Converter; 6],
-    latency: Latency<[f64; 6]>,
 }
 
 impl ForceTorqueSensor {
-    /// `hanging`: F_0, T_0 of this foot, as [`super::carried::hanging`] gives it. `cycle` in s. `stream(i)`: noise of the six signals.
+    /// `hanging`: F_0, T_0 of this foot, as [`super::carried::hanging`] gives it. `step` \[s\] of the integration. `stream(i)`: noise of the six signals.
     pub fn new(
         errors: &config::sensors::ForceTorqueErrors,
         hanging: &Wrench,
-        cycle: f64,
+        step: f64,
         stream: impl Fn(u64) -> Noise,
     ) -> Self {
         let converter = |i: usize| {
@@ -48,9 +49,9 @@ impl ForceTorqueSensor {
             inertia: errors.inertia,
             zero: (errors.inertia && errors.bias_compensation).then(|| components(hanging)),
             offset: errors.offset,
-            low_pass: std::array::from_fn(|_| LowPass::new(errors.filter_time, cycle)),
+            low_pass: std::array::from_fn(|_| LowPass::new(errors.filter_time, step)),
+            line: DelayLine::new(errors.delay, step),
             converters: std::array::from_fn(converter),
-            latency: Latency::new(errors.delay, 0.0, cycle),
         }
     }
 
@@ -59,8 +60,9 @@ impl ForceTorqueSensor {
         self.inertia
     }
 
-    /// One reading; `contact` F_c, T_c and `inertial` F_i, T_i, both of now. What is not finite is read as NaN.
-    pub fn measure(&mut self, contact: &Wrench, inertial: &Wrench, clipped: &mut u32) -> Wrench {
+    /// One more step of the integration, at its end `contact` F_c, T_c and `inertial` F_i, T_i. What is not finite is
+    /// read as NaN.
+    pub fn observe(&mut self, contact: &Wrench, inertial: &Wrench) {
         let mut x = components(contact);
         let inertial = components(inertial);
         for i in 0..6 {
@@ -71,10 +73,19 @@ impl ForceTorqueSensor {
                 x[i] += zero[i];
             }
             x[i] += self.offset[i / 3];
-            let [filtered] = self.low_pass[i].filter([x[i]]);
-            x[i] = self.converters[i].convert(filtered, clipped);
+            [x[i]] = self.low_pass[i].filter([x[i]]);
         }
-        let x = self.latency.pass(x);
+        self.line.push(x);
+    }
+
+    /// One reading.
+    pub fn measure(&mut self, clipped: &mut u32) -> Wrench {
+        let Self { line, converters, .. } = self;
+        let mut i = 0;
+        let x = converters.each_mut().map(|converter| {
+            i += 1;
+            converter.convert(line.chord(|x| x[i - 1]), clipped)
+        });
         Wrench { force: [x[0], x[1], x[2]], moment: [x[3], x[4], x[5]] }
     }
 }

@@ -7,18 +7,19 @@
 //! | inertial measurement unit | [`imu`] |
 //! | limited bandwidth | [`low_pass`] |
 //! | noise, quantisation, range | [`converter`] |
-//! | dead time, readings per second | [`latency`] |
+//! | dead time | [`delay_line`] |
 //! | what the force sensors carry | [`carried`] |
 //! | random numbers | [`noise`] |
 //!
-//! A sensor that the scene does not name copies the truth, bit for bit, and computes nothing.
+//! A sensor that the scene does not name copies the truth, bit for bit, and computes nothing. Filters and dead times are
+//! before the sampling, in the time of the integration's steps; noise and converters are after it, once per cycle.
 
 pub mod carried;
 pub mod converter;
+pub mod delay_line;
 pub mod encoder;
 pub mod force_torque;
 pub mod imu;
-pub mod latency;
 pub mod low_pass;
 pub mod noise;
 
@@ -70,6 +71,11 @@ pub struct SensorSet {
     motor: Option<Encoders>,
     feet: Option<[ForceTorqueSensor; 2]>,
     imu: Option<ImuSensor>,
+    /// True if a filter or a dead time asks for what is between two readings.
+    analogue: bool,
+    /// Steps of the integration in a cycle; of these observed since the last reading; none before the first one.
+    steps: u32,
+    observed: Option<u32>,
 }
 
 /// First stream of the noise of each sensor.
@@ -77,7 +83,7 @@ const STREAM_FEET: u64 = 0x100;
 const STREAM_IMU: u64 = 0x200;
 
 impl SensorSet {
-    /// Sensors of `robot`, read once per `cycle` \[s\]; noise from `seed`.
+    /// Sensors of `robot`, read once per `cycle` \[s\] of so many `steps` of the integration; noise from `seed`.
     ///
     /// `hanging`: wrench that carries the bodies below each force sensor while the robot hangs at rest with level feet,
     /// see [`carried::hanging`]; it is used where the scene asks for compensation of the bias.
@@ -86,17 +92,18 @@ impl SensorSet {
         robot: &Robot,
         hanging: &[Wrench; 2],
         seed: u64,
-        cycle: f64,
+        (cycle, steps): (f64, u32),
     ) -> Self {
+        let step = cycle / f64::from(steps);
         let encoders = |e: &config::sensors::EncoderErrors| {
-            (*e != Default::default()).then(|| Encoders::new(e, robot, cycle))
+            (*e != Default::default()).then(|| Encoders::new(e, robot, cycle, step))
         };
         let stream = |first: u64| move |i: u64| Noise::new(seed, first + i);
         let foot = |i: usize| {
             ForceTorqueSensor::new(
                 &errors.force_torque,
                 &hanging[i],
-                cycle,
+                step,
                 stream(STREAM_FEET + 6 * i as u64),
             )
         };
@@ -107,7 +114,43 @@ impl SensorSet {
             motor: encoders(&errors.motor_encoder),
             feet: (errors.force_torque != Default::default()).then(|| [foot(0), foot(1)]),
             imu: (errors.imu != Default::default())
-                .then(|| ImuSensor::new(&errors.imu, cycle, stream(STREAM_IMU))),
+                .then(|| ImuSensor::new(&errors.imu, cycle, step, stream(STREAM_IMU))),
+            analogue: [
+                errors.encoder.delay,
+                errors.motor_encoder.delay,
+                errors.force_torque.filter_time,
+                errors.force_torque.delay,
+                errors.imu.bandwidth,
+                errors.imu.delay,
+            ]
+            .iter()
+            .any(|x| *x > 0.0),
+            steps,
+            observed: None,
+        }
+    }
+
+    /// True if [`SensorSet::observe`] is to see the steps within a cycle.
+    pub fn is_analogue(&self) -> bool {
+        self.analogue
+    }
+
+    /// One more step of the integration within a cycle.
+    pub fn observe(&mut self, truth: &Truth) {
+        self.observed = self.observed.map(|steps| steps + 1);
+        if let Some(encoders) = &mut self.link {
+            encoders.observe([&truth.joint_angle, &truth.joint_speed]);
+        }
+        if let Some(encoders) = &mut self.motor {
+            encoders.observe([&truth.motor_angle, &truth.motor_speed]);
+        }
+        if let Some(feet) = &mut self.feet {
+            for (i, foot) in feet.iter_mut().enumerate() {
+                foot.observe(&truth.contact[i], &truth.inertial[i]);
+            }
+        }
+        if let Some(imu) = &mut self.imu {
+            imu.observe(&truth.imu);
         }
     }
 
@@ -116,13 +159,19 @@ impl SensorSet {
         self.feet.as_ref().is_some_and(|[right, _]| right.needs_inertia())
     }
 
-    /// Writes the readings of one cycle into `out`; header, supply and counters of the record stay as they are.
+    /// Writes the readings of one cycle into `out`; header, supply and counters of the record stay as they are. `truth` is
+    /// that at its end; steps that nobody has observed were like it.
     pub fn measure(&mut self, truth: &Truth, out: &mut Sensors) -> ReadingFaults {
         let mut report = ReadingFaults::default();
+        while self.analogue && self.observed.is_some_and(|steps| steps + 1 < self.steps) {
+            self.observe(truth);
+        }
+        self.observed = Some(0);
         self.measure_joints(truth, out);
         out.foot_wrench = match &mut self.feet {
             Some(feet) => std::array::from_fn(|i| {
-                feet[i].measure(&truth.contact[i], &truth.inertial[i], &mut report.clipped)
+                feet[i].observe(&truth.contact[i], &truth.inertial[i]);
+                feet[i].measure(&mut report.clipped)
             }),
             None => truth.contact,
         };
@@ -168,7 +217,10 @@ impl SensorSet {
 /// Angles and speeds of one side; exact without encoders.
 fn read(encoders: &mut Option<Encoders>, n: usize, truth: [&Joints; 2], out: [&mut Joints; 2]) {
     match encoders {
-        Some(encoders) => encoders.measure(truth, out),
+        Some(encoders) => {
+            encoders.observe(truth);
+            encoders.measure(out);
+        }
         None => {
             for (out, truth) in out.into_iter().zip(truth) {
                 out[..n].copy_from_slice(&truth[..n]);

@@ -124,7 +124,7 @@ impl Rig {
     }
 
     pub(crate) fn snapshot(&mut self, t: f64) -> Snapshot {
-        self.plant.snapshot(t, &self.x, &self.drives, &self.inputs)
+        self.plant.snapshot(t, &self.x, &self.drives)
     }
 
     /// Drives whose gears are elastic in this type, in the order of their rotors.

@@ -88,7 +88,7 @@ impl Fall {
         let mut plant = Plant::new(robot, Environment::flat(), depth, pose)?;
         let mut state = plant.standing(pose);
         let drives: Vec<JointCubic> = pose.iter().map(|&q| JointCubic::resting(q)).collect();
-        let sole = plant.snapshot(0.0, &state, &drives, &POWERED).feet[RIGHT];
+        let sole = plant.snapshot(0.0, &state, &drives).feet[RIGHT];
         let layer = plant.layout().layer();
         state[layer].fill(0.0);
         let height = if scene == "edge" { BOARD[0] } else { 0.0 };
@@ -161,7 +161,7 @@ impl Fall {
     fn outcome(&self, plant: &mut Plant, method: &IntegrationMethod) -> LandingOutcome {
         let mut peak = 0.0f64;
         let state = self.run(plant, method, |plant, _, x| {
-            let wrench = plant.snapshot(CYCLE, x, &self.drives, &POWERED).foot_wrench;
+            let wrench = plant.snapshot(CYCLE, x, &self.drives).foot_wrench;
             peak = peak.max(wrench.iter().map(|w| w.force[2]).sum());
         });
         LandingOutcome { peak, impulse: self.impulse(plant, &state), state: self.coordinates(plant, &state) }

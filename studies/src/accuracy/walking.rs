@@ -19,7 +19,7 @@ use sim_backend::terrain;
 
 use super::methods::IntegrationMethod;
 use super::{AccuracyInput, ErrorChart, Point, cost};
-use crate::second::{POWERED, Second};
+use crate::second::Second;
 
 /// \[s\] The gait is periodic by then.
 const BEGIN: f64 = 8.0;
@@ -174,7 +174,7 @@ impl Samples {
 
 impl PeriodEnd {
     fn new(plant: &mut Plant, cycle: f64, drives: &[JointCubic], state: Vec<f64>) -> Self {
-        let force = plant.snapshot(cycle, &state, drives, &POWERED).foot_wrench.map(|w| w.force[2]);
+        let force = plant.snapshot(cycle, &state, drives).foot_wrench.map(|w| w.force[2]);
         Self { state, force }
     }
 }

@@ -31,7 +31,7 @@ fn quantised_speed(bench: &Bench) -> Findings {
     errors.encoder.counts = PerJoint { all: Some(bits), own: Vec::new() };
     errors.encoder.speed_by_difference = true;
     let hanging = [Wrench { force: [0.0; 3], moment: [0.0; 3] }; 2];
-    let mut sensors = SensorSet::new(&errors, robot, &hanging, 1, cycle);
+    let mut sensors = SensorSet::new(&errors, robot, &hanging, 1, (cycle, 1));
     let (mut truth, mut seen) = (Truth::default(), messages::Sensors::default());
     let (mut square, mut largest, n, mut angle) = (0.0, 0.0_f64, 200_000, 0.0);
     for i in 0..n {
