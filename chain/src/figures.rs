@@ -183,7 +183,7 @@ impl Gatherer {
         Figures {
             scene: scene.name.clone(),
             robot: scene.robot.clone(),
-            depth: format!("type {}, {:?} x {}", scene.depth, scene.integrator, scene.substeps),
+            depth: format!("{}, {:?} x {}", scene.model(), scene.integrator, scene.substeps),
             depth_reason: None,
             doubts: Vec::new(),
             fell: false,

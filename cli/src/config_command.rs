@@ -65,8 +65,7 @@ pub(crate) fn scenes(config: &Path) -> Result<(), Box<dyn Error>> {
     for (name, scene) in all {
         match scene {
             Ok(scene) => {
-                let depth =
-                    if scene.auto.is_some() { "auto".into() } else { format!("type {}", scene.depth) };
+                let depth = if scene.auto.is_some() { "auto".into() } else { scene.model() };
                 println!(
                     "{name:width$}  {:5.0} s  {:8} {depth:6}  {}",
                     scene.duration, scene.robot, scene.about

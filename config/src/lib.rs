@@ -15,6 +15,7 @@ mod acceleration;
 pub mod brake;
 mod bus_address;
 pub mod bus_fault;
+pub mod components;
 pub mod crane;
 pub mod database;
 pub mod dbc;
@@ -49,6 +50,7 @@ pub mod tolerance;
 
 pub use acceleration::WITH_LOAD;
 pub use bus_address::{BusAddress, interface_names};
+pub use components::Components;
 pub use error::{ConfigError, Problem};
 pub use file::{BUILT_IN, Embedded, embed};
 pub use gait::Gait;

@@ -8,6 +8,7 @@ use messages::command::{Domain, PushCommand};
 use messages::command_text::{COMMANDS, CommandInfo};
 
 use crate::bus_fault::BusFault;
+use crate::components::{ComponentChanges, Components};
 use crate::crane::{Crane, DriveStart};
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
@@ -38,6 +39,8 @@ pub struct Scene {
     pub auto: Option<Tolerance>,
     /// Modelling depth; type 1 is the reduced model (thesis table 2.4).
     pub depth: u8,
+    /// Changes to the components of that type.
+    pub components: ComponentChanges,
     /// Integrator of the simulated robot.
     pub integrator: Integrator,
     /// \[1\] Integration steps per bus cycle.
@@ -106,6 +109,7 @@ impl Scene {
             about: top.text("about"),
             robot: top.text("robot"),
             gait: top.text("gait"),
+            components: components(top, auto.is_some()),
             auto,
             depth,
             integrator,
@@ -137,6 +141,16 @@ impl Scene {
         scene.check_times(top, "push", scene.pushes.iter().map(|(time, _)| *time));
         scene.check_times(top, "bus_fault", scene.bus_faults.iter().map(|fault| fault.time));
         scene
+    }
+
+    /// Components of the simulated robot: those of its type, as far as the scene does not change them.
+    pub fn components(&self) -> Components {
+        self.components.applied(self.depth)
+    }
+
+    /// Name of the model: "type 2, without currents".
+    pub fn model(&self) -> String {
+        format!("type {}{}", self.depth, self.components)
     }
 
     /// Method of simulation.
@@ -192,6 +206,15 @@ fn method(top: &Section<'_, '_>) -> (Method, Option<Tolerance>) {
     }
     let stand_in = Method { depth: 1, integrator: Integrator::Euler, substeps: 1 };
     (stand_in, Some(Tolerance::read(top)))
+}
+
+/// `[components]`, if it is there.
+fn components(top: &Section<'_, '_>, auto: bool) -> ComponentChanges {
+    let named = top.has("components").then(|| top.table("components", ComponentChanges::build));
+    if auto && named.is_some() {
+        top.problem("components", "depth \"auto\" chooses them; leave the table out");
+    }
+    named.flatten().unwrap_or_default()
 }
 
 /// `[sensors]`, if it is there.

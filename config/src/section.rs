@@ -264,6 +264,11 @@ impl<'a, 't> Section<'a, 't> {
         self.has(key) && matches!(self.table[key].get_ref(), DeValue::Table(_))
     }
 
+    /// Is the key there, and a list?
+    pub(crate) fn is_list(&self, key: &str) -> bool {
+        self.has(key) && matches!(self.table[key].get_ref(), DeValue::Array(_))
+    }
+
     fn items(&self, key: &str, wanted: &str) -> &'a [Value<'t>] {
         let Some(value) = self.get(key, wanted) else { return &[] };
         match value.get_ref() {

@@ -117,6 +117,9 @@ impl Setup {
         if let Some(i) = scene.commands.iter().position(|(_, c)| lowers(c)) {
             note(format!("command[{i}]"), "sim/lower: the scene has no [crane]".to_owned());
         }
+        if let Some((key, text)) = scene.components.problem(scene.depth, &self.robot) {
+            note(format!("components.{key}"), text);
+        }
         // State of the drives at the start, and what it needs of the robot.
         if scene.drives.is_some() && self.robot.protection.is_none() {
             note("drives".to_owned(), format!("robot {} has no [protection]", scene.robot));

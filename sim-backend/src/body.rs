@@ -38,7 +38,7 @@ impl SimulatedBody {
     pub(crate) fn new(robot: &Robot, scene: &Scene) -> Result<Self, Box<dyn Error>> {
         let pose = &robot.poses[&scene.start_pose];
         let real = with_plant_mismatch(robot, scene);
-        let mut plant = Plant::new(&real, terrain::environment(scene)?, scene.depth, pose)?;
+        let mut plant = Plant::new(&real, terrain::environment(scene)?, scene.components(), pose)?;
         let state = match &scene.crane {
             None => plant.standing(pose),
             Some(crane) => plant.hanging(pose, crane.height),

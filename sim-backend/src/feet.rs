@@ -9,6 +9,7 @@ use std::error::Error;
 use std::sync::Arc;
 
 use config::Robot;
+use config::components::ContactModel;
 use contact::frame::frame;
 use contact::hexahedron::{LinearElasticity, Volume};
 use contact::point::{self, ContactLaw, PointState};
@@ -16,8 +17,6 @@ use contact::{Ground, Layer, Material, Memory, Pad, SegmentMotion, Settings, Sol
 use environment::{Environment, Hit, Surface};
 use multibody::{Data, Frame, Model};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
-
-use crate::depth::ContactModel;
 
 /// Contact elements of both feet.
 #[derive(Clone)]
@@ -78,19 +77,19 @@ impl Feet {
     pub fn new(
         robot: &Robot,
         model: &Model,
-        contact: ContactModel,
+        contact: [ContactModel; 2],
         objects: usize,
     ) -> Result<Self, Box<dyn Error>> {
-        let pads = contact == ContactModel::Pads;
         // All pads are of one material, and share its matrices.
-        let layer = if pads { Some(layer(robot)?) } else { None };
+        let layer = if contact.contains(&ContactModel::Pads) { Some(layer(robot)?) } else { None };
         let mut segments: Vec<Segment> = Vec::new();
         let mut names: Vec<&str> = Vec::new();
         for (foot, description) in robot.feet.iter().enumerate() {
+            let pads = contact[foot] == ContactModel::Pads;
             let places = if pads { &description.pads } else { &description.points };
             if places.is_empty() {
                 return Err(format!(
-                    "robot `{}`: its feet have no contact pads; choose depth 1, 2 or 3",
+                    "robot `{}`: its feet have no contact pads; choose depth 1, 2 or 3, or components.contact = \"points\"",
                     robot.name
                 )
                 .into());

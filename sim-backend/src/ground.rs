@@ -3,10 +3,10 @@
 use std::error::Error;
 
 use config::Robot;
+use config::components::ContactModel;
 use environment::Environment;
 use multibody::{Data, Frame, Limbs, Model};
 
-use crate::depth::ContactModel;
 use crate::feet::Feet;
 
 /// Ground under a robot, with the scratch of its contact forces.
@@ -32,7 +32,7 @@ impl GroundContact {
         robot: &Robot,
         model: &Model,
         environment: Environment,
-        contact: ContactModel,
+        contact: [ContactModel; 2],
     ) -> Result<Self, Box<dyn Error>> {
         let feet = Feet::new(robot, model, contact, environment.objects().len())?;
         let sole = |i: usize| model.frame(&robot.feet[i].link, robot.feet[i].sole);

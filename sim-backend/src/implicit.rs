@@ -64,6 +64,8 @@ pub(crate) struct ShaftStep {
     along: f64,
     /// The torque that the model was given.
     set: f64,
+    /// \[A\] Current of a motor whose current has no state.
+    steady: f64,
 }
 
 impl ShaftStep {
@@ -76,13 +78,14 @@ impl ShaftStep {
         inputs: &TrainInputs<'_>,
     ) -> Result<(), NoLoadTorque> {
         let on = inputs.switches.has_torque(shaft.motor);
-        let current = if on { inputs.current[shaft.motor] } else { 0.0 };
+        let state = inputs.current.get(shaft.motor).copied();
+        let current = if on { state.unwrap_or_else(|| controller.steady_current(shaft)) } else { 0.0 };
         // Friction depends on the load, which is taken from the beginning of the step: within one it changes little.
         let found = shaft.drive.friction.sliding(shaft.speed, shaft.drive.motor.torque(current));
         let before = Sliding { dry: self.dry, viscous: self.viscous };
         let Sliding { dry, viscous } = *found.as_ref().unwrap_or(&before);
         // Power stage off: open terminals, no torque.
-        let motor = if on { motor_line(h, shaft, controller, current) } else { TorqueLine::default() };
+        let motor = if on { motor_line(h, shaft, controller, state) } else { TorqueLine::default() };
         let coulomb = dry + shaft.holding_torque(&inputs.switches);
         *self = Self { motor, dry, coulomb, viscous, ..*self };
         found.map(|_| ())
@@ -188,18 +191,33 @@ impl ShaftStep {
         (t - b * self.end - link * self.link) / shaft.drive.motor.torque_constant
     }
 
+    /// Keeps the current \[A\] of a motor whose current has no state.
+    pub(crate) fn note_current(&mut self, current: f64) {
+        self.steady = current;
+    }
+
+    /// \[A\] What was kept.
+    pub(crate) fn steady_current(&self) -> f64 {
+        self.steady
+    }
+
     /// w+ \[rad/s\].
     pub(crate) fn end_speed(&self) -> f64 {
         self.end
     }
 }
 
-/// Torque of the motor: (2.57) and the control laws, implicit.
-fn motor_line(h: f64, shaft: &Shaft, controller: &MotorController, current: f64) -> TorqueLine {
+/// Torque of the motor: (2.57) and the control laws, implicit; without a state of its own the current follows at once.
+fn motor_line(h: f64, shaft: &Shaft, controller: &MotorController, state: Option<f64>) -> TorqueLine {
     let motor = &shaft.drive.motor;
     let constant = motor.torque_constant;
+    let current = state.unwrap_or_else(|| controller.steady_current(shaft));
     // A voltage that does not change: the current of the end by (2.57), with the motor's own damping.
     let at_voltage = |voltage: f64| {
+        if state.is_none() {
+            let per = constant / motor.resistance;
+            return TorqueLine { t: per * voltage, b: per * constant, link: 0.0 };
+        }
         let a = 1.0 / (1.0 + h / motor.time_constant());
         let per = h / motor.inductance * a * constant;
         TorqueLine { t: constant * a * current + per * voltage, b: per * constant, link: 0.0 }
@@ -211,7 +229,8 @@ fn motor_line(h: f64, shaft: &Shaft, controller: &MotorController, current: f64)
         return at_voltage(voltage);
     }
     // The current loop closes within the step: the current goes from what it was to what is asked for.
-    let a = 1.0 / (1.0 + h * (cascade.current_bandwidth + 1.0 / motor.time_constant()));
+    let closing = 1.0 / (1.0 + h * (cascade.current_bandwidth + 1.0 / motor.time_constant()));
+    let a = if state.is_some() { closing } else { 0.0 };
     let held = controller.output() != ControllerOutput::Continuous;
     // Held by the sampler, or at its limit: what is asked for does not depend on the speed.
     if held || (controller.speed_gain * controller.lag).abs() >= shaft.drive.current_limit {

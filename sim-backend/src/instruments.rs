@@ -35,7 +35,8 @@ impl Instruments {
     pub(crate) fn new(robot: &Robot, scene: &Scene, plant: &Plant) -> Result<Self, Box<dyn Error>> {
         let frame = |i: usize| plant.model().frame(&robot.feet[i].sensor_link, robot.feet[i].sensor);
         let force_frames = [frame(0)?, frame(1)?];
-        let hanging = carried::hanging(plant.model(), &force_frames, &robot.poses[&scene.start_pose]);
+        let hanging =
+            carried::hanging(plant.model(), &force_frames, &plant.of_moving(&robot.poses[&scene.start_pose]));
         Ok(Self {
             sensors: SensorSet::new(
                 &scene.sensors,
@@ -94,7 +95,7 @@ impl Instruments {
         events: &mut EventQueue,
     ) -> bool {
         let (plant, x) = body.parts();
-        let mut seen = self.see(plant, x);
+        let mut seen = self.see(plant, x, joints.motions().len());
         (self.state.joint_angle, self.state.motor_angle) = (seen.joint_angle, seen.motor_angle);
         add_reading_errors(joints, &mut seen);
         let report = self.sensors.measure(&seen, &mut self.readings);
@@ -116,15 +117,15 @@ impl Instruments {
 
     /// One more step of the integration within a cycle, which the plant has looked at.
     pub(crate) fn observe(&mut self, plant: &mut Plant, x: &[f64], joints: &SimulatedJoints) {
-        let mut seen = self.see(plant, x);
+        let mut seen = self.see(plant, x, joints.motions().len());
         add_reading_errors(joints, &mut seen);
         self.sensors.observe(&seen);
     }
 
     /// What there is to be measured in a state that the plant has looked at.
-    fn see(&self, plant: &mut Plant, x: &[f64]) -> Truth {
+    fn see(&self, plant: &mut Plant, x: &[f64], joints: usize) -> Truth {
         let mut seen = Truth { motor_current: [f64::NAN; messages::MAX_JOINTS], ..Truth::default() };
-        for j in 0..plant.model().n() {
+        for j in 0..joints {
             (seen.joint_angle[j], seen.joint_speed[j]) = plant.joint(j);
         }
         // A motor turns as its joint, but where an elastic gear has a rotor of its own.

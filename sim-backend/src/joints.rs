@@ -1,11 +1,11 @@
 //! Joints of the simulated robot: commands of the bus, electronics of the drives, references of one cycle.
 
 use codec::frames::{DriveCommand, decode_targets};
+use config::components::JointModel;
 use config::{Robot, Scene};
 use messages::{BusFrames, Sensors};
 
 use crate::command_timeout::{CommandTimeout, Follows};
-use crate::depth::JointModel;
 use crate::drive::{JointCubic, JointMotion};
 use crate::drive_electronics::{Action, DriveElectronics, ReceivedCommand};
 use crate::inputs::DriveSwitches;

@@ -11,7 +11,7 @@
 //! | joint references | [`drive`] |
 //! | pushes, and the crane that holds the robot at the start | `loads.rs`, `crane.rs` |
 //! | equations of motion, their state and time steps in a cycle | `body.rs` |
-//! | equations of motion | [`plant`]; types 1 to 5 of the thesis: [`depth`] |
+//! | equations of motion | [`plant`]; components, types 1 to 5 of the thesis: [`config::components`] |
 //! | their states | [`layout`] |
 //! | their inputs | [`inputs`], [`external_forces`] |
 //! | their drives: shafts, controllers | [`train`], [`shaft`], `local_control.rs` |
@@ -29,7 +29,6 @@ mod chatter;
 pub mod command_timeout;
 mod crane;
 pub mod daemon;
-pub mod depth;
 pub mod drive;
 mod drive_electronics;
 pub mod external_forces;

@@ -210,6 +210,17 @@ impl MotorController {
         wanted.clamp(-limit, limit)
     }
 
+    /// Current \[A\] of a motor whose inductance is neglected: what the speed loop asks for, as far as the voltage reaches.
+    pub(crate) fn steady_current(&self, shaft: &Shaft) -> f64 {
+        let motor = &shaft.drive.motor;
+        let voltage = match (self.sampler.output, shaft.drive.control.law) {
+            (ControllerOutput::Voltage(held), _) => held,
+            _ => motor.voltage(self.wanted_current(shaft), shaft.speed),
+        };
+        let limit = shaft.drive.voltage_limit;
+        motor.steady_current(voltage.clamp(-limit, limit), shaft.speed)
+    }
+
     /// Voltage that the controller sets \[V\].
     pub(crate) fn voltage(&self, shaft: &Shaft, current: f64) -> f64 {
         let voltage = match (self.sampler.output, shaft.drive.control.law) {

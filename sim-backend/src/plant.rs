@@ -1,35 +1,42 @@
 //! The equations of motion of one robot: bodies, drives and contact layer put together as deep as a scene asks.
 //!
-//! Depth: [`crate::depth`]; states: [`crate::layout`]; drives: [`crate::train`]; contact: [`crate::feet`].
+//! What is computed: [`config::components`]; states: [`crate::layout`]; drives: [`crate::train`]; contact: [`crate::feet`].
+
+mod moving_joints;
+mod observation;
 
 use std::error::Error;
 
-use config::Robot;
+use config::components::JointModel;
+use config::{Components, Robot};
 use environment::Environment;
-use messages::Wrench;
-use multibody::{Data, Frame, Model};
+use multibody::{Data, Model};
 use nalgebra::{Vector3, Vector6};
 
-use crate::depth::{Depth, JointModel};
 use crate::drive::{JointCubic, JointMotion};
 use crate::external_forces::at_base;
 use crate::ground::GroundContact;
+use crate::inputs::DriveSwitches;
 pub use crate::inputs::PlantInputs;
 pub use crate::layout::orientation;
 use crate::layout::{StateLayout, quaternion_rate};
-use crate::sensors::carried;
 use crate::shaft::TrainInputs;
 use crate::train::{Train, TrainFault, rotors};
+
+use moving_joints::{MovingJoints, of_moving};
+pub use observation::Snapshot;
 
 /// The equations of motion of one robot.
 #[derive(Clone)]
 pub struct Plant {
     model: Model,
     data: Data,
-    depth: Depth,
+    components: Components,
     layout: StateLayout,
     ground: GroundContact,
     joints: Joints,
+    /// Joints of the robot that this one has, if it has not all of them.
+    moving: Option<MovingJoints>,
     scratch: Scratch,
 }
 
@@ -56,31 +63,20 @@ struct Scratch {
     next: Vec<f64>,
 }
 
-/// Places and forces in a state, as sensors and logs need them.
-#[derive(Clone, Copy, Debug)]
-pub struct Snapshot {
-    /// \[N, N m\] @world Ground on each foot, moment about the sole frame.
-    pub foot_wrench: [Wrench; 2],
-    /// \[m, rad\] @world Sole frames: x, y, z, heading.
-    pub feet: [[f64; 4]; 2],
-    /// \[m\] @world
-    pub com: Vector3<f64>,
-}
-
 impl Plant {
-    /// The model of `robot` of type `depth` on `environment`; allocates everything. `pose` \[rad\] is where the controllers
-    /// of the drives are tuned.
+    /// The model of `robot` with these components, or those of a type, on `environment`; allocates everything. `pose`
+    /// \[rad\] is where the controllers of the drives are tuned, and locked joints held.
     ///
     /// # Errors
-    /// The robot's data do not fit together, or it lacks what the type needs: drives above type 1, pads above type 3.
+    /// The robot's data do not fit together, or it lacks what is to be computed: drives or pads.
     pub fn new(
         robot: &Robot,
         environment: Environment,
-        depth: u8,
+        components: impl Into<Components>,
         pose: &[f64],
     ) -> Result<Self, Box<dyn Error>> {
-        let depth = Depth::of_type(depth);
-        let driven = depth.joints == JointModel::Motors;
+        let components = components.into();
+        let driven = components.joints == JointModel::Motors;
         if driven && robot.drives.is_empty() {
             return Err(format!(
                 "robot `{}`: robot.toml has no [[drive]]; choose depth 1, or describe the drives",
@@ -89,17 +85,26 @@ impl Plant {
             .into());
         }
         // Bodies first, then what acts on them: feet and drives name links and joints of the model.
-        let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-        let model =
-            Model::from_urdf(&robot.urdf, &robot.torso, &order)?.with_rotors(&rotors(robot, depth.gears))?;
-        let ground = GroundContact::new(robot, &model, environment, depth.contact)?;
-        let described = !robot.drives.is_empty();
-        let train = described.then(|| Train::new(robot, &model, depth.gears, pose)).transpose()?;
+        let computed = components.of_robot(robot);
+        let outside = components.moving(robot);
+        let name = |j: usize| robot.joints[j].name.as_str();
+        let order: Vec<&str> = outside.iter().map(|&j| name(j)).collect();
+        let locked: Vec<(&str, f64)> =
+            (0..robot.joints.len()).filter(|j| !outside.contains(j)).map(|j| (name(j), pose[j])).collect();
+        let model = Model::from_urdf_locked(&robot.urdf, &robot.torso, &order, &locked)?
+            .with_rotors(&rotors(&computed))?;
+        let moving = (!locked.is_empty())
+            .then(|| MovingJoints { outside, reference: vec![JointMotion::default(); robot.joints.len()] });
+        let pose = of_moving(moving.as_ref(), pose);
+        let ground = GroundContact::new(robot, &model, environment, components.contact)?;
+        let described = !computed.drives.is_empty();
+        let train =
+            described.then(|| Train::new(&computed, &model, components.currents, &pose)).transpose()?;
         let mut data = Data::new(&model);
         if let Some(train) = &train {
             train.set_constant_gears(&mut data);
         }
-        // From here on the type is in `joints` and in `layout`, and is not asked for again.
+        // From here on the components are in `joints` and in `layout`, and are not asked for again.
         let nodes = ground.feet.nodes();
         let (joints, layout) = match train {
             Some(train) if driven => {
@@ -109,12 +114,12 @@ impl Plant {
             train => (Joints::Following(train), StateLayout { joints: 0, elastic: 0, nodes, motors: 0 }),
         };
         let scratch = Scratch::new(&model);
-        Ok(Self { model, data, depth, layout, ground, joints, scratch })
+        Ok(Self { model, data, components, layout, ground, joints, moving, scratch })
     }
 
-    /// Modelling depth.
-    pub fn depth(&self) -> Depth {
-        self.depth
+    /// What is computed.
+    pub fn components(&self) -> &Components {
+        &self.components
     }
 
     /// Places of the states.
@@ -134,10 +139,11 @@ impl Plant {
 
     fn upright(&mut self, joints: &[f64], height: Option<f64>) -> Vec<f64> {
         let l = self.layout;
+        let joints = of_moving(self.moving.as_ref(), joints);
         let mut x = vec![0.0; l.len()];
         x[6] = 1.0;
         self.scratch.q[..7].copy_from_slice(&x[..7]);
-        self.scratch.q[7..].copy_from_slice(joints);
+        self.scratch.q[7..].copy_from_slice(&joints);
         self.model.forward_kinematics(&mut self.data, &self.scratch.q);
         self.ground.forget();
         let Self { ground: GroundContact { feet, .. }, .. } = self;
@@ -151,14 +157,9 @@ impl Plant {
         }
         x[7..7 + l.joints].copy_from_slice(&joints[..l.joints]);
         if let Joints::Driven(train) = &self.joints {
-            train.relax(joints, &mut x[l.rotor_angle()]);
+            train.relax(&joints, &mut x[l.rotor_angle()]);
         }
         x
-    }
-
-    /// \[rad, rad/s\] Angle and speed of joint `j` in the state that was last looked at.
-    pub fn joint(&self, j: usize) -> (f64, f64) {
-        (self.scratch.q[7 + j], self.scratch.v[6 + j])
     }
 
     /// The sampled controllers measure, at the beginning of a cycle \[s\] in state `x`, and compute what they hold in it.
@@ -166,8 +167,9 @@ impl Plant {
         let Joints::Driven(train) = &self.joints else { return };
         if train.is_sampled() {
             self.load(0.0, x, drives);
+            let switches = self.switches(inputs);
             let Self { data, layout, scratch, joints: Joints::Driven(train), .. } = self else { return };
-            let given = train_inputs(layout, x, &scratch.reference, inputs);
+            let given = train_inputs(layout, x, &scratch.reference, switches);
             train.load(&given, data);
             train.sample(cycle, &given);
         }
@@ -179,13 +181,14 @@ impl Plant {
         self.load(tau, x, drives);
         self.touch_ground(&x[l.layer()]);
         dx[l.layer()].copy_from_slice(&self.ground.layer_rate);
+        let switches = self.switches(inputs);
         let Self { model, data, ground, scratch, joints, .. } = self;
         match joints {
             Joints::Following(_) => self.base_rate(x, inputs),
             Joints::Driven(train) => {
                 let Scratch { v, force, acceleration, .. } = scratch;
                 external_force(model, data, ground, inputs, (x, &x[l.speed()]), force);
-                let given = train_inputs(&l, x, &scratch.reference, inputs);
+                let given = train_inputs(&l, x, &scratch.reference, switches);
                 train.load(&given, data);
                 train.explicit(&given, data, &mut force[6..], &mut dx[l.current()]);
                 model.forward_dynamics_here(data, v, force, acceleration);
@@ -244,98 +247,6 @@ impl Plant {
         }
     }
 
-    /// Kinematics of the feet and forces of the ground in a state, `tau` \[s\] into the cycle. The next step from there
-    /// has them already.
-    pub fn look(&mut self, tau: f64, x: &[f64], drives: &[JointCubic]) {
-        self.load(tau, x, drives);
-        self.touch_ground(&x[self.layout.layer()]);
-        let Scratch { joint_acceleration, acceleration, .. } = &mut self.scratch;
-        if let Joints::Following(_) = self.joints {
-            acceleration[6..].copy_from_slice(joint_acceleration);
-        }
-    }
-
-    /// Places and forces in a state.
-    pub fn snapshot(&mut self, tau: f64, x: &[f64], drives: &[JointCubic]) -> Snapshot {
-        self.look(tau, x, drives);
-        // With the kinematics of all bodies: an evaluation needs only those of the limbs.
-        self.model.forward_kinematics_here(&mut self.data);
-        let com = self.model.cog(&mut self.data);
-        let foot_wrench = std::array::from_fn(|foot| {
-            let (_, force, moment) = self.sole_load(foot);
-            Wrench { force: force.into(), moment: moment.into() }
-        });
-        let Self { model, data, ground, .. } = &*self;
-        let sole_places = std::array::from_fn(|i| {
-            let pose = model.frame_pose(data, &ground.soles[i]);
-            let (r, p) = (pose.rotation.matrix(), pose.translation.vector);
-            [p.x, p.y, p.z, r[(1, 0)].atan2(r[(0, 0)])]
-        });
-        Snapshot { foot_wrench, feet: sole_places, com }
-    }
-
-    /// Takes the mean acceleration of a step of `h` \[s\] between two states for that at its end: it is what the step's
-    /// forces did, impacts and dry friction included.
-    pub fn note_step(&mut self, h: f64, before: &[f64], x: &[f64]) {
-        let l = &self.layout;
-        let velocity = |x: &[f64]| orientation(x) * Vector3::from_column_slice(&x[l.speed()][..3]);
-        let (speed_before, speed) = (&before[l.speed()], &x[l.speed()]);
-        let acceleration = &mut self.scratch.acceleration;
-        for ((a, before), after) in acceleration.iter_mut().zip(speed_before).zip(speed) {
-            *a = (after - before) / h;
-        }
-        // Velocities of the torso's origin are in its own axes, which turn.
-        let linear = orientation(x).inverse() * ((velocity(x) - velocity(before)) / h)
-            - angular_velocity(speed).cross(&Vector3::from_column_slice(&speed[..3]));
-        acceleration[..3].copy_from_slice(linear.as_slice());
-    }
-
-    /// Nothing accelerates.
-    pub(crate) fn note_rest(&mut self) {
-        self.scratch.acceleration.fill(0.0);
-    }
-
-    /// \[m/s^2, rad/s^2\] @torso Acceleration of the torso's origin less gravity, and angular acceleration, of the step that
-    /// led to a state.
-    pub(crate) fn torso_acceleration(&self, x: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
-        let (speed, change) = (&x[self.layout.speed()], &self.scratch.acceleration);
-        let turning = angular_velocity(speed).cross(&Vector3::from_column_slice(&speed[..3]));
-        let linear = Vector3::from_column_slice(&change[..3]) + turning;
-        let specific = linear - orientation(x).inverse() * multibody::GRAVITY;
-        (specific, Vector3::from_column_slice(&change[3..6]))
-    }
-
-    /// \[m, N, N m\] @world Origin of a sole frame, force of the ground on its foot and moment about that origin, after
-    /// [`Plant::look`].
-    pub(crate) fn sole_load(&self, foot: usize) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
-        let at = self.model.frame_position(&self.data, &self.ground.soles[foot]);
-        let (force, moment) = self.ground.feet.total(&self.model, &self.data, &at, Some(foot));
-        (at, force, moment)
-    }
-
-    /// Wrenches that carry and move the bodies below each force sensor in the state that was last looked at, with the
-    /// acceleration of [`Plant::note_step`].
-    pub fn carried(&mut self, sensors: &[Frame; 2]) -> [Wrench; 2] {
-        let Self { model, data, scratch, .. } = self;
-        model.forward_kinematics_here(data);
-        model.inverse_dynamics_here(data, &scratch.v, &scratch.acceleration, &mut scratch.bias);
-        sensors.map(|frame| carried::inertial(model, data, &frame))
-    }
-
-    /// Motors in a state: angles and speeds in joint units, which hold the joints' on entry, and currents.
-    pub fn motors(&self, x: &[f64], angle: &mut [f64], speed: &mut [f64], current: &mut [f64]) {
-        let l = &self.layout;
-        if let Joints::Driven(train) = &self.joints {
-            train.motor_side((&x[l.rotor_angle()], &x[l.rotor_speed()]), angle, speed);
-        }
-        current[..l.motors].copy_from_slice(&x[l.current()]);
-    }
-
-    /// Pose of a frame of the limbs that touch the ground, after [`Plant::look`].
-    pub fn frame_pose(&self, frame: &Frame) -> nalgebra::IsometryMatrix3<f64> {
-        self.model.frame_pose(&self.data, frame)
-    }
-
     /// The multibody model.
     pub fn model(&self) -> &Model {
         &self.model
@@ -361,7 +272,8 @@ impl Plant {
 
     /// Something a drive could not do, since the last call.
     pub fn take_fault(&mut self) -> Option<TrainFault> {
-        self.train_mut().and_then(Train::take_fault)
+        let fault = self.train_mut().and_then(Train::take_fault)?;
+        Some(TrainFault { drive: self.outside(fault.drive), ..fault })
     }
 
     /// Kinematics of the feet and forces of the ground for the loaded q and v.
@@ -374,12 +286,13 @@ impl Plant {
     fn accelerate(&mut self, h: f64, x: &[f64], inputs: &PlantInputs) {
         let l = self.layout;
         self.touch_ground(&x[l.layer()]);
+        let switches = self.switches(inputs);
         let Self { model, data, ground, scratch, joints, .. } = self;
         let Joints::Driven(train) = joints else { return self.base_rate(x, inputs) };
         let Scratch { v, force, acceleration, bias, .. } = scratch;
         external_force(model, data, ground, inputs, (x, &x[l.speed()]), force);
         // Gears before the dynamics: the mass matrix holds the geared rotors, the bias their gyroscopic moments.
-        let given = train_inputs(&l, x, &scratch.reference, inputs);
+        let given = train_inputs(&l, x, &scratch.reference, switches);
         train.load(&given, data);
         train.free_rotors(data);
         model.dynamics_here(data, v, bias);
@@ -413,8 +326,20 @@ impl Plant {
     fn load(&mut self, tau: f64, x: &[f64], drives: &[JointCubic]) {
         let l = &self.layout;
         let Scratch { q, v, joint_acceleration, reference, .. } = &mut self.scratch;
-        for (r, drive) in reference.iter_mut().zip(drives) {
-            *r = drive.at(tau);
+        match &mut self.moving {
+            None => {
+                for (r, drive) in reference.iter_mut().zip(drives) {
+                    *r = drive.at(tau);
+                }
+            }
+            Some(moving) => {
+                for (r, drive) in moving.reference.iter_mut().zip(drives) {
+                    *r = drive.at(tau);
+                }
+                for (r, &j) in reference.iter_mut().zip(&moving.outside) {
+                    *r = moving.reference[j];
+                }
+            }
         }
         q[..7 + l.joints].copy_from_slice(&x[l.pose()]);
         q[3..7].copy_from_slice(&<[f64; 4]>::from(orientation(x).into_inner().coords));
@@ -460,17 +385,13 @@ fn train_inputs<'a>(
     l: &StateLayout,
     x: &'a [f64],
     reference: &'a [JointMotion],
-    inputs: &PlantInputs,
+    switches: DriveSwitches,
 ) -> TrainInputs<'a> {
     TrainInputs {
         joint: (&x[l.pose()][7..], &x[l.speed()][6..]),
         rotor: (&x[l.rotor_angle()], &x[l.rotor_speed()]),
         current: &x[l.current()],
         reference,
-        switches: inputs.switches,
+        switches,
     }
-}
-
-fn angular_velocity(speed: &[f64]) -> Vector3<f64> {
-    Vector3::from_column_slice(&speed[3..6])
 }

@@ -228,7 +228,7 @@ impl SimBackend {
 
     /// Commands to references; which drives have torque.
     fn begin_cycle(&mut self, frames: Option<&BusFrames>, powered: bool) -> DriveSwitches {
-        let model = self.body.plant().depth().joints;
+        let model = self.body.plant().components().joints;
         let (switches, stopped) = self.joints.begin_cycle(
             &self.robot,
             model,

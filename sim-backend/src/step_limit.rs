@@ -8,7 +8,7 @@
 use std::error::Error;
 
 use config::method::Integrator;
-use config::{Robot, Scene};
+use config::{Components, Robot, Scene};
 use environment::Environment;
 use faer::{Mat, Par, set_global_parallelism};
 use nalgebra::Complex;
@@ -83,15 +83,15 @@ pub struct StepLimit {
     pub regime: &'static str,
 }
 
-/// Largest stable step of an explicit method on a robot of this depth: the smallest of a robot that stands, one whose rotors
+/// Largest stable step of an explicit method on a robot of these components: the smallest of a robot that stands, one whose rotors
 /// turn faster than dry friction damps them, and one in the air. Pads count as points: both relax with K/B. None: the method
 /// is not explicit.
 ///
 /// # Errors
-/// The robot's data do not allow the depth.
+/// The robot's data do not allow them.
 pub fn step_limit(
     robot: &Robot,
-    depth: u8,
+    components: impl Into<Components>,
     pose: &[f64],
     integrator: Integrator,
 ) -> Result<Option<StepLimit>> {
@@ -100,7 +100,7 @@ pub fn step_limit(
         Integrator::RungeKutta4 => runge_kutta_limit,
         Integrator::SemiImplicit | Integrator::Bdf => return Ok(None),
     };
-    let mut plant = Plant::new(robot, Environment::flat(), if depth > 3 { depth - 2 } else { depth }, pose)?;
+    let mut plant = Plant::new(robot, Environment::flat(), components.into().on_points(), pose)?;
     let drives: Vec<JointCubic> = pose.iter().map(|&q| JointCubic::resting(q)).collect();
     let (standing, hanging) = (plant.standing(pose), plant.hanging(pose, IN_THE_AIR));
     let l = *plant.layout();
@@ -132,7 +132,7 @@ pub fn step_limit(
 /// It is, and the scene does not force it; or as of [`step_limit`].
 pub(crate) fn check(robot: &Robot, scene: &Scene) -> Result<()> {
     let pose = &robot.poses[&scene.start_pose];
-    let Some(limit) = step_limit(robot, scene.depth, pose, scene.integrator)? else { return Ok(()) };
+    let Some(limit) = step_limit(robot, scene.components(), pose, scene.integrator)? else { return Ok(()) };
     let step = scene.cycle / f64::from(scene.substeps);
     if step <= limit.step || scene.force_step {
         return Ok(());

@@ -19,7 +19,6 @@ use config::robot::Drive as DriveData;
 use drives::{ControlLaw, NoLoadTorque, OutOfDomain, Sampling};
 use multibody::{Damper, Data, Model, Rotor};
 
-use crate::depth::GearModel;
 use crate::implicit::ShaftStep;
 use crate::local_control::MotorController;
 use crate::shaft::{Shaft, TrainInputs};
@@ -32,6 +31,8 @@ pub(crate) const SLOW: f64 = 1.0;
 pub struct Train {
     pub(crate) drives: Vec<DriveTrain>,
     elastic: usize,
+    /// Currents have states of their own; else a motor has that of its voltage and speed at once.
+    electrical: bool,
     pub(crate) fault: Option<TrainFault>,
     /// Share of each drive in the mass matrix of an implicit step.
     pub(crate) dampers: Vec<Damper>,
@@ -75,21 +76,20 @@ impl Train {
     pub fn new(
         robot: &Robot,
         model: &Model,
-        gears: GearModel,
+        electrical: bool,
         hanging: &[f64],
     ) -> Result<Self, Box<dyn Error>> {
         let mut elastic = 0;
         let mut drive = |(k, data): (usize, &DriveData)| {
             let controller = MotorController::new(data, &robot.joints)?;
-            let spring = data.elasticity.filter(|_| gears == GearModel::Elastic);
-            let shaft = Shaft::new(data, k, spring.map(|spring| (elastic, spring)));
-            elastic += usize::from(spring.is_some());
+            let shaft = Shaft::new(data, k, data.elasticity.map(|spring| (elastic, spring)));
+            elastic += usize::from(data.elasticity.is_some());
             Ok::<_, String>(DriveTrain { shaft, controller, step: ShaftStep::default() })
         };
         let mut drives = robot.drives.iter().enumerate().map(&mut drive).collect::<Result<Vec<_>, _>>()?;
         tune(&mut drives, model, hanging);
         let dampers = robot.drives.iter().map(|d| model.damper(&d.joints)).collect::<Result<_, _>>()?;
-        Ok(Self { drives, elastic, fault: None, dampers })
+        Ok(Self { drives, elastic, electrical, fault: None, dampers })
     }
 
     /// Elastic gears.
@@ -97,9 +97,9 @@ impl Train {
         self.elastic
     }
 
-    /// Motors.
+    /// Motors whose currents have states.
     pub fn motors(&self) -> usize {
-        self.drives.len()
+        if self.electrical { self.drives.len() } else { 0 }
     }
 
     /// The sampled controllers measure at the state of [`Train::load`] and compute what they hold for a cycle \[s\].
@@ -171,8 +171,11 @@ impl Train {
         torque: &mut [f64],
         rate: &mut [f64],
     ) {
-        for (drive, DriveTrain { shaft, controller, .. }) in self.drives.iter().enumerate() {
-            let current = inputs.current[drive];
+        for (drive, DriveTrain { shaft, controller, step }) in self.drives.iter_mut().enumerate() {
+            let current = match inputs.current.get(drive) {
+                Some(current) => *current,
+                None => controller.steady_current(shaft),
+            };
             // Power stage off: open terminals, at the voltage the motor induces; what current is left makes no torque.
             let motor = &shaft.drive.motor;
             let (voltage, driving) = if inputs.switches.has_torque(drive) {
@@ -180,7 +183,10 @@ impl Train {
             } else {
                 (motor.torque_constant * shaft.speed, 0.0)
             };
-            rate[drive] = motor.current_rate(current, voltage, shaft.speed); // (2.57)
+            match rate.get_mut(drive) {
+                Some(rate) => *rate = motor.current_rate(current, voltage, shaft.speed), // (2.57)
+                None => step.note_current(driving / motor.torque_constant),
+            }
             let friction = shaft.drive.friction.torque(shaft.speed, driving, SLOW).unwrap_or_else(|why| {
                 self.fault.get_or_insert(TrainFault { drive, why: FaultCause::Friction(why) });
                 0.0
@@ -215,14 +221,14 @@ impl Train {
         }
     }
 
-    /// Angles and speeds of the motors, in units of the joints they move most: where an elastic gear has its rotor, that;
-    /// else the joint.
-    pub fn motor_side(&self, rotor: (&[f64], &[f64]), angle: &mut [f64], speed: &mut [f64]) {
-        for DriveTrain { shaft, .. } in &self.drives {
-            if let Some((e, _)) = shaft.elastic {
-                (angle[shaft.joints[0]], speed[shaft.joints[0]]) = (rotor.0[e], rotor.1[e]);
-            }
-        }
+    /// Joints behind elastic gears, with the places of their rotors.
+    pub(crate) fn rotors(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.drives.iter().filter_map(|d| d.shaft.elastic.as_ref().map(|(e, _)| (d.shaft.joints[0], *e)))
+    }
+
+    /// \[A\] Current of each motor in the step that led here, of those without states of their own.
+    pub(crate) fn steady_currents(&self) -> impl Iterator<Item = f64> + '_ {
+        self.drives.iter().map(|d| d.step.steady_current())
     }
 
     /// Rates of the elastic rotors' speeds, after the forward dynamics.
@@ -236,8 +242,8 @@ impl Train {
 }
 
 /// The rotors of a robot's drives, in their order.
-pub(crate) fn rotors(robot: &Robot, gears: GearModel) -> Vec<Rotor> {
-    let turns_by_itself = |d: &DriveData| gears == GearModel::Elastic && d.elasticity.is_some();
+pub(crate) fn rotors(robot: &Robot) -> Vec<Rotor> {
+    let turns_by_itself = |d: &DriveData| d.elasticity.is_some();
     let rotor = |d: &DriveData| Rotor {
         name: d.name.clone(),
         link: d.stator.clone(),

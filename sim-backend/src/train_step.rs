@@ -80,9 +80,12 @@ impl Train {
     }
 
     /// Moves currents and rotors to the end of the step, after [`Train::solve`].
-    pub fn end(&self, h: f64, current: &mut [f64], rotor: (&mut [f64], &mut [f64])) {
-        for (DriveTrain { shaft, step, .. }, current) in self.drives.iter().zip(current) {
-            *current = step.current(shaft);
+    pub fn end(&mut self, h: f64, current: &mut [f64], rotor: (&mut [f64], &mut [f64])) {
+        for (k, DriveTrain { shaft, step, .. }) in self.drives.iter_mut().enumerate() {
+            match current.get_mut(k) {
+                Some(current) => *current = step.current(shaft),
+                None => step.note_current(step.current(shaft)),
+            }
             if let Some((e, _)) = shaft.elastic {
                 rotor.1[e] = step.end_speed() / shaft.gear.ratio[0];
                 rotor.0[e] += h * rotor.1[e];

@@ -10,6 +10,7 @@ pub mod accuracy;
 pub mod arm_swing;
 pub mod bus;
 pub mod bus_faults;
+pub mod components;
 pub mod cycles;
 pub mod figures_of_thesis;
 pub mod limits;
@@ -77,6 +78,8 @@ studies! {
     Floquet: stability::floquet::Floquet,
     /// Which method is cheapest for a given accuracy: charts of processor time against error.
     Accuracy: accuracy::Accuracy,
+    /// What each component of the simulated robot costs, and what a walk without it misses.
+    Components: components::ComponentsStudy,
     /// How fast simulation, planner and stabilizer are, and how accurate at that speed.
     Speed: speed::Speed,
     /// Where methods fail: predicted and measured limits, and how each failure is reported.

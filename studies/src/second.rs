@@ -39,8 +39,9 @@ impl Second {
         targets.extend((0..cycles).map(|_| chain.step().joint_targets));
         if chain.robot().state().fallen == 1 {
             return Err(format!(
-                "scene {}: the robot falls on the model of type {}",
-                setup.scene.name, setup.scene.depth
+                "scene {}: the robot falls on the model {}",
+                setup.scene.name,
+                setup.scene.model()
             )
             .into());
         }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use nalgebra::{IsometryMatrix3, Matrix3, Vector3};
+use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3};
 use urdf_rs::{Joint, JointType, Pose, Robot};
 
 use crate::builder::{JointKind, ModelBuilder, rotation_from_rpy};
@@ -18,7 +18,21 @@ impl Model {
     /// joints become part of the body that carries them and stay addressable by [`Model::frame`]. Limits, geometry,
     /// transmissions and `<mimic>` are not read; a joint that mimics another is a coordinate of its own.
     pub fn from_urdf(urdf: &str, base_link: &str, joint_order: &[&str]) -> Result<Model, ModelError> {
-        let robot = urdf_rs::read_from_string(urdf).map_err(|e| ModelError::Unreadable(e.to_string()))?;
+        Self::from_urdf_locked(urdf, base_link, joint_order, &[])
+    }
+
+    /// The same with some joints held at these coordinates \[rad, m\], as if they were fixed: they are none of `joint_order`.
+    pub fn from_urdf_locked(
+        urdf: &str,
+        base_link: &str,
+        joint_order: &[&str],
+        locked: &[(&str, f64)],
+    ) -> Result<Model, ModelError> {
+        let mut robot = urdf_rs::read_from_string(urdf).map_err(|e| ModelError::Unreadable(e.to_string()))?;
+        for &(name, at) in locked {
+            let joint = robot.joints.iter_mut().find(|j| j.name == name);
+            lock(joint.ok_or_else(|| ModelError::UnknownJoint(name.into()))?, at);
+        }
         let tree = Tree::new(&robot, base_link)?;
         tree.check_order(joint_order)?;
         let mut builder = ModelBuilder::new(base_link, tree.inertia(base_link)?);
@@ -171,6 +185,26 @@ impl<'a> Tree<'a> {
         }
         Ok(())
     }
+}
+
+/// Makes a joint fixed where it is `at` \[rad, m\].
+fn lock(joint: &mut Joint, at: f64) {
+    let axis = Vector3::from(joint.axis.xyz.0);
+    let moved = match joint.joint_type {
+        JointType::Revolute | JointType::Continuous => {
+            let turn = Rotation3::new(axis.normalize() * at);
+            IsometryMatrix3::from_parts(Vector3::zeros().into(), turn)
+        }
+        JointType::Prismatic => {
+            IsometryMatrix3::from_parts((axis.normalize() * at).into(), Rotation3::identity())
+        }
+        _ => return,
+    };
+    let pose = placement(&joint.origin) * moved;
+    let (roll, pitch, yaw) = pose.rotation.euler_angles();
+    joint.origin.xyz.0 = pose.translation.vector.into();
+    joint.origin.rpy.0 = [roll, pitch, yaw];
+    joint.joint_type = JointType::Fixed;
 }
 
 fn placement(p: &Pose) -> IsometryMatrix3<f64> {

@@ -169,7 +169,7 @@ fn perform(tasks: &[ScorecardTask<'_>], progress: Progress<'_>) -> Result<Vec<Sc
 
 /// As [`chain::figures::Figures`] says it.
 fn depth_of(scene: &config::Scene) -> String {
-    format!("type {}, {:?} x {}", scene.depth, scene.integrator, scene.substeps)
+    format!("{}, {:?} x {}", scene.model(), scene.integrator, scene.substeps)
 }
 
 const COLUMNS: &[Column] =
