@@ -111,6 +111,16 @@ fn walk_type2() {
     walks(&figures("walk_type2", 20.0), 1.0);
 }
 
+/// Her motors' currents have no states, her head does not move.
+#[test]
+fn walk_without_currents() {
+    let figures = figures("walk_without_currents", 20.0);
+    walks(&figures, 1.0);
+    assert!(
+        figures["depth"].as_str().unwrap().starts_with("type 2, without currents, locked head_pan head_tilt")
+    );
+}
+
 #[test]
 fn walk_type3() {
     walks(&figures("walk_type3", 20.0), 1.0);

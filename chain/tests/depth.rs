@@ -30,12 +30,12 @@ fn what_every_model_has_is_had_from_the_cheapest() {
 }
 
 #[test]
-fn torques_and_currents_need_motors() {
-    for output in [(Output::JointTorque, 200.0), (Output::MotorCurrent, 50.0)] {
-        let choice = chosen(&standing(0.1, &[output]));
-        assert!(choice.method.depth >= 2, "{}", choice.reason());
-        assert!(choice.tried.iter().all(|t| t.method.depth >= 2), "type 1 is not even tried");
-    }
+fn currents_need_motors_and_torques_do_not() {
+    let choice = chosen(&standing(0.1, &[(Output::MotorCurrent, 50.0)]));
+    assert!(choice.method.depth >= 2, "{}", choice.reason());
+    assert!(choice.tried.iter().all(|t| t.method.depth >= 2), "type 1 is not even tried");
+    let choice = chosen(&standing(0.1, &[(Output::JointTorque, 200.0)]));
+    assert_eq!(choice.method.depth, 1, "{}", choice.reason());
 }
 
 /// No clock decides.
@@ -63,12 +63,12 @@ fn too_strict_says_how_near_the_nearest_came() {
 }
 
 #[test]
-fn a_robot_without_drives_has_no_torques() {
-    let mut setup = standing(0.1, &[(Output::JointTorque, 200.0)]);
+fn a_robot_without_drives_has_no_currents() {
+    let mut setup = standing(0.1, &[(Output::MotorCurrent, 50.0)]);
     setup.robot.drives.clear();
     assert_eq!(
         choose(&setup, |_| ()).unwrap_err().to_string(),
-        "scene stand: tolerance: torques and currents need motors, and robot `lola` has no [[drive]]"
+        "scene stand: tolerance: motor_current needs motors, and robot `lola` has no [[drive]]"
     );
 }
 

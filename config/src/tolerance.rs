@@ -59,7 +59,7 @@ impl Output {
 
     /// Whether only models with motors have it, those of type 2 and deeper.
     pub fn needs_motors(self) -> bool {
-        matches!(self, Self::JointTorque | Self::MotorCurrent)
+        matches!(self, Self::MotorCurrent)
     }
 }
 

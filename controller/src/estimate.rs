@@ -38,10 +38,10 @@ pub(crate) struct TaskEstimate {
     pub zmp_margin: f64,
 }
 
-/// A foot counts as loaded from this normal force on \[N\].
-pub const LOADED: f64 = 20.0;
-/// Its sole counts as part of the support polygon from this one on \[N\].
-const TOUCHING: f64 = 1.0;
+/// \[1\] Normal force from which a foot counts as loaded, in weights of the robot.
+pub const LOADED: f64 = 1.0 / 30.0;
+/// \[1\] The same from which its sole counts as part of the support polygon.
+const TOUCHING: f64 = 1.0 / 600.0;
 
 impl TaskEstimate {
     /// From the sensors, the kinematics of the measured joints and what is desired. The anchor is the foot that is
@@ -52,7 +52,8 @@ impl TaskEstimate {
         let force = |i: usize| sensors.foot_wrench[i].force[2];
         // A swing foot that meets the ground early may press harder than the stance foot, and is not where it should be.
         let heavier = usize::from(desired.load[1] > desired.load[0]);
-        let lost = force(heavier) <= LOADED && force(1 - heavier) > LOADED;
+        let loaded = LOADED * robot.weight();
+        let lost = force(heavier) <= loaded && force(1 - heavier) > loaded;
         let anchor = if lost { 1 - heavier } else { heavier };
 
         // The IMU knows where up is, the anchor foot where it was put: together the pose of the torso.
@@ -100,7 +101,7 @@ impl TaskEstimate {
             moment += Vector2::new(-t.y, t.x);
             normal += f.z;
             // A sole that presses is part of the support polygon, all of it.
-            if f.z > TOUCHING {
+            if f.z > TOUCHING * robot.weight() {
                 let [back, front, right, left] = robot.feet[foot].support;
                 let [x, y, _, heading] = self.feet[foot];
                 let (s, c) = heading.sin_cos();

@@ -71,7 +71,7 @@ impl Controller {
             control: gait.control,
             clock: CycleClock::new(dt),
             plan: PlanFollower::new([0, 1].map(|i| [robot.feet[i].support[0], robot.feet[i].support[1]])),
-            watch: SafetyWatch::default(),
+            watch: SafetyWatch::new(robot.weight()),
             speeds: JointSpeeds::new(robot, &desired, gait.arm_swing)?,
             measured,
             desired,

@@ -6,9 +6,9 @@ use messages::{EventCode, Sensors};
 use crate::estimate::{LOADED, TaskEstimate};
 use crate::plan_follower::Desired;
 
-/// \[N\] Normal force from which a foot counts as being in contact, above what a swinging foot's inertia reads; contact
-/// ends below [`LOADED`].
-const FIRM: f64 = 60.0;
+/// \[1\] Normal force from which a foot counts as being in contact, in weights of the robot, above what a swinging foot's
+/// inertia reads; contact ends below [`LOADED`].
+const FIRM: f64 = 0.1;
 /// Inclination error \[rad\] from which the robot counts as falling: joints are brought to rest.
 pub(crate) const FALLING: f64 = 0.5;
 /// Cycles without load on either foot, while the plan wants load, after which the robot counts as lifted.
@@ -17,8 +17,10 @@ const LIFTED_CYCLES: u32 = 200;
 const BAD_CYCLES: u32 = 20;
 
 /// Admits sensor data and decides when to stop.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub(crate) struct SafetyWatch {
+    /// \[N\] Weight of the robot.
+    weight: f64,
     /// The last sensor data without a NaN, and how many with one came since.
     good: Sensors,
     bad: u32,
@@ -29,6 +31,11 @@ pub(crate) struct SafetyWatch {
 }
 
 impl SafetyWatch {
+    /// Of a robot of `weight` \[N\].
+    pub(crate) fn new(weight: f64) -> Self {
+        Self { weight, good: Sensors::default(), bad: 0, unloaded: 0, why: None, contact: [false; 2] }
+    }
+
     /// The sensor data if they are finite, otherwise the last ones that were; true where that begins.
     pub(crate) fn admit(&mut self, sensors: &Sensors, joints: usize) -> (Sensors, bool) {
         let (imu, wrench) = (&sensors.imu, &sensors.foot_wrench);
@@ -40,7 +47,7 @@ impl SafetyWatch {
             self.good = *sensors;
             self.bad = 0;
             for (contact, w) in self.contact.iter_mut().zip(wrench) {
-                *contact = w.force[2] > if *contact { LOADED } else { FIRM };
+                *contact = w.force[2] > self.weight * if *contact { LOADED } else { FIRM };
             }
         } else {
             self.bad = self.bad.saturating_add(1);
@@ -74,7 +81,7 @@ impl SafetyWatch {
     ) -> Option<EventCode> {
         let tilt = (0..2).map(|i| (now.torso.position[i] - estimate.angles[i]).abs()).fold(0.0, f64::max);
         let load = sensors.foot_wrench[0].force[2].max(sensors.foot_wrench[1].force[2]);
-        self.unloaded = if load < LOADED { self.unloaded + 1 } else { 0 };
+        self.unloaded = if load < LOADED * self.weight { self.unloaded + 1 } else { 0 };
         let why = if self.bad > BAD_CYCLES {
             Some(EventCode::SensorNotFinite)
         } else if !(tilt < FALLING) {
@@ -87,5 +94,29 @@ impl SafetyWatch {
         let why = why.filter(|_| self.why.is_none());
         self.why = self.why.or(why);
         why
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What counts as contact is the same share of every robot's weight: a foot that carries an eighth of it stands on the
+    /// ground, one that reads a twelfth has not met it yet, and one that keeps a fortieth has left it.
+    #[test]
+    fn contact_is_a_share_of_the_weight() {
+        for name in ["lola", "johnnie", "archie"] {
+            let robot = config::Robot::load(&config::root(None).join("robots").join(name)).unwrap();
+            let mut watch = SafetyWatch::new(robot.weight());
+            let mut contact = |share: f64| {
+                let mut sensors = Sensors::default();
+                sensors.foot_wrench[0].force[2] = share * robot.weight();
+                watch.admit(&sensors, robot.joints.len());
+                watch.contact()[0]
+            };
+            let seen =
+                [1.0 / 12.0, 1.0 / 8.0, 1.0 / 12.0, 1.0 / 20.0, 1.0 / 40.0, 1.0 / 12.0].map(&mut contact);
+            assert_eq!(seen, [false, true, true, true, false, false], "{name}");
+        }
     }
 }

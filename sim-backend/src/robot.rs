@@ -124,6 +124,11 @@ impl SimBackend {
         self.body.state_mut()
     }
 
+    /// \[N m\] Torques of the joints' drives by inverse dynamics, as [`Plant::joint_torques`] has them.
+    pub fn joint_torques(&mut self, torque: &mut [f64]) {
+        self.body.parts().0.joint_torques(torque);
+    }
+
     /// Places of its numbers.
     pub fn layout(&self) -> &crate::layout::StateLayout {
         self.body.plant().layout()

@@ -199,3 +199,38 @@ fn a_scene_says_its_components() {
     assert_eq!(components.locked, ["head_pan", "head_tilt"]);
     assert_eq!(setup.scene.model(), "type 2, without currents, locked head_pan head_tilt");
 }
+
+/// Torques by inverse dynamics are those of the motors, where gears have no friction: of a robot whose joints move, by its
+/// currents.
+#[test]
+fn torques_by_inverse_dynamics_are_those_of_the_motors() {
+    let robot = lola();
+    let n = robot.joints.len();
+    let components = Components { friction: false, ..Components::from(2) };
+    let method = (Integrator::RungeKutta4, 10_000);
+    let (mut plant, x) = moved(&robot, components, method, &[]);
+    // The acceleration of one more step, with references that stay where they have come to.
+    let h = 5e-6;
+    let ends = |(j, &q): (usize, &f64)| JointCubic::resting(q + 1e-3 * (1.0 + j as f64).sin());
+    let drives: Vec<JointCubic> = robot.poses["stand"].iter().enumerate().map(ends).collect();
+    let mut after = x.clone();
+    let mut stepper = Stepper::new(Integrator::RungeKutta4, x.len());
+    stepper.step(&mut plant, 0.0, h, &mut after, &drives, &PlantInputs::POWERED);
+    plant.note_step(h, &x, &after);
+    plant.look(0.0, &after, &drives);
+    let mut found = vec![0.0; n];
+    plant.joint_torques(&mut found);
+    // By the currents, which end the state.
+    let mut expected = vec![0.0; n];
+    let current = &after[plant.layout().current()];
+    for (drive, current) in robot.drives.iter().zip(current) {
+        let at = |of: usize| std::array::from_fn(|i| drive.joints.get(i).map_or(0.0, |&j| after[of + j]));
+        let gear = drive.transmission.at(at(7), at(13 + n)).unwrap();
+        for (&joint, ratio) in drive.joints.iter().zip(gear.ratio) {
+            expected[joint] += ratio * drive.motor.torque(*current);
+        }
+    }
+    let most = expected.iter().fold(0.0, |most, t| f64::max(most, t.abs()));
+    let apart = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(most > 20.0 && apart < 1e-3 * most, "{apart} of {most} N m: {found:?} {expected:?}");
+}

@@ -1,6 +1,6 @@
 //! Every method fails where it was predicted to, and the program says so.
 
-use studies::limits::{self, Finding};
+use studies::limits::{self, Finding, LimitRule};
 
 #[test]
 fn methods_fail_where_predicted_and_tell() {
@@ -15,6 +15,21 @@ fn methods_fail_where_predicted_and_tell() {
         findings.iter().filter(|f| !f.ok()).map(|f| format!("{}: {}", f.id, f.regime)).collect();
     assert!(failed.is_empty(), "not as predicted, or not reported: {failed:#?}");
     assert!(sheet.json().to_string().contains("\"F26\""));
+    let loose: Vec<_> = findings.iter().filter(|f| is_loose(f, &findings)).map(|f| &f.regime).collect();
+    assert!(loose.is_empty(), "bounds that are more than ten times what is measured: {loose:#?}");
+}
+
+/// A bound that hides more than ten times what is measured: of a relative one, in any row of its kind. Two thousandths are what
+/// bisections and rounding may leave.
+fn is_loose(f: &Finding, all: &[Finding]) -> bool {
+    match f.rule {
+        LimitRule::Within(most) => {
+            let kind = all.iter().filter(|g| g.id == f.id && g.rule == f.rule);
+            most > 2e-3 && most > 10.0 * kind.map(|g| g.deviation().abs()).fold(0.0, f64::max)
+        }
+        LimitRule::AtMost => f.predicted > 0.0 && f.measured < 0.1 * f.predicted,
+        LimitRule::AtLeast => false,
+    }
 }
 
 /// Difference of the page from a finding, if any: no row, or numbers off by more than a thousandth, those of rounding errors by

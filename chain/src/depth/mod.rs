@@ -172,7 +172,7 @@ pub fn choose(setup: &Setup, trying: impl FnMut(&str)) -> Result<Choice, Box<dyn
     if tolerance.needs_motors() && !types.has(2) {
         let robot = &setup.robot.name;
         return Err(format!(
-            "scene {}: tolerance: torques and currents need motors, and robot `{robot}` has no [[drive]]",
+            "scene {}: tolerance: motor_current needs motors, and robot `{robot}` has no [[drive]]",
             setup.scene.name
         )
         .into());

@@ -28,7 +28,7 @@ pub struct MethodTrial {
     force: Vec<[[f64; 3]; 2]>,
     /// \[rad\] Joints, all of one cycle after the other.
     angle: Vec<f64>,
-    /// \[N m\] The same; empty without motors.
+    /// \[N m\] The same: of motors with their gears, or, without these, by inverse dynamics.
     torque: Vec<f64>,
     /// \[A\] Motors; empty without any.
     current: Vec<f64>,
@@ -65,6 +65,11 @@ impl MethodTrial {
             trial.add(&setup, &sim);
             if method.depth > 1 {
                 trial.add_motors(&setup, chain.robot().integrated());
+            } else {
+                let n = setup.robot.joints.len();
+                trial.torque.resize(trial.torque.len() + n, 0.0);
+                let first = trial.torque.len() - n;
+                chain.parts().0.joint_torques(&mut trial.torque[first..]);
             }
         }
         trial.cpu_s = (processor_time() - begun) as f64 * 1e-9;

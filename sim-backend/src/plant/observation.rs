@@ -91,6 +91,21 @@ impl Plant {
         (at, force, moment)
     }
 
+    /// \[N m\] Torques of the joints' drives by inverse dynamics, (2.75) solved for them, rotors included, gear friction not:
+    /// in the state that was last looked at, with the acceleration of [`Plant::note_step`]. It is all that is known of drives
+    /// whose joints follow their targets. Locked joints have none.
+    pub fn joint_torques(&mut self, torque: &mut [f64]) {
+        let Self { model, data, ground, scratch, .. } = self;
+        let Scratch { v, acceleration, force, bias, .. } = scratch;
+        model.inverse_dynamics_here(data, v, acceleration, bias);
+        force.fill(0.0);
+        ground.feet.add_to(model, data, force);
+        torque.fill(0.0);
+        for (i, (needed, ground)) in bias[6..].iter().zip(&force[6..]).enumerate() {
+            torque[self.moving.as_ref().map_or(i, |moving| moving.outside[i])] = needed - ground;
+        }
+    }
+
     /// Wrenches that carry and move the bodies below each force sensor in the state that was last looked at, with the
     /// acceleration of [`Plant::note_step`].
     pub fn carried(&mut self, sensors: &[Frame; 2]) -> [Wrench; 2] {

@@ -49,7 +49,7 @@ pub(super) fn nearest(_: &Bench) -> Findings {
         most = most.max(((p - closest(&p, &corners).0).norm() - by_search(&p, &corners)).abs());
     }
     let regime = "nearest point of 200 000 triangles, all regions and degenerate ones: error";
-    Ok(vec![row("F25", "m", AtMost).of(regime, [1e-12, most])])
+    Ok(vec![row("F25", "m", AtMost).of(regime, [8e-15, most])])
 }
 
 /// A node that rounds the upper edge of a board at a distance of 2 mm, a quarter of a circle: gap and normal are continuous.
@@ -73,7 +73,7 @@ pub(super) fn edge(_: &Bench) -> Findings {
     let lost = ground.query([f64::NAN, 0.0, 0.02]);
     Ok(vec![
         row("E1", "m", AtMost)
-            .of("node around the edge of a board, 2 mm away: error of the gap", [1e-12, gap])
+            .of("node around the edge of a board, 2 mm away: error of the gap", [1e-16, gap])
             .says("no number: Surface::Far", lost.surface == Surface::Far && on_board),
         row("E1", "rad", Within(1e-6))
             .of("node around the edge, 1000 steps: largest turn of the normal", [turn, largest]),

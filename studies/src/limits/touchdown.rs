@@ -80,7 +80,7 @@ pub(super) fn order(_: &Bench) -> Findings {
     Ok(vec![
         row("F7", "", Within(0.1))
             .of("Runge-Kutta 4 across a touchdown: order", [1.0, measured(true, false)]),
-        row("F7", "", Within(0.05))
+        row("F7", "", Within(0.025))
             .of("Runge-Kutta 4 with a step that ends at touchdown: order", [4.0, measured(true, true)]),
         row("F7", "", Within(0.1))
             .of("explicit Euler across a touchdown: order", [1.0, measured(false, false)]),
