@@ -195,10 +195,10 @@ impl ExternalPlant {
         self.stream.read_exact(head.as_flattened_mut()).map_err(|e| self.broken(tick, &e))?;
         let ([of, count], expected) = (head.map(u64::from_le_bytes), answer_len(self.robot.joints.len()));
         if of != tick {
-            return Err(format!("{}: answered cycle {of} instead of {tick}", self.name));
+            return Err(self.wrong(tick, &format!("answered cycle {of}")));
         }
         if count != expected as u64 {
-            return Err(format!("{}: cycle {tick}: {count} numbers instead of {expected}", self.name));
+            return Err(self.wrong(tick, &format!("{count} numbers instead of {expected}")));
         }
         self.bytes.resize(8 * expected, 0);
         self.stream.read_exact(&mut self.bytes).map_err(|e| self.broken(tick, &e))?;
@@ -254,7 +254,11 @@ impl ExternalPlant {
         for (j, motion) in motions.iter_mut().enumerate() {
             (motion.angle, motion.speed) = (s.joint_angle[j], s.joint_speed[j]);
         }
-        problem.map_or(Ok(()), |problem| Err(format!("{}: cycle {tick}: {problem}", self.name)))
+        problem.map_or(Ok(()), |problem| Err(self.wrong(tick, &problem)))
+    }
+
+    fn wrong(&self, tick: u64, what: &str) -> String {
+        format!("{}: {what}, in cycle {tick}", self.name)
     }
 
     fn broken(&self, tick: u64, error: &io::Error) -> String {
@@ -267,7 +271,7 @@ impl ExternalPlant {
             }
             _ => error.to_string(),
         };
-        format!("{}: {what}, in cycle {tick}", self.name)
+        self.wrong(tick, &what)
     }
 }
 

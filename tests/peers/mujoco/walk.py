@@ -37,6 +37,7 @@ STIFFNESS, DAMPING = 60_000.0, 600.0  # [1/s^2], [1/s]
 HARD = {"solref": [0.005, 1.0]}
 SIDES = ("right", "left")
 OFF = 0
+NO_SLIP = 10.0  # impratio
 
 
 def model(hello, hard):
@@ -65,6 +66,7 @@ def model(hello, hard):
     else:
         points(spec, robot)
         soft(spec, robot)
+        spec.option.impratio = NO_SLIP
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.timestep = hello["cycle"] / STEPS
@@ -148,9 +150,8 @@ class Robot:
         return np.concatenate([q, v, q, v, d.actuator_force * math.nan, *sensed, *imu, *truth, *ground, *soles])
 
 
-def serve(connection, hard):
+def serve(stream, hard):
     """Answers until Gangwerk ends."""
-    stream = connection.makefile("rwb")
     hello = json.loads(stream.readline())
     assert hello["gangwerk_plant"] == 1, hello
     n = len(hello["joints"])
@@ -173,8 +174,8 @@ def in_mujoco(gangwerk, scene, hard=False, log=None):
         command = [gangwerk, "sim", str(scene), "--json", "--plant", path, *(["--log", log] if log else [])]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as sim:
             connection, _ = door.accept()
-            with connection:
-                serve(connection, hard)
+            with connection, connection.makefile("rwb") as stream:
+                serve(stream, hard)
             out = sim.stdout.read()
         return json.loads(out), sim.returncode
 
