@@ -37,7 +37,7 @@ pub fn run(
     mut progress: impl FnMut(f64),
 ) -> Result<(Figures, Exit), Box<dyn Error>> {
     let mut chain = Chain::new(setup)?;
-    let mut plant = plant.map(|socket| connect(socket, setup)).transpose()?;
+    let mut plant = plant.map(|socket| ExternalPlant::connect(socket, setup)).transpose()?;
     let mut traffic = traffic.map(|path| Traffic::create(path, Some(&setup.robot.layout))).transpose()?;
     if let Some(traffic) = &mut traffic {
         // Where the joints are before the first cycle.
@@ -93,12 +93,6 @@ pub fn run(
         figures.depth = "external plant".into();
     }
     Ok((figures.ended(&ending), Exit::of(&ending, false)))
-}
-
-/// Another simulator, after its first readings.
-fn connect(socket: &Path, setup: &Setup) -> Result<ExternalPlant, Box<dyn Error>> {
-    let Setup { scene, robot, system, .. } = setup;
-    ExternalPlant::connect(socket, robot, scene, system.peer_timeout, system.toggle_missed)
 }
 
 /// State of the walk; the simulation knows of a fall that the robot does not notice.

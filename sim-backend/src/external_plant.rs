@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use codec::frames::encode_sensors;
 use config::terrain::{ObjectShape, TerrainObject, TerrainPose};
-use config::{Robot, Scene};
+use config::{Robot, Scene, Setup};
 use messages::{BusFrames, Detail, EventCode, EventQueue, Header, Power, Sensors, SimState, Wrench};
 use serde_json::{Value, json};
 
@@ -64,18 +64,13 @@ pub struct ExternalPlant {
 }
 
 impl ExternalPlant {
-    /// The robot of a scene behind the socket at `path`, after its first readings. Answers may take `timeout` \[s\]; the
-    /// relay of the motor supply falls after `quiet` cycles without a moved toggle.
+    /// The robot of a scene behind the socket at `path`, after its first readings. Answers may take the system's
+    /// `peer_timeout`.
     ///
     /// # Errors
     /// The scene asks for what only our own simulated robot has, or the first readings do not come.
-    pub fn connect(
-        path: &Path,
-        robot: &Robot,
-        scene: &Scene,
-        timeout: f64,
-        quiet: u32,
-    ) -> Result<Self, Box<dyn Error>> {
+    pub fn connect(path: &Path, setup: &Setup) -> Result<Self, Box<dyn Error>> {
+        let Setup { scene, robot, system, .. } = setup;
         let name = format!("external plant at {}", path.display());
         if let Some(key) = ours_alone(scene) {
             let why = "only the simulated robot of this program has that";
@@ -85,16 +80,16 @@ impl ExternalPlant {
         let ours = SimBackend::new(robot, scene)?;
         let start = ours.state();
         let stream = UnixStream::connect(path).map_err(|e| format!("{name}: cannot be reached: {e}"))?;
-        let limit = Some(Duration::from_secs_f64(timeout));
+        let limit = Some(Duration::from_secs_f64(system.peer_timeout));
         stream.set_read_timeout(limit)?;
         stream.set_write_timeout(limit)?;
         let mut plant = Self {
             stream,
             name,
-            timeout,
+            timeout: system.peer_timeout,
             cycle: scene.cycle,
             robot: robot.clone(),
-            power: PowerLine::falling_after(quiet),
+            power: PowerLine::falling_after(system.toggle_missed),
             joints: SimulatedJoints::new(robot, scene),
             loads: Loads::of_pushes(scene),
             fall: FallWatch::new(start.position[2]),

@@ -77,16 +77,16 @@ def points(spec, robot):
                 friction=friction, condim=3, contype=0, conaffinity=1, priority=1, mass=0)
 
 
-def soft(spec, robot):
+def soft(spec, robot, impedance=IMPEDANCE):
     """Gives the points the spring and damper of robot.toml."""
     contact = robot["contact"]
     model = spec.compile()
     stiffness, damping = contact["normal_stiffness"], contact["normal_stiffness"] * contact["damping_time"]
     for geom in spec.geoms:
         if geom.type == mujoco.mjtGeom.mjGEOM_SPHERE:
-            a = model.body_invweight0[model.body(geom.parent.name).id, 0] * (1 - IMPEDANCE)
+            a = model.body_invweight0[model.body(geom.parent.name).id, 0] * (1 - impedance)
             geom.solref = [-stiffness * a, -damping * a]
-            geom.solimp = [IMPEDANCE, IMPEDANCE, 1e-3, 0.5, 2]
+            geom.solimp = [impedance, impedance, 1e-3, 0.5, 2]
     spec.option.impratio = contact["tangential_stiffness"] / stiffness
 
 

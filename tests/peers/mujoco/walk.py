@@ -1,23 +1,30 @@
 """Lola walks in MuJoCo: MuJoCo is the external plant of `gangwerk sim` (docs/external_plant.md), held against our type 2.
 
-usage: walk.py GANGWERK [--all] [--markdown]
+usage: walk.py GANGWERK [--all] [--markdown]      stands, leans, walks; fails where less is met than is demanded
+       walk.py --serve SOCKET                     the robot for whoever connects, one after the other, soft soles
 
-| what    | model in MuJoCo                                                                                     |
-|---------|-----------------------------------------------------------------------------------------------------|
-| bodies  | of the URDF, floating base, none fused                                                              |
-| soles   | soft: the points of robot.toml with its spring and damper (model.py); hard: boxes, MuJoCo's contact |
-| drives  | torque J (60000 (target - angle) + 600 (speed's target - speed)), up to the URDF's effort; J is what|
-|         | the rotor is on its joint; the loop is type 2's cascade: 100/s times 600 rad/s                      |
-| ground  | plane; boxes of the scene                                                                           |
-| steps   | 0.25 ms, implicitfast, elliptic cones                                                               |
+| what    | model in MuJoCo                                                                                      |
+|---------|------------------------------------------------------------------------------------------------------|
+| bodies  | of the URDF, floating base, none fused                                                               |
+| soles   | soft: the points of robot.toml with its spring and damper (model.py); hard: boxes, MuJoCo's contact  |
+| drives  | torque J (60000 (target - angle) + 600 (target's speed - speed)), up to the URDF's effort; J is what |
+|         | the rotor is on its joint; type 2's cascade is this: 100/s times 600 rad/s                           |
+| ground  | plane; boxes of the scene                                                                            |
+| steps   | 0.25 ms, implicitfast, elliptic cones                                                                |
 
-Demanded (not measured here first): done to the end as told; speed within 1 % of our type 2, rms of the inclination error
-within 30 %, peak force of a foot within 15 %; on hard soles: done to the end, and no reading refused by the joint loop.
+MuJoCo has no tangential spring, only a damper: a loaded point creeps. With the robot's damper (impratio 0.6) the rms of
+roll at 2 km/h is 4.5 mrad instead of 3.2, for the feet creep sideways; ten times the normal damper holds them. A point also
+carries a fiftieth of its body's inertia (model.py: d), without which steps of 0.25 ms do not bear that damper at landing.
+
+Demanded (by the issue that asked for this, not by what was measured): done to the end as told; speed within 1 % of our
+type 2, rms of the inclination errors within 30 %, peak force of a foot within 15 %; on hard soles: done to the end, and no
+reading refused by the joint loop. At 5 km/h gears sway, and it is held against type 3.
 """
 
+import csv
 import json
 import math
-import os
+import re
 import socket
 import struct
 import subprocess
@@ -38,6 +45,7 @@ HARD = {"solref": [0.005, 1.0]}
 SIDES = ("right", "left")
 OFF = 0
 NO_SLIP = 10.0  # impratio
+IMPEDANCE = 0.02  # d
 
 
 def model(hello, hard):
@@ -65,7 +73,7 @@ def model(hello, hard):
         boxes(spec, robot, friction)
     else:
         points(spec, robot)
-        soft(spec, robot)
+        soft(spec, robot, IMPEDANCE)
         spec.option.impratio = NO_SLIP
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -171,7 +179,7 @@ def in_mujoco(gangwerk, scene, hard=False, log=None):
         path = f"{scratch}/plant.sock"
         door.bind(path)
         door.listen(1)
-        command = [gangwerk, "sim", str(scene), "--json", "--plant", path, *(["--log", log] if log else [])]
+        command = [gangwerk, "sim", scene, "--json", "--plant", path, *(["--log", log] if log else [])]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as sim:
             connection, _ = door.accept()
             with connection, connection.makefile("rwb") as stream:
@@ -180,10 +188,147 @@ def in_mujoco(gangwerk, scene, hard=False, log=None):
         return json.loads(out), sim.returncode
 
 
-def ours(gangwerk, scene):
-    run = subprocess.run([gangwerk, "sim", str(scene), "--json"], stdout=subprocess.PIPE, text=True)
+def ours(gangwerk, scene, log=None):
+    command = [gangwerk, "sim", scene, "--json", *(["--log", log] if log else [])]
+    run = subprocess.run(command, stdout=subprocess.PIPE, text=True)
     return json.loads(run.stdout), run.returncode
 
 
+def scene(scratch, name, depth=2, text=None):
+    """Path of a shipped scene, or of one with this text, on another type."""
+    text = text or (ROBOT.parents[1] / f"scenes/{name}.toml").read_text()
+    for key, value in {"depth": depth, "integrator": '"semi_implicit"', "substeps": STEPS}.items():
+        text = re.sub(rf"(?m)^{key} = .*", f"{key} = {value}", text)
+    path = Path(scratch) / f"{name}.toml"
+    path.write_text(text)
+    return str(path)
+
+
+def exported(gangwerk, log, topic, at):
+    """Row of a log's topic at a time [s]."""
+    command = [gangwerk, "log", "export", log, topic, "--csv"]
+    rows = csv.DictReader(subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines())
+    return min(({k: float(v) for k, v in row.items()} for row in rows), key=lambda row: abs(row["time"] - at))
+
+
+class Demands:
+    """What is demanded, and whether it is met."""
+
+    def __init__(self):
+        self.broken = []
+
+    def expect(self, what, value, low, high):
+        good = low <= value <= high
+        if not good:
+            self.broken.append(what)
+        print(f"  {what:66s} {value:12.5g} {'' if good else f'NOT IN {low:g} .. {high:g}'}", flush=True)
+
+
+LEAN = """
+[[push]]
+time = 3.0
+duration = 5.0
+force = {force}
+"""
+
+
+def standing(gangwerk, demands, scratch):
+    """Forces of standing by the weight; a lean under 15 N, forwards and to the left, against ours."""
+    robot = tomllib.loads((ROBOT / "robot.toml").read_text())
+    weight = robot["total_mass"] * -GRAVITY[2]
+    stand = (ROBOT.parents[1] / "scenes/stand.toml").read_text()
+    for way, force, axis in (("forwards", [15.0, 0.0, 0.0], 1), ("to the left", [0.0, 15.0, 0.0], 0)):
+        text, seen = stand + LEAN.format(force=force), []
+        path = scene(scratch, "lean", text=text)
+        for run, log in ((ours, f"{scratch}/ours.mcap"), (in_mujoco, f"{scratch}/mujoco.mcap")):
+            _, code = run(gangwerk, path, log=log)
+            demands.expect(f"lean {way}, {run.__name__}: exit code", code, 0, 0)
+            seen.append([exported(gangwerk, log, "sim_state", at) for at in (2.9, 7.8)])
+        loads = [[s[0][f"foot_wrench.{side}.force[2]"] for side in SIDES] for s in seen]
+        demands.expect("standing: force of both feet / weight", sum(loads[1]) / weight, 0.9999, 1.0001)
+        for i, side in enumerate(SIDES):
+            demands.expect(f"standing: force of the {side} foot less ours [N]", loads[1][i] - loads[0][i], -1, 1)
+        tilt = [2 * (s[1][f"orientation[{axis}]"] - s[0][f"orientation[{axis}]"]) for s in seen]
+        demands.expect(f"lean {way} under 15 N, ours [mrad]", 1e3 * abs(tilt[0]), 10, 30)
+        demands.expect(f"lean {way}: MuJoCo's / ours", tilt[1] / tilt[0], 0.97, 1.03)
+
+
+HEAD = """| scene | robot | done | speed [m/s] | inclination error, rms x, y [mrad] | peak force of a foot [N] |
+|---|---|---|---|---|---|"""
+
+
+def row(name, robot, figures):
+    x, y = (1e3 * r for r in figures["inclination_error_rms_rad"])
+    return (f"| {name} | {robot} | {figures['ended_by']} | {figures['mean_speed_m_s']:.3f} | {x:.1f}, {y:.1f} | "
+            f"{figures['peak_normal_force_n']:.0f} |")
+
+
+def distance(row, page):
+    """Greatest relative difference of the row's numbers from those of the page's row with the same words; infinite without."""
+    def words(line):
+        return re.findall(r"[a-z]\w*", line, re.I), [float(x) for x in re.findall(r"(?<!\w)\d+\.?\d*", line)]
+
+    (name, numbers), lines = words(row), map(words, page)
+    same = [theirs for words, theirs in lines if words == name and len(theirs) == len(numbers)]
+    return max((abs(a / b - 1) for a, b in zip(numbers, same[0]) if a != b), default=0) if same else math.inf
+
+
+def walking(gangwerk, demands, scratch, name, hard):
+    """Walks a scene; its rows of the table."""
+    depth = 3 if name == "walk_5kmh" else 2
+    path = scene(scratch, name, depth)
+    own, _ = ours(gangwerk, path)
+    soft_soles, code = in_mujoco(gangwerk, path)
+    rows = [row(name, f"type {depth}", own), row(name, "MuJoCo", soft_soles)]
+    demands.expect(f"{name}: exit code", code, 0, 0)
+    key = "mean_speed_m_s"
+    demands.expect(f"{name}: speed / ours", soft_soles[key] / own[key], 0.99, 1.01)
+    for k, axis in enumerate("xy"):
+        a, b = (f["inclination_error_rms_rad"][k] for f in (soft_soles, own))
+        demands.expect(f"{name}: inclination error about {axis}, rms / ours", a / b, 0.7, 1.3)
+    key = "peak_normal_force_n"
+    demands.expect(f"{name}: peak force of a foot / ours", soft_soles[key] / own[key], 0.85, 1.15)
+    if hard:
+        log = f"{scratch}/hard.mcap"
+        hard_soles, code = in_mujoco(gangwerk, path, hard=True, log=log)
+        rows.append(row(name, "MuJoCo, hard soles", hard_soles))
+        demands.expect(f"{name}, hard soles: exit code", code, 0, 0)
+        told = subprocess.run([gangwerk, "log", "show", log], stdout=subprocess.PIPE, text=True, check=True).stdout
+        demands.expect(f"{name}, hard soles: readings refused", told.count("reading was refused"), 0, 0)
+    return rows
+
+
+def main():
+    if sys.argv[1:2] == ["--serve"]:
+        with socket.socket(socket.AF_UNIX) as door:
+            door.bind(sys.argv[2])
+            door.listen(1)
+            while True:
+                connection, _ = door.accept()
+                with connection, connection.makefile("rwb") as stream:
+                    serve(stream, False)
+    if len(sys.argv) < 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
+    gangwerk, every, markdown = sys.argv[1], "--all" in sys.argv, "--markdown" in sys.argv
+    demands, rows = Demands(), []
+    with tempfile.TemporaryDirectory() as scratch:
+        standing(gangwerk, demands, scratch)
+        # Of the short form, what was hardest: 2 km/h, and hard soles at the speed whose readings were refused once.
+        walks = [("walk_1kmh", True), ("walk_2kmh", True), ("walk_3kmh", True), ("walk_5kmh", True), ("walk_sideways", True),
+                 ("board_2cm", True)] if every else [("walk_2kmh", True)]
+        for name, hard in walks:
+            rows += walking(gangwerk, demands, scratch, name, hard)
+    if markdown:
+        print(HEAD, *rows, sep="\n")
+    else:
+        page = (HERE.parents[2] / "docs/accuracy.md").read_text().splitlines()
+        # Hard soles amplify the last bit of a processor.
+        worst = max(distance(row, page) for row in rows if "hard" not in row)
+        demands.expect("docs/accuracy.md: greatest difference of a number", worst, 0, 0.03)
+    if demands.broken:
+        sys.exit(f"FAILED: {', '.join(demands.broken)}")
+    print("Lola walks in MuJoCo as in our model")
+
+
 if __name__ == "__main__":
-    print(json.dumps(in_mujoco(sys.argv[1], sys.argv[2], hard="--hard" in sys.argv, log=os.environ.get("LOG")), indent=1))
+    main()
