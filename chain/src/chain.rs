@@ -16,6 +16,7 @@ use messages::{
 use planner::Planner;
 use planner::obstacles::KnownObstacles;
 use sim_backend::SimBackend;
+use sim_backend::external_plant::ExternalPlant;
 use watchdog::{Inputs, Watchdog};
 
 /// Cycles that a simulated robot which was stopped makes good for: as many as the rings of the bus hold.
@@ -166,10 +167,42 @@ impl Chain {
         self.step_without(&[])
     }
 
+    /// One bus cycle with another robot in place of the simulated one, which stands still.
+    ///
+    /// # Errors
+    /// The other one's.
+    pub fn step_with(&mut self, plant: &mut ExternalPlant) -> Result<&Cycle, String> {
+        if self.tick == 0 {
+            self.answer = *plant.frames();
+        }
+        self.software(&[]);
+        let c = &mut self.cycle;
+        let (answer, state) = plant.step(Some(self.joint_loop.commanded()), Some(&c.power))?;
+        (self.answer, self.answered, c.sim_state) = (*answer, true, *state);
+        c.events.extend(plant.events().drain().map(|(code, detail)| (Process::SimBackend, code, detail)));
+        self.tell();
+        Ok(&self.cycle)
+    }
+
     /// One bus cycle of real time in which these processes do not run, as after a SIGSTOP; the others go on with what is
     /// there. Who runs again finds the newest records, as between processes; the simulated robot makes good for what it
     /// missed. Ticks are counted by the joint loop and stand still without it.
     pub fn step_without(&mut self, stopped: &[Process]) -> &Cycle {
+        let runs = |process: Process| !stopped.contains(&process);
+        self.software(stopped);
+        let told = runs(Process::Lowlevel).then(|| *self.joint_loop.commanded());
+        self.bus.push_back(told);
+        if runs(Process::SimBackend) {
+            self.simulate();
+        } else if self.bus.len() > BUS_DEPTH {
+            self.bus.pop_front(); // overwritten before it came to it
+        }
+        self.tell();
+        &self.cycle
+    }
+
+    /// Everything of a cycle but the robot.
+    fn software(&mut self, stopped: &[Process]) {
         let runs = |process: Process| !stopped.contains(&process);
         self.elapsed += 1;
         self.cycle.events.clear();
@@ -192,15 +225,6 @@ impl Chain {
         } else {
             self.skipped += 1;
         }
-        let told = runs(Process::Lowlevel).then(|| *self.joint_loop.commanded());
-        self.bus.push_back(told);
-        if runs(Process::SimBackend) {
-            self.simulate();
-        } else if self.bus.len() > BUS_DEPTH {
-            self.bus.pop_front(); // overwritten before it came to it
-        }
-        self.tell();
-        &self.cycle
     }
 
     /// First half of the joint loop's cycle.

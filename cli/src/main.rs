@@ -101,6 +101,9 @@ enum GangwerkTask {
         /// Frames of classic CAN on the bus, instead of those of CAN FD.
         #[arg(long)]
         classic: bool,
+        /// Unix socket of another simulator (external plant), which has the robot instead of ours: docs/external_plant.md.
+        #[arg(long, value_name = "SOCKET")]
+        plant: Option<PathBuf>,
     },
     /// Look at the topics of a running robot, or send it commands.
     Topic {
@@ -261,7 +264,14 @@ impl GangwerkTask {
         use GangwerkTask::{
             Broker, Controller, Faults, Latency, Logger, Lowlevel, Planner, Run, SimBackend, Watchdog,
         };
-        let moves = matches!(self, Run { .. } | Faults(_) | Latency { .. } | Self::LatencyEnd { .. });
+        let moves = matches!(
+            self,
+            Run { .. }
+                | Self::Sim { plant: Some(_), .. }
+                | Faults(_)
+                | Latency { .. }
+                | Self::LatencyEnd { .. }
+        );
         let guards = matches!(self, Broker(_) | Controller(_) | Logger(_) | Lowlevel(_) | Planner(_));
         !(moves || guards || matches!(self, SimBackend(_) | Watchdog(_)))
     }
@@ -328,8 +338,9 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             run_command::run(order, Results::of(json, no_plots))
         }
         GangwerkTask::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
-        GangwerkTask::Sim { scene, json, log, can, classic } => {
-            sim_command::run(&config()?, &scene, json, log.as_deref(), can.as_deref(), classic)
+        GangwerkTask::Sim { scene, json, log, can, classic, plant } => {
+            let (log, can, plant) = (log.as_deref(), can.as_deref(), plant.as_deref());
+            sim_command::run(&config()?, &scene, json, log, can, classic, plant)
         }
         GangwerkTask::Topic { what, dir } => done(topic_command::run(&dir, what)),
         GangwerkTask::Param { what, dir } => done(param_command::run(&dir, what)),

@@ -27,7 +27,7 @@ pub fn main(order: &ScorecardOptions<'_>, json: bool, out: Option<&Path>) -> Res
         write(&sheet, out).map_err(problem)?;
         for setup in pictured(order)? {
             let log = out.join(format!("{}.mcap", setup.scene.name));
-            crate::sim::run(&setup, Some(&log), None, |_| ())?;
+            crate::sim::run(&setup, None, Some(&log), None, |_| ())?;
             crate::plot::run(&log, &out.join(&setup.scene.name))?;
         }
     }

@@ -18,34 +18,47 @@ use crate::exit::Exit;
 use chain::ending::Ending;
 use chain::figures::{Figures, Gatherer};
 use chain::{Chain, Cycle};
+use sim_backend::external_plant::ExternalPlant;
 
 /// \[s\] For so long a run of a simulated robot goes on after it fell: it then lies still.
 pub const AFTER_FALL: f64 = 2.0;
 
 /// Runs a scene to its end, or until [`AFTER_FALL`] after a fall; writes a log, and the traffic of the bus, if asked to.
 ///
-/// `progress` is told the simulated time \[s\] once per simulated second.
+/// `plant`: socket of another simulator, which has the robot instead of ours. `progress` is told the simulated time \[s\] once per simulated second.
 ///
 /// # Errors
-/// The robot's description is wrong or the log cannot be written.
+/// The robot's description is wrong, the log cannot be written, or the other simulator fails; then what was logged is there.
 pub fn run(
     setup: &Setup,
+    plant: Option<&Path>,
     log: Option<&Path>,
     traffic: Option<&Path>,
     mut progress: impl FnMut(f64),
 ) -> Result<(Figures, Exit), Box<dyn Error>> {
     let mut chain = Chain::new(setup)?;
+    let mut plant = plant.map(|socket| ExternalPlant::connect(socket, setup)).transpose()?;
     let mut traffic = traffic.map(|path| Traffic::create(path, Some(&setup.robot.layout))).transpose()?;
     if let Some(traffic) = &mut traffic {
-        traffic.write(chain.answer())?; // where the joints are before the first cycle
+        // Where the joints are before the first cycle.
+        traffic.write(plant.as_ref().map_or(chain.answer(), ExternalPlant::frames))?;
     }
     let mut record = log.map(|path| LogWriter::create(path, setup, &chain)).transpose()?;
-    let (mut gatherer, mut ending) = (Gatherer::default(), Ending::default());
+    let (mut gatherer, mut ending, mut failed) = (Gatherer::default(), Ending::default(), None);
     let cycles = (setup.scene.duration / setup.scene.cycle).round() as u64;
     let per_second = (1.0 / setup.scene.cycle).round() as u64;
     let begun = realtime::clock::processor_time();
     for i in 1..=cycles {
-        let cycle = chain.step();
+        let cycle = match &mut plant {
+            None => chain.step(),
+            Some(plant) => match chain.step_with(plant) {
+                Ok(cycle) => cycle,
+                Err(problem) => {
+                    failed = Some(problem);
+                    break;
+                }
+            },
+        };
         let time = i as f64 * setup.scene.cycle;
         cycle.events.iter().for_each(|&(_, code, detail)| ending.tell(time, code, detail));
         ending.refused += cycle.refused;
@@ -72,7 +85,13 @@ pub fn run(
     if let Some(traffic) = traffic {
         traffic.finish()?;
     }
-    let figures = gatherer.figures(setup, cpu, log.map(|p| p.display().to_string()));
+    if let Some(problem) = failed {
+        return Err(problem.into());
+    }
+    let mut figures = gatherer.figures(setup, cpu, log.map(|p| p.display().to_string()));
+    if plant.is_some() {
+        figures.depth = "external plant".into();
+    }
     Ok((figures.ended(&ending), Exit::of(&ending, false)))
 }
 

@@ -12,6 +12,7 @@ pub(crate) fn run(
     log: Option<&Path>,
     can: Option<&Path>,
     classic: bool,
+    plant: Option<&Path>,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let (setup, choice) = cli::choose::load(config, scene, !json)?;
     let setup = setup.on_bus(classic)?;
@@ -20,7 +21,7 @@ pub(crate) fn run(
     } else {
         indicatif::ProgressBar::new(setup.scene.duration as u64)
     };
-    let (mut figures, exit) = cli::sim::run(&setup, log, can, |t| bar.set_position(t as u64))?;
+    let (mut figures, exit) = cli::sim::run(&setup, plant, log, can, |t| bar.set_position(t as u64))?;
     figures.depth_reason = choice.map(|choice| choice.reason());
     bar.finish_and_clear();
     if json {

@@ -116,7 +116,7 @@ const FIXED: &[Fixed] = &[
     fixed!("lowlevel", "system.toml", "bus.missed", "cycles", [1.0, 1e3], |s| Some(s.system.bus.missed.into()), "cycles without a node's frames until the controlled stop"),
     fixed!("lowlevel", "system.toml", "bus.jump", "rad", [1e-3, 1.0], |s| Some(s.system.bus.jump), "jump of a joint angle that is no reading"),
     fixed!("lowlevel", "system.toml", "bus.jump_speed", "", [1.0, 100.0], |s| Some(s.system.bus.jump_speed), "jump on top, per speed limit and time since the last reading"),
-    fixed!("lowlevel", "system.toml", "bus.jump_force", "", [0.1, 100.0], |s| Some(s.system.bus.jump_force), "jump of a foot's force that is no reading, over the robot's weight"),
+    fixed!("lowlevel", "system.toml", "bus.jump_force", "", [0.1, 100.0], |s| Some(s.system.bus.jump_force), "jump of a component of a foot's force alone that is no reading, over the robot's weight"),
     fixed!("planner", "gaits", "step.width", "m", [0.0, 1.0], |s| Some(s.gait.step.width), "lateral distance of the sole frames W_step"),
     fixed!("planner", "gaits", "step.double_support", "", [0.02, 0.9], |s| Some(s.gait.step.double_support), "share of a step that is double support"),
     fixed!("planner", "gaits", "step.first_length", "m", [0.0, 1.5], |s| Some(s.gait.step.first_length), "longest first and last step"),

@@ -61,7 +61,7 @@ pub struct BusLimits {
     pub jump: f64,
     /// \[1\] ... plus the joint's speed limit times this and the time since it was read last, is no reading.
     pub jump_speed: f64,
-    /// \[1\] Nor is a force that changes by more than this times the robot's weight in one cycle.
+    /// \[1\] Nor is a force of which one component alone changes by more than this times the robot's weight in one cycle.
     pub jump_force: f64,
 }
 

@@ -313,6 +313,36 @@ fn a_joint_that_finds_its_reference_is_believed_the_second_time() {
     assert_eq!(says(false, [0.7, 0.0]), [0.7, 0.0], "said twice");
 }
 
+/// Regression: landings on hard soles, as MuJoCo has them at 3 and 5 km/h, were refused as bent. What a landing changes
+/// comes together; what a bent bit changes comes alone, in whichever component.
+#[test]
+fn a_hard_landing_is_a_reading_and_a_bent_force_is_none() {
+    // [N, N m] The readings of the cycle of touchdown, from zeros.
+    let landings = [[29.4, 145.8, 1302.9, -44.8, 47.4, -9.7], [-1459.0, -351.9, 2124.6, 35.5, -306.8, -22.8]];
+    let land = |rig: &mut Rig, [fx, fy, fz, mx, my, mz]: [f64; 6]| {
+        (rig.drives.foot_wrench[0].force, rig.drives.foot_wrench[0].moment) = ([fx, fy, fz], [mx, my, mz]);
+        let answer = rig.answer();
+        rig.cycle(Some(&answer));
+        !rig.has(EventCode::FrameRefused)
+    };
+    for landing in landings {
+        let mut rig = Rig::moving();
+        assert!(land(&mut rig, landing) && land(&mut rig, [0.0; 6]), "{landing:?}: {:?}", rig.events);
+    }
+    // The bits of 1024 N and 256 N m, while standing, when the rest plays by some newtons.
+    let standing = [10.0, -5.0, 300.0, 2.0, 8.0, 0.5];
+    for (component, bit) in [(0, 1024.0), (1, 1024.0), (2, 1024.0), (3, 256.0), (4, 256.0), (5, 256.0)] {
+        let mut rig = Rig::moving();
+        assert!(land(&mut rig, standing));
+        let mut bent = standing.map(|x| x + 0.01 * x);
+        bent[component] += bit;
+        assert!(!land(&mut rig, bent), "component {component} bent by {bit}");
+    }
+    // A frame of rubbish: everything changes, by more than any landing.
+    let mut rig = Rig::moving();
+    assert!(!land(&mut rig, [5000.0, -9000.0, 20_000.0, 700.0, -900.0, 2000.0]));
+}
+
 #[test]
 fn nothing_is_allocated_while_the_bus_fails() {
     let mut rig = Rig::moving();

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | bus, in shared memory, on CAN lines or Sercos | `far_end.rs` and its ends, `bus.rs` |
 //! | one cycle: frames from the bus → motion → frames for the bus | [`SimBackend::step`] |
+//! | the same by another simulator, behind a socket | [`external_plant`] |
 //! | motor power line | [`power`] |
 //! | commands of each joint → references; who has torque | `joints.rs` |
 //! | nodes without commands | [`command_timeout`]; faults of the bus: [`fieldbus::injector`] |
@@ -32,6 +33,7 @@ pub mod daemon;
 pub mod drive;
 mod drive_electronics;
 pub mod external_forces;
+pub mod external_plant;
 mod fall;
 mod far_end;
 pub mod feet;

@@ -23,10 +23,14 @@ impl Loads {
     /// Loads of a scene, whose robot is in this state at rest.
     pub(crate) fn new(scene: &Scene, plant: &mut Plant, state: &[f64], references: &[JointCubic]) -> Self {
         Self {
-            scripted: scene.pushes.clone(),
-            commanded: None,
             crane: scene.crane.map(|crane| hooked(&crane, plant, state, references)),
+            ..Self::of_pushes(scene)
         }
+    }
+
+    /// Pushes of a scene alone.
+    pub(crate) fn of_pushes(scene: &Scene) -> Self {
+        Self { scripted: scene.pushes.clone(), commanded: None, crane: None }
     }
 
     /// Begins a push at `time` \[s\].
@@ -46,7 +50,7 @@ impl Loads {
     }
 
     /// Sum of the pushes at t \[s\] \[N\].
-    fn push_at(&self, t: f64) -> [f64; 3] {
+    pub(crate) fn push_at(&self, t: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
         let scripted = self.scripted.iter().filter(|(at, p)| *at <= t && t < at + p.duration).map(|(_, p)| p);
         let commanded = self.commanded.iter().filter(|(_, until)| t < *until).map(|(p, _)| p);

@@ -39,6 +39,8 @@ pub struct AccuracyInput<'a> {
     pub config: &'a Path,
     /// What other programs did in the same scenes.
     pub peers: &'a Peers,
+    /// Socket of another simulator, which walks the scenes of the depth charts, too.
+    pub plant: Option<&'a Path>,
 }
 
 /// A part's charts.
@@ -195,6 +197,9 @@ pub struct Accuracy {
     /// Results of MuJoCo in the same scenes; `sh tests/peers/mujoco.sh --points FILE` writes it.
     #[arg(long, value_name = "FILE")]
     pub peers: Option<PathBuf>,
+    /// Socket of an external plant, one more row beside types 1 to 5: tests/peers/mujoco/walk.py --serve SOCKET.
+    #[arg(long, value_name = "SOCKET")]
+    pub plant: Option<PathBuf>,
     /// Where pictures and accuracy.json go.
     #[arg(long, value_name = "DIR", default_value = "runs/study/accuracy")]
     pub out: PathBuf,
@@ -214,7 +219,11 @@ impl Study for Accuracy {
         let mut charts = Vec::new();
         for (done, (name, part)) in wanted.iter().enumerate() {
             (given.progress)(done, wanted.len(), name);
-            charts.extend(part(&AccuracyInput { config: given.config, peers: &peers })?);
+            charts.extend(part(&AccuracyInput {
+                config: given.config,
+                peers: &peers,
+                plant: self.plant.as_deref(),
+            })?);
         }
         let sheet = sheet(&charts, &self.out)?;
         let path = self.out.join("accuracy.json");

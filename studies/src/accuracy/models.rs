@@ -19,7 +19,9 @@ use config::method::Integrator;
 use messages::{JointTargets, SimState};
 use multibody::{Data, Frame, Model};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use realtime::clock::processor_time;
+use realtime::clock::{now, processor_time};
+
+use sim_backend::external_plant::ExternalPlant;
 
 use super::{AccuracyInput, ErrorChart, Point};
 use chain::Chain;
@@ -36,6 +38,9 @@ const SCENES: [(&str, [f64; 2], f64); 5] = [
 ];
 /// Types and steps in a cycle; the last one is the reference.
 const MODELS: [(u8, u32); 9] = [(1, 4), (1, 10), (2, 4), (2, 10), (3, 4), (3, 10), (4, 4), (5, 4), (5, 10)];
+
+/// The plant behind a socket, if there is one.
+const PLANT: (u8, u32) = (0, 0);
 
 /// Charts, and their units in notes.
 const QUANTITIES: [(&str, &str, &str); 5] = [
@@ -60,9 +65,12 @@ pub fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Erro
         charts[0].about = format!(
             "The whole chain on each type, {begin} s to {end} s. Reference: type 5, 0.1 ms; at 0.25 ms it shows the step's share."
         );
-        let walks = MODELS
-            .iter()
-            .map(|&model| WalkOutputs::new(given, scene, (span, push), model))
+        let walks = given
+            .plant
+            .map(|_| PLANT)
+            .into_iter()
+            .chain(MODELS)
+            .map(|model| WalkOutputs::new(given, scene, (span, push), model))
             .collect::<Result<Vec<_>, _>>()?;
         let Some((reference, others)) = walks.split_last() else { continue };
         for walk in others {
@@ -114,26 +122,35 @@ impl WalkOutputs {
         (depth, steps): (u8, u32),
     ) -> Result<Self, Box<dyn Error>> {
         let mut setup = Setup::load(given.config, scene)?;
-        setup.scene.depth = depth;
-        setup.scene.integrator = if depth == 1 { Integrator::Euler } else { Integrator::SemiImplicit };
-        setup.scene.substeps = steps;
+        let plant = given.plant.filter(|_| (depth, steps) == PLANT);
+        if plant.is_none() {
+            setup.scene.depth = depth;
+            setup.scene.integrator = if depth == 1 { Integrator::Euler } else { Integrator::SemiImplicit };
+            setup.scene.substeps = steps;
+        }
         setup.scene.pushes.iter_mut().for_each(|(time, _)| *time = push);
         setup.scene.commands.retain(|(time, _)| *time < end);
         let cycle = setup.scene.cycle;
         let cycles = (end / cycle) as usize;
         let mut chain = Chain::new(&setup)?;
+        let mut plant = plant.map(|socket| ExternalPlant::connect(socket, &setup)).transpose()?;
         let (mut states, mut targets) = (Vec::with_capacity(cycles), Vec::with_capacity(cycles));
         let mut current = None;
-        let begun = processor_time();
+        // A plant's processor time is its own; what can be seen of it is how long everything took.
+        let clock = if plant.is_some() { now } else { processor_time };
+        let begun = clock();
         for _ in 0..cycles {
-            let c = chain.step();
+            let c = match &mut plant {
+                Some(plant) => chain.step_with(plant)?,
+                None => chain.step(),
+            };
             for i in c.sensors.motor_current.iter().filter(|i| i.is_finite() && c.sim_state.time > from) {
                 current = Some(i.abs().max(current.unwrap_or(0.0)));
             }
             states.push(c.sim_state);
             targets.push(c.joint_targets);
         }
-        let cpu = (processor_time() - begun) as f64 * 1e-9;
+        let cpu = (clock() - begun) as f64 * 1e-9;
         states.retain(|s| s.time > from);
         let torque = Torques::new(&setup)?.greatest(&states, cycle);
         let begin = cycles - states.len();
@@ -167,11 +184,16 @@ impl WalkOutputs {
 
     fn point(&self, scene: &str) -> Point {
         let (depth, steps) = self.model;
+        let (model, method) = match (self.model, depth) {
+            (PLANT, _) => ("external plant".into(), "wall time"),
+            (_, 1) => ("type 1".into(), "euler"),
+            _ => (format!("type {depth}"), "semi_implicit"),
+        };
         Point {
             scene: scene.into(),
-            model: format!("type {depth}"),
-            method: if depth == 1 { "euler" } else { "semi_implicit" }.into(),
-            step: Some(self.cycle / f64::from(steps)),
+            model,
+            method: method.into(),
+            step: (self.model != PLANT).then(|| self.cycle / f64::from(steps)),
             cpu_s_per_s: Some(self.cpu_s_per_s),
             ..Point::default()
         }

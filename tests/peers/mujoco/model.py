@@ -59,25 +59,35 @@ def on_its_feet(urdf, robot, layer):
         spec.joint(joint["name"]).armature = ROTOR
         servo = spec.add_actuator(name=joint["name"], target=joint["name"], trntype=mujoco.mjtTrn.mjTRN_JOINT)
         servo.set_to_position(kp=STIFFNESS, kv=DAMPING)
-    contact = robot["contact"]
-    friction = [contact["friction"], 0, 0]
-    floor(spec, friction)
+    floor(spec, [robot["contact"]["friction"], 0, 0])
+    points(spec, robot)
+    spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    if layer:
+        soft(spec, robot)
+    return spec
+
+
+def points(spec, robot):
+    """The contact points of robot.toml."""
+    friction = [robot["contact"]["friction"], 0, 0]
     for side in ("right", "left"):
         for point in robot["foot"][side]["points"]:
             spec.body(point["link"]).add_geom(
                 name=f"{side} {point['at']}", type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[POINT, 0, 0], pos=point["at"],
                 friction=friction, condim=3, contype=0, conaffinity=1, priority=1, mass=0)
-    spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-    if layer:
-        model = spec.compile()
-        stiffness, damping = contact["normal_stiffness"], contact["normal_stiffness"] * contact["damping_time"]
-        for geom in spec.geoms:
-            if geom.type == mujoco.mjtGeom.mjGEOM_SPHERE:
-                a = model.body_invweight0[model.body(geom.parent.name).id, 0] * (1 - IMPEDANCE)
-                geom.solref = [-stiffness * a, -damping * a]
-                geom.solimp = [IMPEDANCE, IMPEDANCE, 1e-3, 0.5, 2]
-        spec.option.impratio = contact["tangential_stiffness"] / stiffness
-    return spec
+
+
+def soft(spec, robot, impedance=IMPEDANCE):
+    """Gives the points the spring and damper of robot.toml."""
+    contact = robot["contact"]
+    model = spec.compile()
+    stiffness, damping = contact["normal_stiffness"], contact["normal_stiffness"] * contact["damping_time"]
+    for geom in spec.geoms:
+        if geom.type == mujoco.mjtGeom.mjGEOM_SPHERE:
+            a = model.body_invweight0[model.body(geom.parent.name).id, 0] * (1 - impedance)
+            geom.solref = [-stiffness * a, -damping * a]
+            geom.solimp = [impedance, impedance, 1e-3, 0.5, 2]
+    spec.option.impratio = contact["tangential_stiffness"] / stiffness
 
 
 def floor(spec, friction):

@@ -30,8 +30,9 @@ using Eigen::VectorXd;
 
 struct State { VectorXd q, v, force; };
 
-template <class Call> void measure(const char* name, const std::vector<State>& states, Call call) {
-  constexpr int batches = 301;
+constexpr int batches = 301;
+
+template <class Call> std::vector<double> times(const std::vector<State>& states, Call call) {
   std::vector<double> us;
   for (int b = -20; b < batches; ++b) {
     auto start = std::chrono::steady_clock::now();
@@ -40,7 +41,23 @@ template <class Call> void measure(const char* name, const std::vector<State>& s
     if (b >= 0) us.push_back(d.count() / states.size());
   }
   std::sort(us.begin(), us.end());
+  return us;
+}
+
+void print(const char* name, const std::vector<double>& us) {
   std::printf("%s %.4f %.4f %.4f\n", name, us[0], us[batches / 2], us[batches * 9 / 10]);
+}
+
+template <class Call> void measure(const char* name, const std::vector<State>& states, Call call) {
+  print(name, times(states, call));
+}
+
+// In both of Pinocchio's conventions, of which the faster one counts.
+template <class Call> void measure_both(const char* name, const std::vector<State>& states, Call call) {
+  const auto local = times(states, [&](const State& s) { call(s, pin::Convention::LOCAL); });
+  const auto world = times(states, [&](const State& s) { call(s, pin::Convention::WORLD); });
+  std::fprintf(stderr, "%s: median %.3f us LOCAL, %.3f us WORLD\n", name, local[batches / 2], world[batches / 2]);
+  print(name, local[batches / 2] <= world[batches / 2] ? local : world);
 }
 
 pin::Model read(const char* path) {
@@ -90,18 +107,18 @@ int main(int argc, char** argv) {
     states.push_back(s);
   }
 
-  measure("mass_matrix", states, [&](const State& s) { pin::crba(model, data, s.q, pin::Convention::LOCAL); });
+  measure_both("mass_matrix", states, [&](const State& s, pin::Convention c) { pin::crba(model, data, s.q, c); });
   measure("inverse_dynamics", states, [&](const State& s) { pin::rnea(model, data, s.q, s.v, s.force); });
   measure("nonlinear_terms", states, [&](const State& s) { pin::nonLinearEffects(model, data, s.q, s.v); });
   VectorXd x(nv);
-  measure("forward_matrix", states, [&](const State& s) {
-    pin::crba(model, data, s.q, pin::Convention::LOCAL);
+  measure_both("forward_matrix", states, [&](const State& s, pin::Convention c) {
+    pin::crba(model, data, s.q, c);
     x = s.force - pin::nonLinearEffects(model, data, s.q, s.v);
     pin::cholesky::decompose(model, data);
     pin::cholesky::solve(model, data, x);
   });
-  measure("forward_articulated", states, [&](const State& s) {
-    pin::aba(model, data, s.q, s.v, s.force, pin::Convention::LOCAL);
+  measure_both("forward_articulated", states, [&](const State& s, pin::Convention c) {
+    pin::aba(model, data, s.q, s.v, s.force, c);
   });
   pin::Data::Matrix6x jacobian = pin::Data::Matrix6x::Zero(6, nv);
   measure("foot_jacobians", states, [&](const State& s) {
