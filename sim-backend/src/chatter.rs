@@ -4,8 +4,10 @@
 const STEPS: u32 = u32::BITS;
 /// Of these, steps in which a change of speed is the opposite of the one before, from which on it is chatter.
 const TURNS: u32 = 28;
-/// \[m/s, rad/s\] Smallest change of a speed in a step that counts; rounding errors also turn round.
-const LEAST: f64 = 1e-3;
+/// \[m/s, rad/s\] Smallest change of a speed in a step that counts. Below, it is the order of the method and no loss of it: the
+/// pitch of a robot that walks fast on semi-implicit steps of 0.25 ms turns round by 4 mrad/s, and its figures are those of steps
+/// of 0.05 ms.
+const LEAST: f64 = 0.02;
 /// \[1\] Smallest ratio of a change to the one before that counts: a disturbance that dies out is none.
 const LASTING: f64 = 0.9;
 

@@ -11,13 +11,13 @@ use std::path::Path;
 use std::time::Duration;
 
 use codec::frames::encode_sensors;
+use config::components::JointModel;
 use config::terrain::{ObjectShape, TerrainObject, TerrainPose};
 use config::{Robot, Scene, Setup};
 use messages::{BusFrames, Detail, EventCode, EventQueue, Header, Power, Sensors, SimState, Wrench};
 use serde_json::{Value, json};
 
 use crate::SimBackend;
-use crate::depth::JointModel;
 use crate::fall::FallWatch;
 use crate::inputs::DriveSwitches;
 use crate::joints::SimulatedJoints;
@@ -245,10 +245,7 @@ impl ExternalPlant {
             }
         }
         (truth.joint_angle, truth.motor_angle) = (s.joint_angle, s.motor_angle);
-        let (_, motions) = self.joints.goals_and_motions();
-        for (j, motion) in motions.iter_mut().enumerate() {
-            (motion.angle, motion.speed) = (s.joint_angle[j], s.joint_speed[j]);
-        }
+        self.joints.look(|j| (s.joint_angle[j], s.joint_speed[j]));
         problem.map_or(Ok(()), |problem| Err(self.wrong(tick, &problem)))
     }
 

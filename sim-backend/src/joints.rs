@@ -9,7 +9,6 @@ use crate::command_timeout::{CommandTimeout, Follows};
 use crate::drive::{JointCubic, JointMotion};
 use crate::drive_electronics::{Action, DriveElectronics, ReceivedCommand};
 use crate::inputs::DriveSwitches;
-use crate::plant::Plant;
 
 /// Joints of one robot, from the frames of the bus to references.
 #[derive(Clone)]
@@ -57,10 +56,10 @@ impl SimulatedJoints {
         &self.motions
     }
 
-    /// Takes the motions of the joints from a plant that has looked at its state.
-    pub(crate) fn look(&mut self, plant: &Plant) {
+    /// Takes angle \[rad\] and speed \[rad/s\] of each joint.
+    pub(crate) fn look(&mut self, joint: impl Fn(usize) -> (f64, f64)) {
         for (j, m) in self.motions.iter_mut().enumerate() {
-            (m.angle, m.speed) = plant.joint(j);
+            (m.angle, m.speed) = joint(j);
         }
     }
 

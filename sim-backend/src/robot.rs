@@ -273,7 +273,8 @@ impl SimBackend {
     /// Forces first, for they are those of the motion; a robot that comes to rest on the ground does so after that.
     fn measure(&mut self, dt: f64, inputs: &PlantInputs, powered: bool) -> bool {
         let snapshot = self.body.snapshot(dt, self.joints.references());
-        self.joints.look(self.body.plant());
+        let Self { joints, body, .. } = self;
+        joints.look(|j| body.plant().joint(j));
         // Before the fall: a robot that its own numbers throw has not fallen.
         let load = snapshot.foot_wrench.iter().map(|w| Vector3::from(w.force).norm()).fold(0.0, f64::max);
         if load > IMPLAUSIBLE * self.body.weight() && !self.fall.lies() {
