@@ -306,6 +306,11 @@ impl Plant {
         }
     }
 
+    /// Contact points that carry, after [`Plant::snapshot`].
+    pub fn carrying(&self) -> &[messages::ContactPoint] {
+        self.ground.feet.carrying()
+    }
+
     /// Wrenches that carry and move the bodies below each force sensor; after [`Plant::snapshot`], whose acceleration it takes.
     pub fn carried(&mut self, sensors: &[Frame; 2]) -> [Wrench; 2] {
         let Self { model, data, scratch, .. } = self;

@@ -34,8 +34,8 @@ fn over_time(instants: &[Instant], about: &str) -> Figure {
     }
     Figure::new("Distance to the limits of the contact: below zero is beyond", about)
         .with(panel("What must hold while a foot stands", "distance to the edge [m]", &[0, 1]))
-        .with(panel("Share of the contact-wrench cone that is left", "[1]", &[2]))
-        .with(panel("What need not hold", "distance to the edge [m]", &[3, 4]))
+        .with(panel("Share of the contact-wrench cone that is left", "[1]", &[2, 3]))
+        .with(panel("What need not hold", "distance to the edge [m]", &[4, 5]))
         .with(rate.height(300.0).at_least(1.0))
 }
 
