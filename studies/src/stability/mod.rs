@@ -11,6 +11,7 @@
 
 pub mod cone;
 pub mod contact_cone;
+mod errors;
 pub mod floquet;
 pub mod log;
 mod picture;
