@@ -132,6 +132,8 @@ fn type_1(site: &Site, mut peer: Peer) {
         numbers.extend([&truth.angular_velocity[..], &truth.com].concat());
         numbers.extend(wrenches(&truth.foot_wrench));
         numbers.extend(truth.feet.as_flattened());
+        numbers.push(truth.contacts as f64);
+        numbers.extend(truth.contact.iter().flat_map(|c| [c.place, c.normal].concat()));
         peer.answer(asked.tick, &numbers);
     }
 }

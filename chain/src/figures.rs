@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use config::Setup;
 use messages::{ControllerState, GaitState, MAX_JOINTS, SimState};
+use recording::polygon;
 use serde::Serialize;
 
 use crate::ending::Ending;
@@ -75,7 +76,7 @@ pub struct Figures {
     pub landing_peak_ratio: f64,
     /// \[1\] By how many weights of the robot the normal force exceeds the desired one at most in those 0.1 s.
     pub landing_excess_weights: f64,
-    /// \[m\] Least distance of the measured zero-moment point to the edge of the support polygon.
+    /// \[m\] Least distance of the zero-moment point to the edge of the hull of the contact points that carry.
     pub zmp_margin_min_m: f64,
     /// \[m, m, rad\] Torso at the end: x, y, heading.
     pub end_pose: [f64; 3],
@@ -157,8 +158,10 @@ impl Gatherer {
                 self.landing[i].add(sim.time, sim.foot_wrench[i].force[2], state.wrench_desired[i].force[2]);
             }
         }
-        if state.zmp_margin.is_finite() {
-            self.margin = Some(self.margin.map_or(state.zmp_margin, |m| m.min(state.zmp_margin)));
+        // Of the truth: the stabilizer takes its soles for flat, and does not know of a heel that is up.
+        let at = polygon::zero_moment_point(sim).filter(|_| sim.fallen == 0);
+        if let Some(margin) = at.and_then(|p| polygon::margin(&polygon::support_polygon(sim), p)) {
+            self.margin = Some(self.margin.map_or(margin, |m| m.min(margin)));
         }
         self.way.add(sim, state, heading);
     }

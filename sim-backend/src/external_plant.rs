@@ -14,7 +14,9 @@ use codec::frames::encode_sensors;
 use config::components::JointModel;
 use config::terrain::{ObjectShape, TerrainObject, TerrainPose};
 use config::{Robot, Scene, Setup};
-use messages::{BusFrames, Detail, EventCode, EventQueue, Header, Power, Sensors, SimState, Wrench};
+use messages::{
+    BusFrames, Detail, EventCode, EventQueue, Header, MAX_CONTACTS, Power, Sensors, SimState, Wrench,
+};
 use serde_json::{Value, json};
 
 use crate::SimBackend;
@@ -238,6 +240,17 @@ impl ExternalPlant {
             take("ground_wrench", moment, false);
         }
         truth.feet.iter_mut().for_each(|foot| take("feet", foot, false));
+        let mut contacts = [0.0];
+        take("contacts", &mut contacts, false);
+        for point in &mut truth.contact {
+            take("contact.place", &mut point.place, false);
+            take("contact.normal", &mut point.normal, false);
+        }
+        // A count, which the cast saturates.
+        truth.contacts = contacts[0] as u64;
+        if truth.contacts as f64 != contacts[0] || truth.contacts > MAX_CONTACTS as u64 {
+            problem = problem.or(Some(format!("contacts is {}; it takes 0 to {MAX_CONTACTS}", contacts[0])));
+        }
         for orientation in [s.imu.orientation, truth.orientation] {
             let norm = orientation.iter().map(|x| x * x).sum::<f64>().sqrt();
             if !((norm - 1.0).abs() <= UNIT) {
@@ -269,7 +282,7 @@ impl ExternalPlant {
 
 /// \[1\] Numbers of an answer, for a robot with so many joints.
 pub fn answer_len(joints: usize) -> usize {
-    5 * joints + 12 + 10 + 16 + 12 + 8
+    5 * joints + 12 + 10 + 16 + 12 + 8 + 1 + 6 * MAX_CONTACTS
 }
 
 /// A table of the scene that asks for something of our own simulated robot.

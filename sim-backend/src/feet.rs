@@ -15,6 +15,7 @@ use contact::hexahedron::{LinearElasticity, Volume};
 use contact::point::{self, ContactLaw, PointState};
 use contact::{Ground, Layer, Material, Memory, Pad, SegmentMotion, Settings, SolverReport, TOUCHING};
 use environment::{Environment, Hit, Surface};
+use messages::{ContactPoint, MAX_CONTACTS};
 use multibody::{Data, Frame, Model};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
 
@@ -28,6 +29,8 @@ pub struct Feet {
     touched: Vec<bool>,
     /// \[m\] @world Every node that can touch; kept only where there are objects.
     places: Vec<[f64; 3]>,
+    /// Nodes that carry.
+    carrying: Vec<ContactPoint>,
     worst: SolverReport,
 }
 
@@ -64,10 +67,14 @@ struct Below<'a> {
     ground: &'a Environment,
     touched: &'a mut [bool],
     places: &'a mut Vec<[f64; 3]>,
+    carrying: &'a mut Vec<ContactPoint>,
 }
 
 /// \[m\] Height above which a node needs no exact gap: no step is so long.
 const FAR: f64 = 0.05;
+
+/// \[m\] Gap up to which a compressed node is at the ground: steps let go of one for an instant now and then.
+const AT_GROUND: f64 = 1e-4;
 
 impl Feet {
     /// The contact elements of a robot: its points, or its pads.
@@ -109,12 +116,21 @@ impl Feet {
         }
         let settings = Settings::of_friction(robot.contact.friction);
         let nodes: usize = segments.iter().map(|s| s.elements.nodes()).sum();
+        let corners: usize = segments.iter().map(|s| s.elements.corners()).sum();
+        if corners > MAX_CONTACTS {
+            return Err(format!(
+                "robot `{}`: {corners} contact points (four of a pad); a log holds {MAX_CONTACTS}",
+                robot.name
+            )
+            .into());
+        }
         Ok(Self {
             law: law(robot),
             settings,
             segments,
             touched: vec![false; objects],
             places: Vec::with_capacity(if objects > 0 { nodes } else { 0 }),
+            carrying: Vec::with_capacity(corners),
             worst: CONVERGED,
         })
     }
@@ -137,6 +153,11 @@ impl Feet {
     /// \[m\] @world Places of the nodes that can touch, after [`Feet::update`]; empty on ground without objects.
     pub fn places(&self) -> &[[f64; 3]] {
         &self.places
+    }
+
+    /// Nodes that carry, after [`Feet::update`]; of a pad the outermost ones.
+    pub(crate) fn carrying(&self) -> &[ContactPoint] {
+        &self.carrying
     }
 
     /// Worst end of the solver of the pads since the last call.
@@ -176,10 +197,11 @@ impl Feet {
 
     /// Forces of the ground, and rates of the nodes for displacements `d`, after the model's kinematics and motion.
     pub fn update(&mut self, model: &Model, data: &Data, ground: &Environment, d: &[f64], rate: &mut [f64]) {
-        let Self { law, settings, segments, touched, places: seen, worst } = self;
+        let Self { law, settings, segments, touched, places: seen, carrying, worst } = self;
         touched.fill(false);
         seen.clear();
-        let mut below = Below { ground, touched, places: seen };
+        carrying.clear();
+        let mut below = Below { ground, touched, places: seen, carrying };
         let mut at = 0;
         for s in segments {
             let pose = model.frame_pose(data, &s.frame);
@@ -206,6 +228,7 @@ impl Feet {
                         if !out.report.converged && out.report.residual >= worst.residual {
                             *worst = out.report;
                         }
+                        block.note(&pose, &mut below, d);
                         force += out.force;
                         moment += out.moment;
                     }
@@ -257,7 +280,8 @@ fn points(
     for ((place, d), rate) in places.iter().zip(d.chunks_exact(3)).zip(rate.chunks_exact_mut(3)) {
         let (arm, d) = (pose.rotation * place, Vector3::new(d[0], d[1], d[2]));
         let w = twist.linear + twist.angular.cross(&arm);
-        let hit = below.hit((pose.translation.vector + arm + d).into());
+        let node = (pose.translation.vector + arm + d).into();
+        let hit = below.hit(node);
         let level = hit.surface == Surface::Ground && hit.normal[2] == 1.0;
         // Level ground, nearly always: the axes of the law are those of the world.
         let (force, speed) = if level {
@@ -275,10 +299,18 @@ fn points(
             (e * Vector3::from(answer.force), e * Vector3::from(answer.rate))
         };
         rate.copy_from_slice(speed.as_slice());
+        if force != Vector3::zeros() || at_ground(&hit, &d) {
+            below.carrying.push(ContactPoint { place: node, normal: hit.normal });
+        }
         sum += force; // (2.38)
         moment += (arm + d).cross(&force); // (2.39) with the deformed node
     }
     (sum, moment)
+}
+
+/// Whether a node with the displacement `d`, world axes, is at the ground and compressed.
+fn at_ground(hit: &Hit, d: &Vector3<f64>) -> bool {
+    hit.gap < AT_GROUND && Vector3::from(hit.normal).dot(d) > 0.0
 }
 
 impl PadBlock {
@@ -297,6 +329,17 @@ impl PadBlock {
             }
         }
         friction
+    }
+
+    /// Notes the outermost nodes that carry.
+    fn note(&self, pose: &IsometryMatrix3<f64>, below: &mut Below<'_>, d: &[f64]) {
+        let own = |i: usize| Vector3::new(d[3 * i], d[3 * i + 1], d[3 * i + 2]);
+        let rests =
+            |i: usize| self.ground[i].is_some_and(|g| g.gap < AT_GROUND && g.normal.dot(&own(i)) > 0.0);
+        for (i, ground) in self.pad.outermost(rests).filter_map(|i| Some((i, self.ground[i]?))) {
+            let place = (pose * Point3::from(self.pad.place(i) + own(i))).coords.into();
+            below.carrying.push(ContactPoint { place, normal: (pose.rotation * ground.normal).into() });
+        }
     }
 }
 
@@ -326,6 +369,14 @@ impl Elements {
         match self {
             Self::Points(places) => places.len(),
             Self::Pads(blocks) => blocks.iter().map(|b| b.pad.layer().nodes()).sum(),
+        }
+    }
+
+    /// Most nodes that [`Feet::carrying`] can hold of it.
+    fn corners(&self) -> usize {
+        match self {
+            Self::Points(places) => places.len(),
+            Self::Pads(blocks) => 4 * blocks.len(),
         }
     }
 

@@ -4,7 +4,9 @@ use std::error::Error;
 
 use codec::frames::encode_sensors;
 use config::{Robot, Scene};
-use messages::{BusFrames, Detail, EventCode, EventQueue, Header, Imu, Sensors, SimState, Wrench};
+use messages::{
+    BusFrames, ContactPoint, Detail, EventCode, EventQueue, Header, Imu, Sensors, SimState, Wrench,
+};
 use multibody::Frame;
 use nalgebra::Vector3;
 
@@ -174,6 +176,10 @@ impl Instruments {
         truth.com = s.com.into();
         truth.foot_wrench = s.foot_wrench;
         truth.feet = s.feet;
+        let (carrying, before) = (plant.carrying(), truth.contacts as usize);
+        truth.contacts = carrying.len() as u64;
+        truth.contact[..carrying.len()].copy_from_slice(carrying);
+        truth.contact[carrying.len()..before.max(carrying.len())].fill(ContactPoint::default());
         truth.push = inputs.forces.push;
         truth.rope = inputs.forces.rope.map_or(0.0, |rope| rope.tension(x, speed));
     }

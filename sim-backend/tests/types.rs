@@ -176,3 +176,38 @@ fn brakes_hold_a_standing_robot() {
         assert!((felt[2] - 9.81).abs() < 0.05 && felt[0].hypot(felt[1]) < 0.2, "type {depth}: {felt:?}");
     }
 }
+
+/// Standing, the contact points of every type are the outlines of the soles; with the robot in the air there are none.
+#[test]
+fn contact_points_are_the_soles_that_stand() {
+    for depth in [1, 4] {
+        let setup = setup(depth);
+        let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+        cycles(&mut sim, &setup, [1, 20], true, |_, _| {});
+        let state = sim.state();
+        let foot = &setup.robot.feet[0];
+        // Pads are smaller than the sole's points reach: their outlines from their middles and size.
+        let places = if depth == 1 { &foot.points } else { &foot.pads };
+        let size = setup.robot.contact.pads.unwrap().size;
+        let half = if depth == 1 { [0.0; 2] } else { [0.5 * size[0], 0.5 * size[1]] };
+        let sole = foot.sole;
+        let front = places.iter().map(|(_, at)| at[0]).fold(f64::MIN, f64::max) + half[0] - sole[0];
+        let side = places.iter().map(|(_, at)| at[1]).fold(f64::MIN, f64::max) + half[1];
+        assert_eq!(state.carrying().len(), if depth == 1 { 16 } else { 32 }, "type {depth}");
+        for (k, foot) in state.feet.iter().enumerate() {
+            let of_foot: Vec<_> =
+                state.carrying().iter().filter(|c| (c.place[1] - foot[1]).abs() < 0.1).collect();
+            let most = |axis: usize| {
+                let own = |c: &&messages::ContactPoint| c.place[axis] - foot[axis];
+                of_foot.iter().map(own).fold(f64::MIN, f64::max)
+            };
+            assert!((most(0) - front).abs() < 2e-3, "type {depth}, foot {k}: {} {front}", most(0));
+            assert!((most(1) - side).abs() < 2e-3, "type {depth}, foot {k}: {} {side}", most(1));
+            let upright = |n: [f64; 3]| n[0].hypot(n[1]) < 1e-9 && (n[2] - 1.0).abs() < 1e-9;
+            assert!(of_foot.iter().all(|c| c.place[2].abs() < 2e-4 && upright(c.normal)), "type {depth}");
+        }
+    }
+    let hanging = Setup::load(&root(None), "startup").unwrap();
+    let sim = SimBackend::new(&hanging.robot, &hanging.scene).unwrap();
+    assert_eq!((sim.state().contacts, sim.state().contact[0].normal), (0, [0.0; 3]));
+}

@@ -151,12 +151,13 @@ pub(crate) fn survived(most: f64, resolution: f64, survives: impl Fn(f64) -> boo
     Ok(good)
 }
 
-/// Whether the robot goes on after a push now.
+/// Whether the robot walks on after a push now.
 fn survives(start: &Chain, direction: [f64; 2], impulse: f64) -> bool {
     let mut chain = start.clone();
     let [x, y] = direction.map(|d| d * impulse / DURATION);
     chain.push(&PushCommand { force: [x, y, 0.0], duration: DURATION });
-    (0..((DURATION + AFTER) / chain.cycle()) as u64).all(|_| !ended(chain.step()))
+    let goes_on = (0..((DURATION + AFTER) / chain.cycle()) as u64).all(|_| !ended(chain.step()));
+    goes_on && GaitState::from(chain.step().controller_state.gait) == GaitState::Walking
 }
 
 /// Whether the robot fell in this cycle, or a process stopped it.

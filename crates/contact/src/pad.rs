@@ -116,6 +116,16 @@ impl Pad {
         PadLoad { force, moment, report }
     }
 
+    /// Outermost ones of these nodes of the sole along its diagonals, each once: of a pad that lies flat its corners.
+    pub fn outermost(&self, of: impl Fn(usize) -> bool) -> impl Iterator<Item = usize> {
+        let far = |i: usize, [x, y]: [f64; 2]| x * self.place(i).x + y * self.place(i).y;
+        let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|along| {
+            let all = (0..self.layer.contacts()).filter(|&i| of(i));
+            all.max_by(|&a, &b| far(a, along).total_cmp(&far(b, along)))
+        });
+        (0..4).filter_map(move |k| corners[k].filter(|_| !corners[..k].contains(&corners[k])))
+    }
+
     /// c, active nodes, normals; whether all of it is finite.
     fn load(
         &self,

@@ -49,7 +49,7 @@ pub use plan::{GaitState, Phase, Plan, Step};
 pub use power::{Power, WatchdogReset};
 pub use record::{Field, Header, Read, Record, Visit, Wrench};
 pub use sensors::{Imu, Sensors};
-pub use sim_state::SimState;
+pub use sim_state::{ContactPoint, MAX_CONTACTS, SimState};
 pub use start_up::StartUp;
 pub use topics::{Process, TOPICS, Topic};
 pub use unknown::{nearest, unknown};

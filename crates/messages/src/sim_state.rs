@@ -2,6 +2,19 @@
 
 use crate::{Header, Joints, Wrench, record};
 
+/// Contact points of a record: the 16 of Lola's soles, or the corners of her eight pads.
+pub const MAX_CONTACTS: usize = 32;
+
+record! {
+    /// A place where the ground carries the robot.
+    part ContactPoint {
+        /// \[m\] @world The node, on its deformed sole.
+        place: [f64; 3],
+        /// \[1\] @world Normal of the ground there, out of it.
+        normal: [f64; 3],
+    }
+}
+
 record! {
     /// Pose, motion and contact of the simulated robot. Written by sim-backend, read by logger and figures only.
     record SimState {
@@ -27,6 +40,10 @@ record! {
         foot_wrench: [Wrench; 2],
         /// \[m, rad\] @world Sole frame of each foot: x, y, z, heading.
         feet: [[f64; 4]; 2],
+        /// \[1\] Contact points that carry: the first of `contact`.
+        contacts: u64,
+        /// Nodes of both soles that are pressed on the ground, of a pad at most the four outermost ones; zeros behind them.
+        contact: [ContactPoint; MAX_CONTACTS],
         /// \[N\] @world External push on the torso.
         push: [f64; 3],
         /// \[N\] Rope of the crane, 0 without one.
@@ -35,5 +52,12 @@ record! {
         power: u64,
         /// \[1\] 1 once the robot has fallen: torso tilted by more than 45 degrees or below half its height.
         fallen: u64,
+    }
+}
+
+impl SimState {
+    /// Contact points that carry.
+    pub fn carrying(&self) -> &[ContactPoint] {
+        &self.contact[..(self.contacts as usize).min(MAX_CONTACTS)]
     }
 }

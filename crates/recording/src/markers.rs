@@ -1,12 +1,12 @@
 //! `/markers`: ground, planned steps, centre of gravity, zero-moment point, support polygon.
 
-use messages::record::{Visit, Wrench};
+use messages::record::Visit;
 use messages::{ControllerState, Sensors, SimState};
 
 use crate::cdr::CdrEncoder;
 use crate::links::RecordedPose;
 use crate::odometry::{Planned, planning_frame};
-use crate::polygon::{Point, convex_hull, sole_corners};
+use crate::polygon::{Point, contact_height, convex_hull, sole_corners, support_polygon, zero_moment_point};
 use crate::robot::RobotInfo;
 use crate::standard::{ODOM, TRUTH, WORLD, header};
 
@@ -137,10 +137,11 @@ pub(crate) fn believed(
 }
 
 /// The same of the simulated robot, under names of their own.
-pub(crate) fn truth(e: &mut CdrEncoder, stamp_ns: u64, robot: &RobotInfo, state: &SimState) {
+pub(crate) fn truth(e: &mut CdrEncoder, stamp_ns: u64, state: &SimState) {
     let name = |name: &str| format!("{TRUTH}{name}");
-    let at = zero_moment_point(state).map_or([f64::NAN; 3], |[x, y]| [x, y, 0.0]);
-    let polygon = closed(&support_polygon(robot, state)).into_iter().map(|[x, y]| [x, y, 0.0]).collect();
+    let z = contact_height(state).unwrap_or(0.0);
+    let at = zero_moment_point(state).map_or([f64::NAN; 3], |[x, y]| [x, y, z]);
+    let polygon = closed(&support_polygon(state)).into_iter().map(|[x, y]| [x, y, z]).collect();
     let markers = [
         Marker::sphere(WORLD, name("centre_of_gravity"), state.com, 0.05, BLUE),
         Marker::sphere(WORLD, name("zero_moment_point"), at, 0.03, VERMILION),
@@ -152,30 +153,4 @@ pub(crate) fn truth(e: &mut CdrEncoder, stamp_ns: u64, robot: &RobotInfo, state:
 /// The same points, and the first one again.
 fn closed(points: &[Point]) -> Vec<Point> {
     points.iter().chain(points.first()).copied().collect()
-}
-
-fn support_polygon(robot: &RobotInfo, state: &SimState) -> Vec<Point> {
-    let loaded = (0..2).filter(|&i| state.foot_wrench[i].force[2] > LOADED);
-    let corners: Vec<Point> =
-        loaded.flat_map(|i| sole_corners(&state.feet[i], &robot.feet[i].support)).collect();
-    convex_hull(&corners)
-}
-
-/// Zero-moment point of both foot wrenches on the ground z = 0; none while no foot carries load.
-fn zero_moment_point(state: &SimState) -> Option<Point> {
-    let mut total = Wrench { force: [0.0; 3], moment: [0.0; 3] };
-    for (wrench, sole) in state.foot_wrench.iter().zip(&state.feet) {
-        let (f, m, p) = (wrench.force, wrench.moment, [sole[0], sole[1], sole[2]]);
-        let about_origin = [
-            m[0] + p[1] * f[2] - p[2] * f[1],
-            m[1] + p[2] * f[0] - p[0] * f[2],
-            m[2] + p[0] * f[1] - p[1] * f[0],
-        ];
-        for k in 0..3 {
-            total.force[k] += f[k];
-            total.moment[k] += about_origin[k];
-        }
-    }
-    let f_z = total.force[2];
-    (f_z > LOADED).then(|| [-total.moment[1] / f_z, total.moment[0] / f_z])
 }

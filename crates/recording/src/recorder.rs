@@ -287,7 +287,7 @@ impl Recorder {
             }
         }
         self.put(TRUTH_TF.topic, stamp);
-        markers::truth(&mut self.encoder, time, &self.robot, state);
+        markers::truth(&mut self.encoder, time, state);
         self.put(TRUTH_MARKERS.topic, stamp);
     }
 

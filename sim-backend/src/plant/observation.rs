@@ -52,6 +52,11 @@ impl Plant {
         Snapshot { foot_wrench, feet: sole_places, com }
     }
 
+    /// Contact points that carry, after [`Plant::look`].
+    pub fn carrying(&self) -> &[messages::ContactPoint] {
+        self.ground.feet.carrying()
+    }
+
     /// Takes the mean acceleration of a step of `h` \[s\] between two states for that at its end: it is what the step's
     /// forces did, impacts and dry friction included.
     pub fn note_step(&mut self, h: f64, before: &[f64], x: &[f64]) {

@@ -21,7 +21,7 @@ use messages::command::PushCommand;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::Serialize;
 
-use super::poincare::{self, Multipliers};
+use super::poincare::{self, Multipliers, Verdict};
 use crate::push::stride;
 use crate::sheet::{Column, fixed, plain, scientific};
 use crate::{Error, Given, Sheet, Study};
@@ -31,13 +31,11 @@ use chain::Chain;
 const SCENES: [&str; 2] = ["walk_1kmh", "walk_2kmh"];
 /// \[s\] When the section is first looked at: the walk repeats itself by then.
 const SETTLED: f64 = 20.0;
-/// The larger steps over the smaller ones.
+/// The larger disturbances over the smaller ones.
 const FACTOR: f64 = 2.0;
 /// \[N s\] Push of the check.
 const PUSH: f64 = 2.0;
-/// Disturbance of all states in the other check, in steps.
-const SHAKE: f64 = 20.0;
-/// Strides of the checks.
+/// Strides of the check.
 const STRIDES: usize = 8;
 
 /// Groups of states: name, step.
@@ -58,37 +56,31 @@ pub struct Floquet {
     /// Only this scene; default: walking at 1 and 2 km/h.
     #[arg(long)]
     pub scene: Option<String>,
-    /// Steps of the differences over those of the table in docs/stability.md.
-    #[arg(long, default_value_t = 1.0)]
-    pub step: f64,
+    /// Size of the smaller disturbances: root mean square of each state, in steps of the table in docs/stability.md.
+    #[arg(long, default_value_t = 10.0)]
+    pub size: f64,
+    /// Disturbances of each size.
+    #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u64).range(40..=100_000))]
+    pub disturbances: u64,
 }
 
-/// The gait of a scene.
+/// The gait of a scene, by size of the disturbances.
 const GAIT: &[Column] = &[
     plain("/scene", "scene"),
     fixed("/period_s", "stride [s]", 3),
     plain("/states", "states"),
-    scientific("/residual/0", "tilt changes by [rad]", 1),
-    scientific("/residual/1", "velocity by [m/s]", 1),
-    fixed("/largest", "|lambda|_max", 4),
-    fixed("/largest_with_larger_steps", "with larger steps", 4),
-    fixed("/spread", "J changes by [%]", 1).times(100.0),
-    fixed("/asymmetry", "one-sided by [%]", 1).times(100.0),
-    plain("/smooth", "smooth"),
-    fixed("/decay", "second stride leaves", 4),
-];
-/// What is left of one step of a group of states after a stride, at most, and with larger steps; its share of the slowest
-/// mode.
-const LEFT: &[Column] = &[
-    plain("/0", "of one step of"),
-    fixed("/1/0", "is left after a stride", 3),
-    fixed("/1/1", "of a larger one", 3),
-    fixed("/2", "share of the slowest mode [%]", 0).times(100.0),
+    fixed("/found/size", "disturbed by [steps]", 0),
+    fixed("/found/left/0", "left after one stride", 3),
+    fixed("/found/left/1", "after two", 4),
+    fixed("/found/explained", "linear [%]", 0).times(100.0),
+    fixed("/found/largest", "|lambda|_max", 3),
+    fixed("/found/interval", "interval of 95 %", 3),
+    plain("/verdict", "verdict"),
 ];
 /// Numbers by rank or by stride.
 const LISTS: &[Column] = &[plain("/0", ""), scientific("/1", "", 2)];
 
-/// The gait of one scene.
+/// The gait of one scene under disturbances of one size.
 #[derive(Clone, Debug, Serialize)]
 struct FloquetRow {
     /// Name of the scene.
@@ -97,69 +89,44 @@ struct FloquetRow {
     period_s: f64,
     /// \[1\] States of the map.
     states: usize,
-    /// \[rad, m/s\] What tilt and velocity change by from one stride to the next without a disturbance.
-    residual: [f64; 2],
-    /// |lambda|_max with the smaller steps.
-    largest: f64,
-    /// The same with steps four times as large.
-    largest_with_larger_steps: f64,
-    /// \[1\] Change of the map's Jacobian with the step.
-    spread: f64,
-    /// \[1\] Difference of forward and backward differences, smaller and larger steps.
-    asymmetry: [f64; 2],
-    /// Whether the map is smooth enough for its multipliers to mean something.
-    smooth: bool,
-    /// The ten largest multipliers: real, imaginary.
-    multipliers: Vec<[f64; 2]>,
-    /// What is left of one step of a state after a stride, in steps, the most of each group: smaller and larger steps.
-    left: Vec<(&'static str, [f64; 2])>,
-    /// What the mode of the largest one consists of: group of states, share.
-    made_of: Vec<(&'static str, f64)>,
-    /// \[1\] Deviation after a small push, stride by stride, in steps of the states.
-    pushed: Vec<f64>,
-    /// \[1\] The same with all states disturbed.
-    shaken: Vec<f64>,
-    /// \[1\] What the second stride leaves of the latter; where it is far above its floor, |lambda|_max or less.
-    decay: f64,
+    found: Multipliers,
+    /// What both sizes say together.
+    verdict: &'static str,
 }
 
 impl Study for Floquet {
     fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
         let scenes: Vec<&str> = self.scene.as_deref().map_or(SCENES.to_vec(), |scene| vec![scene]);
-        let mut rows = Vec::new();
+        let (mut rows, mut pushes) = (Vec::new(), Vec::new());
         for scene in scenes {
             (given.progress)(0, 0, scene);
-            rows.push(of_scene(Setup::load(given.config, scene)?, self.step)?);
+            let (found, pushed) = of_scene(Setup::load(given.config, scene)?, self)?;
+            rows.extend(found);
+            pushes.push((scene, pushed));
         }
         let mut sheet = Sheet::titled(format!(
-            "Floquet multipliers of the gait: what is left of a small deviation after one stride; larger steps are {FACTOR} \
-             times as large"
+            "Floquet multipliers of the gait: what a stride leaves of a small deviation, by regression over {} random \
+             disturbances of all states",
+            self.disturbances
         ));
         sheet.rows("rows", GAIT, &rows);
-        for row in &rows {
-            sheet.line(format!("\n{}", row.scene));
-            // By group of states: what a step of it leaves, and its share of the mode that leaves most.
-            let share = |name| row.made_of.iter().find(|made| made.0 == name).map(|made| made.1);
-            sheet.table(
-                LEFT,
-                &row.left.iter().map(|left| (left.0, left.1, share(left.0))).collect::<Vec<_>>(),
-            );
-            // Stride by stride, for who wants to see the decay itself.
-            let size: Vec<f64> = row.multipliers.iter().map(|[a, b]| a.hypot(*b)).collect();
-            let push = format!("a push of {PUSH} N s leaves, stride by stride");
-            sheet.table(
-                LISTS,
-                &[("|lambda_i|", &size), (push.as_str(), &row.pushed), ("all states disturbed", &row.shaken)],
-            );
-            if !row.smooth {
-                sheet.line("NOT SMOOTH, the multipliers are no proof");
-            }
+        for (scene, pushed) in &pushes {
+            sheet.line(format!("\n{scene}"));
+            let of_scene = rows.iter().filter(|row| row.scene == *scene);
+            let values = of_scene.map(|row| {
+                let size: Vec<f64> = row.found.values.iter().map(|[a, b]| a.hypot(*b)).collect();
+                (format!("|lambda_i|, disturbed by {} steps", row.found.size), size)
+            });
+            let push = (format!("a push of {PUSH} N s leaves, stride by stride [steps]"), pushed.clone());
+            sheet.table(LISTS, &values.chain([push]).collect::<Vec<_>>());
         }
+        sheet.fact("pushed", &pushes);
         Ok(sheet)
     }
 }
 
-fn of_scene(mut setup: Setup, step: f64) -> Result<FloquetRow, Error> {
+/// Rows of a scene, and what a push leaves stride by stride.
+fn of_scene(mut setup: Setup, study: &Floquet) -> Result<(Vec<FloquetRow>, Vec<f64>), Error> {
     walk_on(&mut setup);
     let (begin, end) = stride(&setup, SETTLED)?;
     let mut chain = Chain::new(&setup)?;
@@ -168,40 +135,26 @@ fn of_scene(mut setup: Setup, step: f64) -> Result<FloquetRow, Error> {
     }
     (0..begin).for_each(|_| _ = chain.step());
     let period = end - begin;
-    let section = PoincareSection::of(&mut chain, step);
+    let section = PoincareSection::of(&mut chain);
     let start = &chain;
     let map = |x: &[f64]| {
         let mut chain = start.clone();
         section.disturb(&mut chain, x);
-        after(&mut chain, period).then(|| section.observe(&mut chain))
+        let mut later = || after(&mut chain, period).then(|| section.observe(&mut chain));
+        Some([later()?, later()?])
     };
-    let found = poincare::multipliers(&section.steps, FACTOR, &map)?;
-    let nominal =
-        (section.observe(&mut start.clone()), map(&vec![0.0; section.steps.len()]).unwrap_or_default());
-    let change = |group: usize| {
-        let at = section.groups.iter().zip(nominal.0.iter().zip(&nominal.1)).filter(|(g, _)| **g == group);
-        at.map(|(_, (a, b))| (a - b).powi(2)).sum::<f64>().sqrt()
-    };
-    let falls = "the robot falls after the small disturbance of the check";
-    let pushed = section.apart(PoincareSection::pushed(start), start, period).ok_or(falls)?;
-    let shaken = section.apart(section.shaken(start), start, period).ok_or(falls)?;
-    Ok(FloquetRow {
+    let of_size = |size: f64| poincare::multipliers(&section.steps, size, study.disturbances as usize, &map);
+    let found = [of_size(study.size)?, of_size(FACTOR * study.size)?];
+    let verdict = Verdict::of(&found).words();
+    let pushed = section.apart(PoincareSection::pushed(start), start, period);
+    let rows = found.map(|found| FloquetRow {
         scene: setup.scene.name.clone(),
         period_s: period as f64 * setup.scene.cycle,
         states: section.steps.len(),
-        residual: [change(1), change(2)],
-        largest: found.largest[0],
-        largest_with_larger_steps: found.largest[1],
-        spread: found.spread,
-        asymmetry: found.asymmetry,
-        smooth: found.smooth(),
-        made_of: section.made_of(&found),
-        left: section.left(&found),
-        multipliers: found.values.into_iter().take(10).collect(),
-        decay: shaken[1] / shaken[0],
-        pushed,
-        shaken,
-    })
+        found,
+        verdict,
+    });
+    Ok((rows.into(), pushed.ok_or("the robot falls after the small push of the check")?))
 }
 
 /// The scene without pushes and without an end of its walk.
@@ -218,20 +171,16 @@ fn after(chain: &mut Chain, cycles: u64) -> bool {
 
 /// What is disturbed and looked at.
 struct PoincareSection {
-    /// Group of every state.
-    groups: Vec<usize>,
-    /// Its step.
+    /// Step of every state.
     steps: Vec<f64>,
 }
 
 impl PoincareSection {
-    fn of(chain: &mut Chain, step: f64) -> Self {
+    fn of(chain: &mut Chain) -> Self {
         let (sim, controller) = chain.parts();
         let memory = controller.memory().map(|m| m.len());
         let counts = [1, 2, 3, 3, sim.layout().layer().len(), memory[0], memory[1], memory[2]];
-        let groups: Vec<usize> = counts.iter().enumerate().flat_map(|(g, n)| vec![g; *n]).collect();
-        let steps = groups.iter().map(|g| step * GROUPS[*g].1).collect();
-        Self { groups, steps }
+        Self { steps: GROUPS.iter().zip(counts).flat_map(|((_, h), n)| vec![*h; n]).collect() }
     }
 
     /// All states.
@@ -289,34 +238,6 @@ impl PoincareSection {
         let force = PUSH / 0.1 / 2f64.sqrt();
         chain.push(&PushCommand { force: [force, force, 0.0], duration: 0.1 });
         chain
-    }
-
-    /// The walk with every state disturbed by up to some of its steps.
-    fn shaken(&self, start: &Chain) -> Chain {
-        let mut chain = start.clone();
-        let by: Vec<f64> =
-            self.steps.iter().enumerate().map(|(i, h)| SHAKE * h * (1.0 + 2.3 * i as f64).sin()).collect();
-        self.disturb(&mut chain, &by);
-        chain
-    }
-
-    /// The longest column of the Jacobian in each group.
-    fn left(&self, found: &Multipliers) -> Vec<(&'static str, [f64; 2])> {
-        let most = |g: usize, k: usize| {
-            let of_group = self.groups.iter().zip(&found.left[k]).filter(|(group, _)| **group == g);
-            of_group.map(|(_, x)| *x).fold(0.0, f64::max)
-        };
-        GROUPS.iter().enumerate().map(|(g, (name, _))| (*name, [most(g, 0), most(g, 1)])).collect()
-    }
-
-    /// Shares of the groups in the slowest mode, largest first.
-    fn made_of(&self, found: &Multipliers) -> Vec<(&'static str, f64)> {
-        let sum =
-            |g: usize| self.groups.iter().zip(&found.shares).filter(|(k, _)| **k == g).map(|(_, s)| s).sum();
-        let mut all: Vec<(&'static str, f64)> =
-            GROUPS.iter().enumerate().map(|(g, (name, _))| (*name, sum(g))).collect();
-        all.sort_by(|a, b| b.1.total_cmp(&a.1));
-        all
     }
 }
 

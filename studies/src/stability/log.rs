@@ -31,7 +31,7 @@ pub(super) struct ContactStability {
     pub(super) momentum_rate_max_n_m: [f64; 3],
     /// \[m\] Largest distance of the point of zero rate from the zero-moment point.
     pub(super) zero_rate_from_zmp_max_m: f64,
-    /// What gives way first where the wrench is nearest to the border of its cone.
+    /// What gives way first where the wrench on a flat sole is nearest to the border of its cone.
     pub(super) nearest_border: &'static str,
     /// \[N\] Root mean square of what forces and accelerations in the log differ by.
     pub(super) imbalance_rms_n: f64,
@@ -60,10 +60,11 @@ pub(super) struct Margin {
 pub(super) type Measure = fn(&Instant) -> f64;
 
 /// All margins: name, unit, value.
-pub(super) const MARGINS: [(&str, &str, Measure); 5] = [
+pub(super) const MARGINS: [(&str, &str, Measure); 6] = [
     ("zero-moment point", "m", |i| i.margin(i.zmp)),
     ("foot rotation indicator", "m", |i| i.margin(i.fri)),
-    ("contact-wrench cone", "1", |i| i.cone),
+    ("cone of all contact points", "1", |i| i.cone),
+    ("cone of the nearest flat sole", "1", |i| i.sole_cone),
     ("point of zero rate (ZRAM)", "m", |i| i.margin(i.zram)),
     ("capture point (3.18)", "m", |i| i.margin(i.capture)),
 ];
@@ -83,7 +84,7 @@ pub fn run(log: &Path, friction: f64, out: Option<&Path>) -> Result<Sheet, Strin
     sheet.fact("friction", friction);
     sheet.table(COLUMNS, &found.margins);
     let [x, y, z] = found.momentum_rate_max_n_m;
-    sheet.line(format!("nearest to the border of the cone: {}", found.nearest_border));
+    sheet.line(format!("what gives way first of the nearest flat sole: {}", found.nearest_border));
     sheet.line(format!(
         "angular momentum changes by at most {x:.1}, {y:.1}, {z:.1} N m; its point of zero rate is up to {:.4} m from the \
          zero-moment point",
@@ -114,7 +115,8 @@ pub(super) fn judge(instants: &[Instant]) -> ContactStability {
     let most = |value: &dyn Fn(&Instant) -> f64| {
         instants.iter().map(value).filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()))
     };
-    let nearest = instants.iter().filter(|i| i.cone.is_finite()).min_by(|a, b| a.cone.total_cmp(&b.cone));
+    let of_sole = instants.iter().filter(|i| i.sole_cone.is_finite());
+    let nearest = of_sole.min_by(|a, b| a.sole_cone.total_cmp(&b.sole_cone));
     let square: f64 = instants.iter().map(|i| i.imbalance * i.imbalance).sum();
     ContactStability {
         cycles: instants.len(),

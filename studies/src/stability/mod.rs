@@ -2,7 +2,7 @@
 //!
 //! | part | question |
 //! |---|---|
-//! | [`points`], [`cone`], [`walk`], [`log`] | how near did a logged walk come to the limits of its contact? |
+//! | [`points`], [`cone`], [`contact_cone`], [`walk`], [`log`] | how near did a logged walk come to the limits of its contact? |
 //! | [`poincare`], [`floquet`] | how fast does the periodic gait forget a small disturbance? |
 //! | [`viability`] | which disturbances and errors does it survive? |
 //!
@@ -10,6 +10,8 @@
 //! (3.5), the third is what the thesis followed (3.4): simulate, and see whether the robot falls.
 
 pub mod cone;
+pub mod contact_cone;
+mod errors;
 pub mod floquet;
 pub mod log;
 mod picture;

@@ -34,8 +34,8 @@ fn over_time(instants: &[Instant], about: &str) -> Figure {
     }
     Figure::new("Distance to the limits of the contact: below zero is beyond", about)
         .with(panel("What must hold while a foot stands", "distance to the edge [m]", &[0, 1]))
-        .with(panel("Share of the contact-wrench cone that is left", "[1]", &[2]))
-        .with(panel("What need not hold", "distance to the edge [m]", &[3, 4]))
+        .with(panel("Share of the contact-wrench cone that is left", "[1]", &[2, 3]))
+        .with(panel("What need not hold", "distance to the edge [m]", &[4, 5]))
         .with(rate.height(300.0).at_least(1.0))
 }
 
@@ -62,7 +62,7 @@ pub(super) fn of_viability(scene: &str, all: &Pushes, errors: &[Survived]) -> Fi
 
 fn pushes(all: &Pushes) -> Chart {
     let mut chart = Chart::new(
-        "Pushes of 0.1 s at the torso: each line an instant of the stride",
+        "Pushes of 0.1 s, by instant of the stride",
         "impulse forward [N s]",
         "impulse to the left [N s]",
     )
@@ -76,7 +76,7 @@ fn pushes(all: &Pushes) -> Chart {
         line.extend(line.first().copied());
         line
     };
-    chart.area("survived whenever it comes", around(&all.always_n_s), GREEN.faint(0x50));
+    chart.area("always", around(&all.always_n_s), GREEN.faint(0x50));
     for (k, at) in all.impulse_n_s.iter().enumerate() {
         let name = format!("{k}/{}", all.impulse_n_s.len());
         let pen = Pen { color: COLORS[k % COLORS.len()], width: 2.0, dashed: k >= COLORS.len() };
@@ -95,13 +95,14 @@ fn bars(errors: &[Survived]) -> Chart {
         let place = |x: f64| if e.tried[0] > 0.0 { x.ln() } else { x };
         let share = |side: usize| {
             let most = place(e.tried[side]);
-            if most == 0.0 { 0.0 } else { place(e.interval[side]) / most.abs() }
+            if most == 0.0 { 0.0 } else { place(e.interval[side].unwrap_or(e.tried[side])) / most.abs() }
         };
         let tried = [0, 1].map(|side| if place(e.tried[side]) == 0.0 { 0.0 } else { [-1.0, 1.0][side] });
         let rectangle = |[a, b]: [f64; 2], h: f64| vec![[a, y - h], [b, y - h], [b, y + h], [a, y + h]];
         chart.area("tried", rectangle(tried, 0.3), GREY.faint(0x30));
         chart.area("survived", rectangle([share(0), share(1)], 0.3), GREEN.faint(0x90));
-        let text = format!("{}: {:.2} to {:.2} {}", e.name, e.interval[0], e.interval[1], e.unit);
+        let [from, to] = e.interval.map(|x| x.map_or("no border".into(), |x| format!("{x:.2}")));
+        let text = format!("{}: {from} to {to} {}", e.name, e.unit);
         chart.label([-0.98, y - 0.25], &text, BLACK);
     }
     chart

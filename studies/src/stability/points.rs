@@ -89,26 +89,10 @@ pub fn capture(com: &Vector3<f64>, velocity: &Vector3<f64>, z: f64) -> Option<Po
     (height > 0.0).then(|| [com.x + velocity.x * time, com.y + velocity.y * time])
 }
 
-/// \[m\] Distance of a point to the edge of a convex polygon (counter-clockwise), negative outside; none without an area.
-pub fn margin(polygon: &[Point], p: Point) -> Option<f64> {
-    if polygon.len() < 3 || !p.iter().all(|x| x.is_finite()) {
-        return None;
-    }
-    let (mut inside, mut nearest) = (f64::INFINITY, f64::INFINITY);
-    for (i, a) in polygon.iter().enumerate() {
-        let b = polygon[(i + 1) % polygon.len()];
-        let (e, d) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
-        let length = e[0].hypot(e[1]);
-        inside = inside.min((e[0] * d[1] - e[1] * d[0]) / length);
-        let along = ((e[0] * d[0] + e[1] * d[1]) / (length * length)).clamp(0.0, 1.0);
-        nearest = nearest.min((d[0] - along * e[0]).hypot(d[1] - along * e[1]));
-    }
-    Some(if inside >= 0.0 { inside } else { -nearest })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use recording::polygon::margin;
 
     const G: f64 = multibody::GRAVITY_ACCELERATION;
     const SQUARE: [Point; 4] = [[-0.1, -0.05], [0.2, -0.05], [0.2, 0.05], [-0.1, 0.05]];
@@ -209,16 +193,11 @@ mod tests {
         }
     }
 
-    /// In the air, on an edge, or with a number that is none there is no margin and no point, and nothing breaks.
+    /// In the air there is no point, and nothing breaks.
     #[test]
-    fn nothing_to_stand_on_is_no_margin() {
+    fn nothing_to_stand_on_is_no_point() {
         assert_eq!(zmp(&Load::default(), 0.0), None);
         assert_eq!(zero_rate(&Load::default(), &Vector3::zeros(), &Vector3::zeros(), 0.0), None);
         assert_eq!(capture(&Vector3::zeros(), &Vector3::zeros(), 0.5), None);
-        assert_eq!(margin(&[], [0.0; 2]), None);
-        assert_eq!(margin(&SQUARE[..2], [0.0; 2]), None);
-        assert_eq!(margin(&SQUARE, [f64::NAN, 0.0]), None);
-        assert!((margin(&SQUARE, [0.3, 0.15]).unwrap() + 0.1_f64.hypot(0.1)).abs() < 1e-15);
-        assert!((margin(&SQUARE, [0.25, 0.0]).unwrap() + 0.05).abs() < 1e-15);
     }
 }

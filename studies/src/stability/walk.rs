@@ -9,10 +9,11 @@ use messages::SimState;
 use messages::topics::SIM_STATE;
 use multibody::{Data, Frame, Model};
 use nalgebra::{UnitQuaternion, Vector3};
-use recording::polygon::{Point, convex_hull, sole_corners};
+use recording::polygon::{self, Point};
 use recording::{Log, RobotInfo};
 
 use super::cone::{self, Border};
+use super::contact_cone;
 use super::points::{self, Load};
 
 /// \[N\] A sole that carries less does not count as part of the support.
@@ -27,7 +28,7 @@ pub struct Instant {
     pub time: f64,
     /// Soles that carry something: right, left.
     pub loaded: [bool; 2],
-    /// \[m\] @world Convex hull of the loaded soles.
+    /// \[m\] @world Convex hull of the contact points that carry.
     pub support: Vec<Point>,
     /// \[m\] @world Zero-moment point.
     pub zmp: Point,
@@ -39,8 +40,10 @@ pub struct Instant {
     pub capture: Point,
     /// \[N m\] @world Rate of the angular momentum about the centre of gravity.
     pub momentum_rate: [f64; 3],
-    /// \[1\] Margin to the contact-wrench cone of the loaded sole that is nearest to its border.
+    /// \[1\] Margin to the cone of all contact points that carry.
     pub cone: f64,
+    /// \[1\] Margin to the contact-wrench cone of the loaded sole that is nearest to its border, as if it lay flat.
+    pub sole_cone: f64,
     /// What that border is.
     pub border: Option<Border>,
     /// \[N\] |m c'' - m g - F - push|: how well accelerations of the log fit its forces.
@@ -50,7 +53,7 @@ pub struct Instant {
 impl Instant {
     /// \[m\] Distance of one of the points to the edge of the support, negative outside; NaN where there is none.
     pub fn margin(&self, point: Point) -> f64 {
-        points::margin(&self.support, point).unwrap_or(f64::NAN)
+        polygon::margin(&self.support, point).unwrap_or(f64::NAN)
     }
 }
 
@@ -118,9 +121,7 @@ impl LoggedRobot {
         let place = |i: usize| Vector3::from_column_slice(&now.feet[i][..3]);
         let loads = [0, 1].map(|i| Load::of(&now.foot_wrench[i], place(i)));
         let soles: Vec<usize> = (0..2).filter(|&i| loaded[i]).collect();
-        let z = soles.iter().map(|&i| now.feet[i][2]).sum::<f64>() / soles.len() as f64;
-        let corners = |i: usize| sole_corners(&now.feet[i], &self.info.feet[i].support);
-        let support = convex_hull(&soles.iter().flat_map(|&i| corners(i)).collect::<Vec<_>>());
+        let (z, support) = (polygon::contact_height(now)?, polygon::support_polygon(now));
 
         let com = Vector3::from(now.com);
         let (earlier, later) = (Vector3::from(before.com), Vector3::from(after.com));
@@ -130,7 +131,9 @@ impl LoggedRobot {
         let (push, pushed) = self.push(now);
         let other = (pushed - com).cross(&push);
         let balance = (acceleration - multibody::GRAVITY) * self.model.mass() - ground.force - push;
-        let (cone, border) = self.cone(now, &soles);
+        let (sole_cone, border) = self.sole_cone(now, &soles);
+        let cone = Some(ground.force.z).filter(|f| *f > LOADED);
+        let cone = cone.and_then(|_| contact_cone::margin(now.carrying(), &ground, self.friction));
         let or_none = |p: Option<Point>| p.unwrap_or([f64::NAN; 2]);
         let fri = match soles[..] {
             [foot] => {
@@ -147,7 +150,8 @@ impl LoggedRobot {
             zram: or_none(points::zero_rate(&ground, &com, &other, z)),
             capture: or_none(points::capture(&com, &velocity, z)),
             momentum_rate: points::momentum_rate(&ground, &com, &other).into(),
-            cone,
+            cone: cone.unwrap_or(f64::NAN),
+            sole_cone,
             border,
             imbalance: balance.norm(),
         })
@@ -160,7 +164,7 @@ impl LoggedRobot {
     }
 
     /// Margin of the loaded sole that is nearest to its border.
-    fn cone(&self, s: &SimState, soles: &[usize]) -> (f64, Option<Border>) {
+    fn sole_cone(&self, s: &SimState, soles: &[usize]) -> (f64, Option<Border>) {
         let heavy = |i: &&usize| s.foot_wrench[**i].force[2] > LOADED;
         let of = |&i: &usize| {
             let [back, front, right, left] = self.info.feet[i].support;
@@ -213,4 +217,58 @@ impl LoggedRobot {
 fn orientation(s: &SimState) -> UnitQuaternion<f64> {
     let [x, y, z, w] = s.orientation;
     UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use chain::Chain;
+    use config::Setup;
+    use nalgebra::Point3;
+    use recording::polygon::{convex_hull, margin, sole_corners, support_polygon, zero_moment_point};
+
+    /// \[m\] Nodes of a foot in the air find their rest within some milliseconds; below this they may still touch.
+    const NEAR: f64 = 1.5e-3;
+
+    /// While a heel is up, the support is what of the sole is on the ground. The zero-moment point is always inside, as forces
+    /// that only push have it; inside of the full rectangles it seemed to be up to centimetres further from the edge, or outside.
+    /// The points are those that kinematics alone has below the ground.
+    #[test]
+    fn a_heel_that_is_up_is_no_support() {
+        let setup = Setup::load(&config::root(None), "walk_3kmh").unwrap();
+        let order: Vec<&str> = setup.robot.joints.iter().map(|j| j.name.as_str()).collect();
+        let model = Model::from_urdf(&setup.robot.urdf, &setup.robot.torso, &order).unwrap();
+        let places: Vec<_> = setup.robot.feet.iter().flat_map(|f| &f.points).collect();
+        let nodes: Vec<_> = places.iter().map(|(link, at)| model.frame(link, *at).unwrap()).collect();
+        let (mut data, mut q, mut height) = (Data::new(&model), model.neutral(), vec![0.0; nodes.len()]);
+        let (mut chain, mut most, mut heel_up, mut cycles) = (Chain::new(&setup).unwrap(), 0.0, 0, 0);
+        for _ in 0..10_000 {
+            let s = chain.step().sim_state;
+            q[..3].copy_from_slice(&s.position);
+            q[3..7].copy_from_slice(&s.orientation);
+            q[7..].copy_from_slice(&s.joint_angle[..model.n()]);
+            model.forward_kinematics(&mut data, &q);
+            for (node, before) in nodes.iter().zip(&mut height) {
+                let at = model.frame_pose(&data, node) * Point3::origin();
+                let apart = |c: &messages::ContactPoint| (c.place[0] - at.x).hypot(c.place[1] - at.y);
+                let carries = s.carrying().iter().any(|c| apart(c) < 0.015);
+                // One that leaves the ground faster than its layer follows carries nothing any more.
+                let sinks = at.z < std::mem::replace(before, at.z);
+                assert!(carries || !sinks || at.z > -NEAR, "{} m and carries nothing at {} s", at.z, s.time);
+                assert!(!carries || at.z < NEAR, "{} m above the ground and carries at {} s", at.z, s.time);
+            }
+            let Some(zmp) = zero_moment_point(&s) else { continue };
+            cycles += 1;
+            let inside = margin(&support_polygon(&s), zmp).unwrap();
+            assert!(inside > -1e-5, "{inside} m at {} s", s.time);
+            // As it was reckoned before: whole soles of what carries anything.
+            let soles = (0..2).filter(|&i| s.foot_wrench[i].force[2] > TOUCHING);
+            let corners = soles.flat_map(|i| sole_corners(&s.feet[i], &setup.robot.feet[i].support));
+            let as_if_flat = margin(&convex_hull(&corners.collect::<Vec<_>>()), zmp).unwrap_or(0.0);
+            most = f64::max(most, as_if_flat - inside);
+            heel_up += usize::from(as_if_flat - inside > 1e-3);
+        }
+        let share = heel_up as f64 / f64::from(cycles);
+        assert!(most > 0.03 && share > 0.03, "{most} m, {share}");
+    }
 }

@@ -42,6 +42,7 @@ ROBOT = HERE.parents[2] / "config/robots/lola"
 STEPS = 4  # per cycle of 1 ms
 STIFFNESS, DAMPING = 60_000.0, 600.0  # [1/s^2], [1/s]
 HARD = {"solref": [0.005, 1.0]}
+CONTACTS = 32
 SIDES = ("right", "left")
 OFF = 0
 NO_SLIP = 10.0  # impratio
@@ -155,7 +156,16 @@ class Robot:
         specific = attitude.T @ (d.qacc[:3] - GRAVITY)
         imu = [orientation, gyro, specific]
         truth = [d.qpos[:3], orientation, attitude.T @ d.qvel[:3], gyro, d.subtree_com[self.torso]]
-        return np.concatenate([q, v, q, v, d.actuator_force * math.nan, *sensed, *imu, *truth, *ground, *soles])
+        # Contact points that carry: places and normals, zeros behind the last.
+        points = np.zeros((CONTACTS, 6))
+        carrying = np.flatnonzero((of >= 0) & (np.linalg.norm(force, axis=1) > 0))[:CONTACTS]
+        if carrying.size:
+            out = np.where(feet[:, 1] >= 0, 1.0, -1.0)[:, None] * contact.frame[:, :3]
+            points[: carrying.size] = np.hstack([contact.pos, out])[carrying]
+        contacts = [[carrying.size], points.ravel()]
+        return np.concatenate(
+            [q, v, q, v, d.actuator_force * math.nan, *sensed, *imu, *truth, *ground, *soles, *contacts]
+        )
 
 
 def serve(stream, hard):
