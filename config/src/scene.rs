@@ -23,6 +23,9 @@ use crate::tolerance::Tolerance;
 /// Seed of a scene that says none.
 pub const SEED: u64 = 1;
 
+/// \[rad/s\] Ramp of dry friction of a scene that says none.
+pub const FRICTION_RAMP: f64 = 1.0;
+
 /// `scenes/NAME.toml`.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -49,6 +52,9 @@ pub struct Scene {
     pub force_step: bool,
     /// \[1\] Error of a step of the adaptive integrator, relative and absolute; the others have none.
     pub tolerance: Option<f64>,
+    /// \[rad/s\] Speed of a rotor over which dry friction changes its sign for integrators that cannot let it stick: all but
+    /// "semi_implicit". [`FRICTION_RAMP`] if the scene says none; narrower is nearer to the law, and stiffer.
+    pub friction_ramp: f64,
     /// \[s\] Bus cycle.
     pub cycle: f64,
     /// Name of the joint pose the robot starts in, standing on the ground.
@@ -116,6 +122,7 @@ impl Scene {
             substeps,
             force_step: top.has("force_step") && top.flag("force_step"),
             tolerance: adaptive.then(|| top.number("tolerance", "1", 1e-12..=1e-2)),
+            friction_ramp: friction_ramp(top),
             cycle: top.number("cycle", "s", 1e-4..=0.02),
             start_pose: top.text("start_pose"),
             duration: top.number("duration", "s", POSITIVE),
@@ -135,6 +142,13 @@ impl Scene {
         };
         if (scene.integrator == Integrator::Bdf) != scene.tolerance.is_some() {
             top.problem("tolerance", "the integrator \"bdf\" needs a tolerance, and no other one has one");
+        }
+        let has_ramp = scene.auto.is_none() && depth > 1 && integrator != Integrator::SemiImplicit;
+        if top.has("friction_ramp") && !has_ramp {
+            top.problem(
+                "friction_ramp",
+                "it is for \"euler\", \"rk4\" and \"bdf\" on types 2 to 5; others see dry friction as it is, or none",
+            );
         }
         // Rows stand in the order of time, as everything that plays them expects.
         scene.check_times(top, "command", scene.commands.iter().map(|(time, _)| *time));
@@ -215,6 +229,11 @@ fn components(top: &Section<'_, '_>, auto: bool) -> ComponentChanges {
         top.problem("components", "depth \"auto\" chooses them; leave the table out");
     }
     named.flatten().unwrap_or_default()
+}
+
+/// `friction_ramp`, if it is there.
+fn friction_ramp(top: &Section<'_, '_>) -> f64 {
+    if top.has("friction_ramp") { top.number("friction_ramp", "rad/s", 1e-3..=100.0) } else { FRICTION_RAMP }
 }
 
 /// `[sensors]`, if it is there.

@@ -39,6 +39,7 @@ impl SimulatedBody {
         let pose = &robot.poses[&scene.start_pose];
         let real = with_plant_mismatch(robot, scene);
         let mut plant = Plant::new(&real, terrain::environment(scene)?, scene.components(), pose)?;
+        plant.set_friction_ramp(scene.friction_ramp);
         let state = match &scene.crane {
             None => plant.standing(pose),
             Some(crane) => plant.hanging(pose, crane.height),

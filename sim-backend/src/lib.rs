@@ -19,7 +19,7 @@
 //! | the drives in an implicit step, one and all | `implicit.rs`, `train_step.rs` |
 //! | counts and look-up tables of these controllers | `resolution.rs` |
 //! | their contact, and what they stand on | `ground.rs`, [`feet`], [`terrain`] |
-//! | time steps; the adaptive ones; the longest stable ones | [`integrate`], [`stiff`], [`step_limit`] |
+//! | time steps; the adaptive ones; the longest stable ones | [`integrate`], [`stiff`] with `sparse_lu.rs`, [`step_limit`] |
 //! | steps that are too long; fall | `chatter.rs`, `fall.rs` |
 //! | readings and truth | `instruments.rs`, [`sensors`] |
 
@@ -54,6 +54,7 @@ pub mod sensors;
 mod sercos_end;
 pub mod shaft;
 mod shared_end;
+mod sparse_lu;
 pub mod step_limit;
 pub mod stiff;
 pub mod terrain;

@@ -260,6 +260,13 @@ impl Plant {
         }
     }
 
+    /// Sets the speed of rotors \[rad/s\] over which [`Plant::rate`] changes the sign of dry friction.
+    pub fn set_friction_ramp(&mut self, ramp: f64) {
+        if let Joints::Driven(train) = &mut self.joints {
+            train.friction_ramp = ramp;
+        }
+    }
+
     /// Moves the objects of the environment to `time` \[s\], as far as nothing touches them; returns what happened.
     pub fn advance(&mut self, time: f64) -> &[environment::ObjectEvent] {
         self.ground.advance(time)

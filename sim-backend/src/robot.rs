@@ -23,7 +23,7 @@ use crate::joints::SimulatedJoints;
 use crate::loads::Loads;
 use crate::plant::{Plant, PlantInputs};
 use crate::power::PowerLine;
-use crate::step_limit;
+use crate::{step_limit, stiff};
 
 /// Cycles without their frames that are made good for at most: by then every drive has come to rest by itself.
 const MOST_OVERWRITTEN: u64 = 100;
@@ -60,6 +60,7 @@ impl SimBackend {
             );
         }
         step_limit::check(robot, scene)?;
+        stiff::check(scene)?;
         // The body first: the crane hooks in where its centre of gravity is, and the sensors know what hangs on them.
         let mut body = SimulatedBody::new(robot, scene)?;
         let joints = SimulatedJoints::new(robot, scene);

@@ -8,6 +8,7 @@
 use std::error::Error;
 
 use config::method::Integrator;
+use config::scene::FRICTION_RAMP;
 use config::{Components, Robot, Scene};
 use environment::Environment;
 use faer::{Mat, Par, set_global_parallelism};
@@ -95,12 +96,27 @@ pub fn step_limit(
     pose: &[f64],
     integrator: Integrator,
 ) -> Result<Option<StepLimit>> {
+    step_limit_of_ramp(robot, components, pose, integrator, FRICTION_RAMP)
+}
+
+/// The same with dry friction that changes its sign over `ramp` \[rad/s\] of a rotor: the narrower, the stiffer.
+///
+/// # Errors
+/// As of [`step_limit`].
+pub fn step_limit_of_ramp(
+    robot: &Robot,
+    components: impl Into<Components>,
+    pose: &[f64],
+    integrator: Integrator,
+    ramp: f64,
+) -> Result<Option<StepLimit>> {
     let of: fn(&[Complex<f64>]) -> f64 = match integrator {
         Integrator::Euler => euler_limit,
         Integrator::RungeKutta4 => runge_kutta_limit,
         Integrator::SemiImplicit | Integrator::Bdf => return Ok(None),
     };
     let mut plant = Plant::new(robot, Environment::flat(), components.into().on_points(), pose)?;
+    plant.set_friction_ramp(ramp);
     let drives: Vec<JointCubic> = pose.iter().map(|&q| JointCubic::resting(q)).collect();
     let (standing, hanging) = (plant.standing(pose), plant.hanging(pose, IN_THE_AIR));
     let l = *plant.layout();
@@ -132,7 +148,8 @@ pub fn step_limit(
 /// It is, and the scene does not force it; or as of [`step_limit`].
 pub(crate) fn check(robot: &Robot, scene: &Scene) -> Result<()> {
     let pose = &robot.poses[&scene.start_pose];
-    let Some(limit) = step_limit(robot, scene.components(), pose, scene.integrator)? else { return Ok(()) };
+    let found = step_limit_of_ramp(robot, scene.components(), pose, scene.integrator, scene.friction_ramp)?;
+    let Some(limit) = found else { return Ok(()) };
     let step = scene.cycle / f64::from(scene.substeps);
     if step <= limit.step || scene.force_step {
         return Ok(());

@@ -16,15 +16,13 @@ use std::error::Error;
 
 use config::Robot;
 use config::robot::Drive as DriveData;
+use config::scene::FRICTION_RAMP;
 use drives::{ControlLaw, NoLoadTorque, OutOfDomain, Sampling};
 use multibody::{Damper, Data, Model, Rotor};
 
 use crate::implicit::ShaftStep;
 use crate::local_control::MotorController;
 use crate::shaft::{Shaft, TrainInputs};
-
-/// \[rad/s\] Speed of a rotor over which explicit methods see dry friction change its sign.
-pub(crate) const SLOW: f64 = 1.0;
 
 /// All drives of a robot.
 #[derive(Clone)]
@@ -33,6 +31,8 @@ pub struct Train {
     elastic: usize,
     /// Currents have states of their own; else a motor has that of its voltage and speed at once.
     electrical: bool,
+    /// \[rad/s\] Speed of a rotor over which [`Train::explicit`] changes the sign of dry friction.
+    pub(crate) friction_ramp: f64,
     pub(crate) fault: Option<TrainFault>,
     /// Share of each drive in the mass matrix of an implicit step.
     pub(crate) dampers: Vec<Damper>,
@@ -89,7 +89,7 @@ impl Train {
         let mut drives = robot.drives.iter().enumerate().map(&mut drive).collect::<Result<Vec<_>, _>>()?;
         tune(&mut drives, model, hanging);
         let dampers = robot.drives.iter().map(|d| model.damper(&d.joints)).collect::<Result<_, _>>()?;
-        Ok(Self { drives, elastic, electrical, fault: None, dampers })
+        Ok(Self { drives, elastic, electrical, friction_ramp: FRICTION_RAMP, fault: None, dampers })
     }
 
     /// Elastic gears.
@@ -171,6 +171,7 @@ impl Train {
         torque: &mut [f64],
         rate: &mut [f64],
     ) {
+        let ramp = self.friction_ramp;
         for (drive, DriveTrain { shaft, controller, step }) in self.drives.iter_mut().enumerate() {
             let current = match inputs.current.get(drive) {
                 Some(current) => *current,
@@ -187,12 +188,12 @@ impl Train {
                 Some(rate) => *rate = motor.current_rate(current, voltage, shaft.speed), // (2.57)
                 None => step.note_current(driving / motor.torque_constant),
             }
-            let friction = shaft.drive.friction.torque(shaft.speed, driving, SLOW).unwrap_or_else(|why| {
+            let friction = shaft.drive.friction.torque(shaft.speed, driving, ramp).unwrap_or_else(|why| {
                 self.fault.get_or_insert(TrainFault { drive, why: FaultCause::Friction(why) });
                 0.0
             });
             // A closed brake is dry friction, too, and is smoothed in the same way.
-            let brake = shaft.holding_torque(&inputs.switches) * (shaft.speed / SLOW).clamp(-1.0, 1.0);
+            let brake = shaft.holding_torque(&inputs.switches) * (shaft.speed / ramp).clamp(-1.0, 1.0);
             shaft.apply(inputs, driving + friction - brake, data, torque);
         }
     }

@@ -3,6 +3,7 @@
 use config::method::Integrator;
 use config::{Setup, root};
 use environment::Environment;
+use sim_backend::SimBackend;
 use sim_backend::drive::JointCubic;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs};
@@ -37,4 +38,23 @@ fn agrees_with_small_steps_of_another_method() {
     let (loose, tight) = (distance(&of(1e-5)), distance(&of(1e-7)));
     assert!(tight < 1e-7 && tight < loose, "{tight:e} {loose:e}");
     assert!((small[9] - of(1e-7)[9]).abs() < 1e-7 && small[9].is_finite());
+}
+
+/// 5 ms of standing on type 4 did not end in 4.9 s of processor time, without a word.
+#[test]
+fn types_with_pads_are_refused_with_what_to_do() {
+    for depth in 1..=5 {
+        let mut setup = Setup::load(&root(None), "stand").unwrap();
+        (setup.scene.depth, setup.scene.integrator, setup.scene.tolerance) =
+            (depth, Integrator::Bdf, Some(1e-5));
+        let loaded = SimBackend::new(&setup.robot, &setup.scene).map(|_| ()).map_err(|e| e.to_string());
+        if depth <= 3 {
+            assert_eq!(loaded, Ok(()));
+            continue;
+        }
+        let text = loaded.unwrap_err();
+        for part in ["stand", "integrator = \"bdf\"", &format!("depth = {depth}"), "semi_implicit"] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+    }
 }

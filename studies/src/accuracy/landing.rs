@@ -10,6 +10,7 @@
 
 use std::error::Error;
 
+use config::scene::FRICTION_RAMP;
 use config::{Robot, Setup};
 use environment::{Environment, Mesh, Object, Pose, Schedule};
 use messages::RIGHT;
@@ -19,7 +20,8 @@ use sim_backend::drive::JointCubic;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, orientation};
 
-use super::methods::IntegrationMethod;
+use super::methods::{IntegrationMethod, beyond};
+use super::reference::{limit, limits};
 use super::walking::greatest;
 use super::{AccuracyInput, ErrorChart, Peers, Point, cost};
 use crate::second::POWERED;
@@ -101,39 +103,39 @@ impl Fall {
         let mut plant = Plant::new(&setup.robot, self.environment.clone(), depth, &self.pose)?;
         let mut methods = IntegrationMethod::all(depth);
         methods.retain(|m| m.tolerance.is_none_or(|t| depth <= ADAPTIVE && TOLERANCES.contains(&t)));
-        let finer = if depth > 3 { 4 } else { 10 };
-        let references = [false, true].map(|exact| {
-            let wanted = methods.iter().any(|m| m.exact_friction() == exact);
-            wanted.then(|| self.outcome(&mut plant, &IntegrationMethod::reference(exact, depth, finer)))
-        });
+        let references = IntegrationMethod::references(depth).map(|r| self.outcome(&mut plant, &r));
+        let [reference, coarser] = limits(&references, LandingOutcome::limit);
         let title = match scene {
             "edge" => format!("Landing on the edge of a board under the right foot, type {depth}"),
             _ => format!("Dropped by 10 mm, type {depth}"),
         };
         let name = |what| format!("{scene}_type{depth}.{what}");
-        let about = about(&references, self.cycles);
+        let about = about(&reference, &coarser, self.cycles);
         let mut charts = [
             ErrorChart::new(&name("peak"), &title, "error of the peak of the normal force [N]").about(&about),
             ErrorChart::new(&name("impulse"), &title, "error of the ground's impulse [N s]"),
             ErrorChart::new(&name("state"), &title, "error of pose at the end [m, rad]"),
         ];
         for method in methods {
-            let Some(reference) = &references[usize::from(method.exact_friction())] else { continue };
+            plant.set_friction_ramp(method.ramp.unwrap_or(FRICTION_RAMP));
             let (gave_up, seconds) = cost::of(|| {
                 let mut gave_up = false;
                 self.run(&mut plant, &method, |_, stepper, _| gave_up |= stepper.take_gave_up().is_some());
                 gave_up
             });
-            let errors = self.outcome(&mut plant, &method).errors(reference);
+            let errors = self.outcome(&mut plant, &method).errors(&reference);
             // The adaptive method looks up once in a cycle, too seldom to see a peak.
             let unseen = usize::from(method.tolerance.is_some());
+            let named = method.point(scene, depth, CYCLE);
+            let stable = method.limit(&setup.robot, depth, &self.pose)?;
+            let gave_up = gave_up.then(|| "gave up, and went on with semi_implicit steps".to_owned());
+            let note = gave_up.or_else(|| beyond(named.step, stable));
             for (chart, error) in charts.iter_mut().zip(errors).skip(unseen) {
-                chart.add(Point {
-                    cpu_s_per_s: Some(seconds / (self.cycles as f64 * CYCLE)),
-                    note: gave_up.then(|| "gave up, and went on with semi_implicit steps".into()),
-                    error,
-                    ..method.point(scene, depth, CYCLE)
-                });
+                if let Some(stable) = stable {
+                    chart.limit(&named.method, stable);
+                }
+                let cpu_s_per_s = Some(seconds / (self.cycles as f64 * CYCLE));
+                chart.add(Point { cpu_s_per_s, note: note.clone(), error, ..named.clone() });
             }
         }
         Ok(charts)
@@ -190,6 +192,12 @@ impl Fall {
 }
 
 impl LandingOutcome {
+    fn limit(fine: &Self, coarse: &Self) -> Self {
+        let of = |f: f64, c: f64| 2.0 * f - c;
+        let (peak, impulse) = (of(fine.peak, coarse.peak), of(fine.impulse, coarse.impulse));
+        Self { peak, impulse, state: limit(&fine.state, &coarse.state) }
+    }
+
     fn errors(&self, reference: &Self) -> [f64; 3] {
         let state = greatest(self.state.iter().zip(&reference.state).map(|(a, b)| (a - b).abs()));
         let impulse = (self.impulse - reference.impulse).abs();
@@ -211,17 +219,16 @@ fn board(robot: &Robot, sole: [f64; 4]) -> Result<Environment, Box<dyn Error>> {
     Ok(Environment::new(vec![Object::new("board", mesh, None, fixed)]))
 }
 
-/// What the references are, and what they say.
-fn about(references: &[Option<LandingOutcome>; 2], cycles: usize) -> String {
-    let time = cycles as f64 * CYCLE;
-    let of =
-        |name: &str, r: &LandingOutcome| format!("{name} peak {:.1} N, impulse {:.3} N s", r.peak, r.impulse);
-    let known: Vec<String> = ["rk4", "semi_implicit"]
-        .iter()
-        .zip(references)
-        .filter_map(|(name, r)| r.as_ref().map(|r| of(name, r)))
-        .collect();
-    format!("{time} s. References: {}.", known.join("; "))
+/// What the reference is, what it says, and how well that is known.
+fn about(reference: &LandingOutcome, coarser: &LandingOutcome, cycles: usize) -> String {
+    let [peak, impulse, state] = reference.errors(coarser);
+    format!(
+        "{} s. Reference of all methods: dry friction as it is, extrapolated; peak {:.1} N, impulse {:.3} N s, known to {peak:.0e} N, \
+         {impulse:.0e} N s, {state:.0e}. Numbers: ramps [rad/s].",
+        cycles as f64 * CYCLE,
+        reference.peak,
+        reference.impulse
+    )
 }
 
 /// Another program's points beside ours, each against its own smallest step of the same integrator.

@@ -15,6 +15,7 @@ pub mod order;
 pub mod peers;
 mod picture;
 pub mod planner;
+mod reference;
 mod slip;
 mod solver;
 mod stiction;
@@ -30,7 +31,7 @@ use serde_json::json;
 use crate::search::slope;
 use crate::sheet::{self, Column, fixed, plain};
 use crate::{Error, Sheet, Study};
-pub use order::ConvergenceOrder;
+pub use order::{ConvergenceOrder, StabilityLimit};
 pub use peers::Peers;
 
 /// What a part makes its charts from.
@@ -74,7 +75,7 @@ pub struct Point {
     pub method: String,
     /// \[s\] Step, of a method that has one.
     pub step: Option<f64>,
-    /// What else was varied, with its value: "tolerance 1e-6".
+    /// What else was varied: a tolerance, a number of knots.
     pub solver: Option<String>,
     /// \[s/s\] Processor time by simulated time.
     pub cpu_s_per_s: Option<f64>,
@@ -123,6 +124,8 @@ pub struct ErrorChart {
     pub points: Vec<Point>,
     /// Orders of convergence, measured beside predicted.
     pub orders: Vec<ConvergenceOrder>,
+    /// Largest stable steps of the methods that have one.
+    pub limits: Vec<StabilityLimit>,
 }
 
 impl ErrorChart {
@@ -159,6 +162,13 @@ impl ErrorChart {
         });
     }
 
+    /// Notes the largest stable step \[s\] of a method.
+    pub(crate) fn limit(&mut self, method: &str, step: f64) {
+        if self.limits.iter().all(|limit| limit.method != method) {
+            self.limits.push(StabilityLimit { chart: self.name.clone(), method: method.into(), step });
+        }
+    }
+
     /// Measures the order of a method by its points with steps in `steps` \[s\], beside the predicted one.
     pub(crate) fn expect_order(
         &mut self,
@@ -186,6 +196,11 @@ const ORDERS: &[Column] = &[
     plain("/method", "method"),
     fixed("/measured", "measured", 2),
     fixed("/predicted", "predicted", 2),
+];
+const LIMITS: &[Column] = &[
+    plain("/chart", "limits of stability"),
+    plain("/method", "method"),
+    plain("/step", "largest stable step"),
 ];
 
 /// The study's arguments.
@@ -249,6 +264,11 @@ fn sheet(charts: &[ErrorChart], out: &Path) -> Result<Sheet, Error> {
         sheet.table(LOST, &lost);
     }
     sheet.rows("orders", ORDERS, &orders);
+    let limits: Vec<&StabilityLimit> = charts.iter().flat_map(|chart| &chart.limits).collect();
+    sheet.fact("limits", &limits);
+    let limit =
+        |l: &&StabilityLimit| json!({ "chart": l.chart, "method": l.method, "step": order::in_ms(l.step) });
+    sheet.table(LIMITS, &limits.iter().map(limit).collect::<Vec<_>>());
     picture::draw(charts, out, &mut sheet)?;
     Ok(sheet)
 }

@@ -1,5 +1,8 @@
 //! Model depth: the whole chain walks on models of type 1 to 5, and each type is held against type 5.
 //!
+//! The reference is type 5 in the limit of small steps, from walks with steps of 0.0125 ms, 0.025 ms and 0.05 ms
+//! ([`super::reference`]); the order that these three show of each quantity is measured beside the method's.
+//!
 //! | chart | difference from type 5 of |
 //! |---|---|
 //! | inclination | direction of the torso's axis, root mean square over time \[rad\] |
@@ -23,7 +26,7 @@ use realtime::clock::{now, processor_time};
 
 use sim_backend::external_plant::ExternalPlant;
 
-use super::{AccuracyInput, ErrorChart, Point};
+use super::{AccuracyInput, ConvergenceOrder, ErrorChart, Point};
 use chain::Chain;
 
 /// Differences below this, in any unit, are rounding of what the bus carries.
@@ -36,8 +39,9 @@ const SCENES: [(&str, [f64; 2], f64); 5] = [
     ("board", [4.0, 9.0], 0.0),
     ("push", [4.5, 7.5], 5.5),
 ];
-/// Types and steps in a cycle; the last one is the reference.
-const MODELS: [(u8, u32); 9] = [(1, 4), (1, 10), (2, 4), (2, 10), (3, 4), (3, 10), (4, 4), (5, 4), (5, 10)];
+/// Types and steps in a cycle; the reference is extrapolated from the last ones.
+const MODELS: [(u8, u32); 12] =
+    [(1, 4), (1, 10), (2, 4), (2, 10), (3, 4), (3, 10), (4, 4), (5, 4), (5, 10), (5, 20), (5, 40), (5, 80)];
 
 /// The plant behind a socket, if there is one.
 const PLANT: (u8, u32) = (0, 0);
@@ -61,10 +65,6 @@ pub fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Erro
         let title = format!("Model depth: difference from type 5, {scene}");
         let mut charts =
             QUANTITIES.map(|(name, what, _)| ErrorChart::new(&format!("depth_{scene}.{name}"), &title, what));
-        let [begin, end] = span;
-        charts[0].about = format!(
-            "The whole chain on each type, {begin} s to {end} s. Reference: type 5, 0.1 ms; at 0.25 ms it shows the step's share."
-        );
         let walks = given
             .plant
             .map(|_| PLANT)
@@ -72,15 +72,33 @@ pub fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Erro
             .chain(MODELS)
             .map(|model| WalkOutputs::new(given, scene, (span, push), model))
             .collect::<Result<Vec<_>, _>>()?;
-        let Some((reference, others)) = walks.split_last() else { continue };
-        for walk in others {
-            let values = walk.differences(reference);
+        let [.., coarse, middle, fine] = &walks[..] else { continue };
+        let [reference, coarser] =
+            [(fine, middle), (middle, coarse)].map(|(fine, coarse)| WalkOutputs::limit(fine, coarse));
+        let [begin, end] = span;
+        charts[0].about = format!(
+            "The whole chain on each type, {begin} s to {end} s. Reference: type 5 in the limit of small steps, by 0.0125 ms and 0.025 ms."
+        );
+        for (chart, known) in charts.iter_mut().zip(reference.differences(&coarser)) {
+            chart.measure += &known.map_or(String::new(), |(error, ..)| format!(", known to {error:.0e}"));
+        }
+        for walk in &walks {
+            let values = walk.differences(&reference);
             for ((chart, value), (_, _, unit)) in charts.iter_mut().zip(values).zip(QUANTITIES) {
                 let Some((error, itself, of_reference)) = value else { continue };
                 let note = if walk.fell { "fell".into() } else { note(itself, of_reference, unit) };
                 let error = error.max(LEAST);
                 chart.add(Point { error, note: Some(note), diverged: walk.fell, ..walk.point(scene) });
             }
+        }
+        // The order by three steps, each half of the one before: how much less the second halving changes than the first.
+        let changes = [coarse.differences(middle), middle.differences(fine)];
+        for (k, chart) in charts.iter_mut().enumerate() {
+            let [first, second] = changes.map(|c| c[k].map_or(f64::NAN, |(change, ..)| change));
+            let (chart_name, method) =
+                (chart.name.clone(), "semi_implicit, type 5, 0.05 ms to 0.0125 ms".into());
+            let measured = (first / second).log2();
+            chart.orders.push(ConvergenceOrder { chart: chart_name, method, predicted: 1.0, measured });
         }
         all.extend(charts);
     }
@@ -165,6 +183,21 @@ impl WalkOutputs {
             current: current.filter(|_| depth > 1),
             tracking: tracking(&states, &targets[begin..], setup.robot.joints.len()),
         })
+    }
+
+    /// The limit of small steps, by two walks of which one has steps twice as long.
+    fn limit(fine: &Self, coarse: &Self) -> Self {
+        let of = |f: f64, c: f64| 2.0 * f - c;
+        let pairs = fine.force.iter().zip(&coarse.force);
+        Self {
+            fell: fine.fell || coarse.fell,
+            axis: fine.axis.iter().zip(&coarse.axis).map(|(f, c)| (2.0 * f - c).normalize()).collect(),
+            force: pairs.map(|(f, c)| [of(f[0], c[0]), of(f[1], c[1])]).collect(),
+            torque: of(fine.torque, coarse.torque),
+            current: fine.current.zip(coarse.current).map(|(f, c)| of(f, c)),
+            tracking: of(fine.tracking, coarse.tracking),
+            ..*fine
+        }
     }
 
     /// Difference, own figure and that of the reference, by quantity.

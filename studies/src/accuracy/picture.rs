@@ -1,4 +1,6 @@
 //! Charts as pictures: cost along x, error along y, both logarithmic, a curve for each method, its step beside each point.
+//! A dashed line across stands where the largest stable step of an explicit method is; the legend has it if that is not on
+//! the curve.
 
 use std::path::Path;
 
@@ -36,14 +38,27 @@ fn panel(chart: &ErrorChart) -> drawing::Chart {
         Cost::Calls => "evaluations of the right-hand side in a simulated second",
     };
     let mut axes = drawing::Chart::new("", x, &chart.measure).logarithmic().height(520.0);
+    let seen = || chart.points.iter().map(|p| visible(p.error)).filter(|e| e.is_finite() && *e > 0.0);
+    let (low, high) = (seen().fold(f64::INFINITY, f64::min), seen().fold(0.0, f64::max));
     for (k, curve) in curves(&chart.points).into_iter().enumerate() {
         let color = COLORS[k % COLORS.len()];
         let pen = Pen { color, width: 2.5, dashed: k >= COLORS.len() };
         let points: Vec<_> = curve.points.iter().map(|p| [cost(p, chart.cost), visible(p.error)]).collect();
+        let limit = chart.limits.iter().find(|l| l.method == curve.method).map(|l| l.step);
+        // Ramps of friction; the unit stands below the title, for the legend is one line.
+        let mut name = curve.name.replace(" rad/s", "");
+        if let Some(limit) = limit {
+            if let Some(x) = curve.cost_at(limit, chart.cost) {
+                axes.styled("", vec![[x, low], [x, high]], Pen { color, width: 1.5, dashed: true });
+                axes.label([x, low], &format!("stable to {}", in_ms(limit)), color);
+            } else {
+                name += &format!(" ≤ {}", in_ms(limit));
+            }
+        }
         if chart.scattered {
-            axes.dots(&curve.name, points.clone(), 5.0, color);
+            axes.dots(&name, points.clone(), 5.0, color);
         } else {
-            axes.styled(&curve.name, points.clone(), pen).dots("", points.clone(), 5.0, color);
+            axes.styled(&name, points.clone(), pen).dots("", points.clone(), 5.0, color);
         }
         let every = if points.len() > CROWDED { 2 } else { 1 };
         for (at, p) in points.iter().zip(&curve.points).step_by(every) {
@@ -56,7 +71,19 @@ fn panel(chart: &ErrorChart) -> drawing::Chart {
 /// Points of one method on one model, as one line.
 struct Curve<'a> {
     name: String,
+    method: &'a str,
     points: Vec<&'a Point>,
+}
+
+impl Curve<'_> {
+    /// What a step \[s\] costs, by what the curve's own cost: the same for every step. None outside of the curve.
+    fn cost_at(&self, step: f64, along: Cost) -> Option<f64> {
+        let mut each: Vec<f64> = self.points.iter().filter_map(|p| Some(cost(p, along) * p.step?)).collect();
+        each.sort_by(f64::total_cmp);
+        let steps = || self.points.iter().filter_map(|p| p.step);
+        let (least, most) = (steps().fold(f64::INFINITY, f64::min), steps().fold(0.0, f64::max));
+        (least..=most).contains(&step).then(|| each[each.len() / 2] / step)
+    }
 }
 
 /// Curves in the order in which they first occur; model and scene are in a name if its method has several.
@@ -76,7 +103,7 @@ fn curves(points: &[Point]) -> Vec<Curve<'_>> {
         }
         match curves.iter_mut().find(|c| c.name == name) {
             Some(curve) => curve.points.push(p),
-            None => curves.push(Curve { name, points: vec![p] }),
+            None => curves.push(Curve { name, method: &p.method, points: vec![p] }),
         }
     }
     curves

@@ -136,4 +136,30 @@ mod tests {
         // tests/peers/lsoda.py, prox_euler: 5.5500e-4 and 2.7757e-4.
         assert!((error(1e-3) - 5.54999e-4).abs() < 1e-8 && (error(5e-4) - 2.77568e-4).abs() < 1e-8);
     }
+
+    /// The reference of charts without a closed form, where there is one: between events nothing is left of the first order,
+    /// and the estimate of its error holds.
+    #[test]
+    fn the_extrapolated_motion_is_the_exact_one_within_its_estimate() {
+        use crate::accuracy::reference::{limit, limits};
+        for h in [1e-3, 2.5e-4] {
+            let run = |h| {
+                let mut joint = StickingJoint { smooth: 0.0 };
+                SteppingMethod::Own("prox", h).run(&mut joint, &[0.0, 0.0], TIMES).seen
+            };
+            let of = |fine: &Vec<Vec<f64>>, coarse: &Vec<Vec<f64>>| {
+                fine.iter().zip(coarse).map(|(f, c)| limit(f, c)).collect::<Vec<_>>()
+            };
+            let motions = [run(h), run(2.0 * h), run(4.0 * h)];
+            let apart = |a: &[Vec<f64>], b: &[Vec<f64>]| {
+                a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).abs()).fold(0.0, f64::max)
+            };
+            let [reference, coarser] = limits(&motions, of);
+            let (error, estimate) = (apart(&reference, &exact().seen), apart(&reference, &coarser));
+            assert!(
+                error < estimate && error < 0.05 * apart(&motions[0], &exact().seen),
+                "{error} {estimate}"
+            );
+        }
+    }
 }
