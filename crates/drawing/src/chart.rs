@@ -237,6 +237,7 @@ impl Chart {
         for mark in &self.marks {
             self.draw_mark(canvas, &view, mark);
         }
+        self.draw_labels(canvas, &view);
         canvas.clip(None);
         if self.robust {
             let lines = self.marks.iter().filter_map(|mark| match mark {
@@ -297,10 +298,27 @@ impl Chart {
                 let [x, y] = view.place(self.scaled(*at));
                 canvas.text([x, y], text, Letters { color: *color, ..TICK }, Anchor::Middle);
             }
-            Mark::Label { at, text, color } => {
-                let [x, y] = view.place(self.scaled(*at));
-                let letters = Letters { color: *color, size: 15.0, ..TICK };
-                canvas.text([x + 8.0, y - 6.0], text, letters, Anchor::Left);
+            Mark::Label { .. } => {}
+        }
+    }
+
+    /// Labels where nothing is written yet: to the upper right of their points, or the upper left, or below. One that finds no
+    /// room is left out.
+    fn draw_labels(&self, canvas: &mut Canvas, view: &PlotView) {
+        const SIZE: f32 = 15.0;
+        let [[left, _], [right, _]] = view.pixels;
+        let mut taken: Vec<[f32; 4]> = Vec::new();
+        for mark in &self.marks {
+            let Mark::Label { at, text, color } = mark else { continue };
+            let ([x, y], width) = (view.place(self.scaled(*at)), text::width(text, SIZE, TICK.weight));
+            let places = [-6.0, 18.0].map(|down| [x + 8.0, x - 8.0 - width].map(|x| [x, y + down]));
+            let found = places.as_flattened().iter().find(|[x, y]| {
+                let free = |t: &[f32; 4]| *x > t[2] || x + width < t[0] || y - SIZE > t[3] || *y < t[1];
+                *x > left && x + width < right && taken.iter().all(free)
+            });
+            if let Some(&[x, y]) = found {
+                taken.push([x, y - SIZE, x + width, y]);
+                canvas.text([x, y], text, Letters { color: *color, size: SIZE, ..TICK }, Anchor::Left);
             }
         }
     }

@@ -6,6 +6,7 @@
 mod boundary;
 pub mod cost;
 mod flight;
+pub mod gallery;
 mod joint;
 pub mod kinematics;
 pub mod landing;
@@ -25,7 +26,7 @@ pub mod walking;
 
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::json;
 
 use crate::search::slope;
@@ -63,7 +64,7 @@ pub const PARTS: &[(&str, Part)] = &[
 ];
 
 /// One simulation with one method, or one kind of call.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Point {
     /// Name of its chart.
     pub chart: String,
@@ -84,6 +85,7 @@ pub struct Point {
     /// \[1/s\] Evaluations of the right-hand side in a simulated second.
     pub calls_per_s: Option<f64>,
     /// In the unit that `measure` names; NaN if there is none.
+    #[serde(deserialize_with = "nan_of_null")]
     pub error: f64,
     /// What the error is of, and its unit.
     pub measure: String,
@@ -94,7 +96,7 @@ pub struct Point {
 }
 
 /// What a chart has along x.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Cost {
     /// Processor time by simulated time.
     #[default]
@@ -106,7 +108,7 @@ pub enum Cost {
 }
 
 /// Points that belong on one pair of axes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct ErrorChart {
     /// Name; charts with the same text before a dot share a picture.
     pub name: String,
@@ -121,11 +123,41 @@ pub struct ErrorChart {
     /// Points of a method are not steps on a way: no lines between them.
     pub scattered: bool,
     /// What was found.
+    #[serde(skip)]
     pub points: Vec<Point>,
     /// Orders of convergence, measured beside predicted.
+    #[serde(skip)]
     pub orders: Vec<ConvergenceOrder>,
     /// Largest stable steps of the methods that have one.
+    #[serde(skip)]
     pub limits: Vec<StabilityLimit>,
+}
+
+/// What `accuracy.json` holds.
+#[derive(Deserialize)]
+struct Recorded {
+    charts: Vec<ErrorChart>,
+    points: Vec<Point>,
+    orders: Vec<ConvergenceOrder>,
+    limits: Vec<StabilityLimit>,
+}
+
+impl Recorded {
+    /// Charts with what belongs to each.
+    fn charts(self) -> Vec<ErrorChart> {
+        let Self { mut charts, points, orders, limits } = self;
+        for chart in &mut charts {
+            chart.points = points.iter().filter(|p| p.chart == chart.name).cloned().collect();
+            chart.orders = orders.iter().filter(|o| o.chart == chart.name).cloned().collect();
+            chart.limits = limits.iter().filter(|l| l.chart == chart.name).cloned().collect();
+        }
+        charts
+    }
+}
+
+/// JSON has no NaN.
+fn nan_of_null<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }
 
 impl ErrorChart {
@@ -215,7 +247,10 @@ pub struct Accuracy {
     /// Socket of an external plant, one more row beside types 1 to 5: tests/peers/mujoco/walk.py --serve SOCKET.
     #[arg(long, value_name = "SOCKET")]
     pub plant: Option<PathBuf>,
-    /// Where pictures and accuracy.json go.
+    /// Measures nothing: draws the pictures and the page of this accuracy.json again.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["only", "peers", "plant"])]
+    pub from: Option<PathBuf>,
+    /// Where pictures, accuracy.json and their page go.
     #[arg(long, value_name = "DIR", default_value = "runs/study/accuracy")]
     pub out: PathBuf,
 }
@@ -231,7 +266,11 @@ impl Study for Accuracy {
         }
         // A place that cannot be written is told before hours of work, not after.
         sheet::make(&self.out)?;
-        let mut charts = Vec::new();
+        let mut charts = match &self.from {
+            Some(file) => recorded(file)?,
+            None => Vec::new(),
+        };
+        let wanted = if self.from.is_some() { Vec::new() } else { wanted };
         for (done, (name, part)) in wanted.iter().enumerate() {
             (given.progress)(done, wanted.len(), name);
             charts.extend(part(&AccuracyInput {
@@ -241,11 +280,24 @@ impl Study for Accuracy {
             })?);
         }
         let sheet = sheet(&charts, &self.out)?;
-        let path = self.out.join("accuracy.json");
-        std::fs::write(&path, serde_json::to_string_pretty(&sheet.json())?)
-            .map_err(|e| format!("{}: {e}; choose another place with --out", path.display()))?;
+        let json = sheet.json();
+        for (name, text) in
+            [("accuracy.json", serde_json::to_string(&json)?), ("README.md", gallery::page(&json, |_| true))]
+        {
+            let path = self.out.join(name);
+            std::fs::write(&path, text)
+                .map_err(|e| format!("{}: {e}; choose another place with --out", path.display()))?;
+        }
         Ok(sheet)
     }
+}
+
+/// Charts of an earlier run.
+fn recorded(file: &Path) -> Result<Vec<ErrorChart>, Error> {
+    let told = |e: &dyn std::fmt::Display| format!("{}: {e}", file.display());
+    let text = std::fs::read_to_string(file).map_err(|e| told(&e))?;
+    let recorded: Recorded = serde_json::from_str(&text).map_err(|e| told(&e))?;
+    Ok(recorded.charts())
 }
 
 /// What was lost, the orders, and where the pictures are.
@@ -259,6 +311,7 @@ fn sheet(charts: &[ErrorChart], out: &Path) -> Result<Sheet, Error> {
     };
     let mut sheet = Sheet::titled(format!("{} points", points.len()));
     sheet.fact("points", &points);
+    sheet.fact("charts", charts);
     let lost: Vec<_> = points.iter().filter(|p| p.diverged).map(|p| lost(&p)).collect();
     if !lost.is_empty() {
         sheet.table(LOST, &lost);

@@ -1,9 +1,9 @@
 //! Orders of convergence.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How fast a method's error falls with its step.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConvergenceOrder {
     /// Name of the chart.
     pub chart: String,
@@ -12,11 +12,12 @@ pub struct ConvergenceOrder {
     /// What theory says.
     pub predicted: f64,
     /// What was found; NaN of fewer than two points.
+    #[serde(deserialize_with = "super::nan_of_null")]
     pub measured: f64,
 }
 
 /// Largest step with which an explicit method is stable.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StabilityLimit {
     /// Name of the chart.
     pub chart: String,

@@ -1,8 +1,8 @@
-//! Explicit steps in a walk: those that are accepted leave nothing to doubt; those that are forced end the run with a word.
+//! Steps in a walk: those that are accepted leave nothing to doubt; those that are forced end the run with a word.
 
 use chain::Chain;
 use chain::ending::{Ending, WalkEnd};
-use config::method::Integrator::{self, Euler, RungeKutta4};
+use config::method::Integrator::{self, Euler, RungeKutta4, SemiImplicit};
 use config::{Setup, root};
 use messages::GaitState;
 use sim_backend::SimBackend;
@@ -62,5 +62,25 @@ fn forced_steps_do_not_end_well_and_say_why() {
             );
             assert!(!ending.doubts().is_empty(), "{scene}, {}: {end}", setup.scene.method());
         }
+    }
+}
+
+/// Semi-implicit steps at speeds at which a robot is shaken: no doubt is told where there is none. (With 1 ms on type 2 at 3 km/h
+/// there is one: a joint turns round in every step, and the largest force is off by 14 %.)
+#[test]
+fn semi_implicit_steps_leave_nothing_to_doubt() {
+    for (scene, depth, steps) in [
+        ("walk_3kmh", 2, 2),
+        ("walk_3kmh", 2, 4),
+        ("walk_5kmh", 2, 4),
+        ("walk_5kmh", 3, 4),
+        ("walk_5kmh", 3, 10),
+        ("johnnie_25kmh", 2, 4),
+        ("johnnie_25kmh", 3, 4),
+        ("archie_walk", 3, 4),
+    ] {
+        let setup = setup(scene, depth, SemiImplicit, steps);
+        let ending = ending(&setup, 9.0);
+        assert!(ending.doubts().is_empty(), "{scene}, {}: {:?}", setup.scene.method(), ending.doubts());
     }
 }
