@@ -103,7 +103,10 @@ impl FieldVisitor<'_> {
                     name += part;
                     feet = about.contains("right, left");
                 }
-                OpenPart::Array { length: MAX_JOINTS, count, .. } if !self.joints.is_empty() => {
+                // Of joints, but for contact points, of which there is room for as many.
+                OpenPart::Array { length: MAX_JOINTS, count, .. }
+                    if !self.joints.is_empty() && !name.starts_with("contact") =>
+                {
                     name += &format!(".{}", self.joints.get(count - 1)?);
                 }
                 OpenPart::Array { length: 2, count, .. } if feet => {

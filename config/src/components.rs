@@ -19,7 +19,8 @@
 //! friction = false # gears turn freely
 //! rotors = false # only where joints follow their targets: rotors do not turn along
 //! contact = "points" # or "pads", or ["pads", "points"]: right, left
-//! locked = ["head_pan", "head_tilt"] # their links are one body in the start pose; their encoders read the target
+//! locked = ["head_pan", "head_tilt"] # their links are one body in the start pose; their encoders read the target; not joints
+//!                                    # that share a drive, as knees and ankles with linkages do
 //! ```
 
 use std::fmt;
@@ -220,6 +221,12 @@ impl ComponentChanges {
             if let Some(name) = names.iter().find(|name| !has_spring(name)) {
                 return Some(("elastic", format!("`{name}` is no drive of {} with a spring", robot.name)));
             }
+            if let Some(name) = names.iter().find(|name| self.locked.contains(name)) {
+                return Some((
+                    "elastic",
+                    format!("`{name}` is locked, too: it has no gear that could give way"),
+                ));
+            }
         }
         for name in &self.locked {
             let Some(joint) = robot.joints.iter().position(|j| j.name == *name) else {
@@ -228,13 +235,15 @@ impl ComponentChanges {
             // A drive that moves several joints can't lose one of them.
             let shared = |d: &&crate::robot::Drive| d.joints.contains(&joint) && d.joints.len() > 1;
             if let Some(drive) = robot.drives.iter().find(shared) {
-                return Some(("locked", format!("`{name}` shares the drive `{}` with others", drive.name)));
+                let why =
+                    format!("`{name}` shares the drive `{}` with others and cannot be locked", drive.name);
+                return Some(("locked", why));
             }
         }
         let needs_motors = [
-            ("elastic", self.elastic.as_ref().is_some_and(|e| *e != Selection::All(false))),
-            ("currents", self.currents == Some(true)),
-            ("friction", self.friction == Some(true)),
+            ("elastic", self.elastic.is_some()),
+            ("currents", self.currents.is_some()),
+            ("friction", self.friction.is_some()),
         ];
         if let Some((key, _)) = needs_motors.iter().find(|(_, asked)| *asked && !motors) {
             return Some((key, "needs joints = \"motors\", or depth 2 to 5".to_owned()));

@@ -8,7 +8,7 @@ use messages::command::{Domain, PushCommand};
 use messages::command_text::{COMMANDS, CommandInfo};
 
 use crate::bus_fault::BusFault;
-use crate::components::{ComponentChanges, Components};
+use crate::components::{ComponentChanges, Components, JointModel};
 use crate::crane::{Crane, DriveStart};
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
@@ -143,7 +143,9 @@ impl Scene {
         if (scene.integrator == Integrator::Bdf) != scene.tolerance.is_some() {
             top.problem("tolerance", "the integrator \"bdf\" needs a tolerance, and no other one has one");
         }
-        let has_ramp = scene.auto.is_none() && depth > 1 && integrator != Integrator::SemiImplicit;
+        let components = scene.components();
+        let friction = components.joints == JointModel::Motors && components.friction;
+        let has_ramp = scene.auto.is_none() && friction && integrator != Integrator::SemiImplicit;
         if top.has("friction_ramp") && !has_ramp {
             top.problem(
                 "friction_ramp",

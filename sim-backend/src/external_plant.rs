@@ -12,11 +12,13 @@ use std::time::Duration;
 
 use codec::frames::encode_sensors;
 use config::components::JointModel;
+use config::method::{Integrator, Method};
 use config::terrain::{ObjectShape, TerrainObject, TerrainPose};
 use config::{Robot, Scene, Setup};
 use messages::{
     BusFrames, Detail, EventCode, EventQueue, Header, MAX_CONTACTS, Power, Sensors, SimState, Wrench,
 };
+use realtime::clock::now;
 use serde_json::{Value, json};
 
 use crate::SimBackend;
@@ -31,6 +33,8 @@ pub const VERSION: u64 = 1;
 
 /// \[1\] Most that the norm of an orientation differs from 1.
 const UNIT: f64 = 1e-3;
+/// \[SI\] Numbers of an answer are not larger.
+const MOST: f64 = 1e6;
 
 /// What a drive does in a cycle, on the socket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +83,9 @@ impl ExternalPlant {
             return Err(format!("scene {}: `{key}` and an {name}: {why}", scene.name).into());
         }
         // Where it is to stand is where ours would.
-        let ours = SimBackend::new(robot, scene)?;
+        let mut ideal = scene.clone();
+        ideal.choose(Method { depth: 1, integrator: Integrator::Euler, substeps: 1 });
+        let ours = SimBackend::new(robot, &ideal)?;
         let start = ours.state();
         let stream = UnixStream::connect(path).map_err(|e| format!("{name}: cannot be reached: {e}"))?;
         let limit = Some(Duration::from_secs_f64(system.peer_timeout));
@@ -188,8 +194,8 @@ impl ExternalPlant {
 
     /// Numbers of the answer to cycle `tick`.
     fn receive(&mut self, tick: u64) -> Result<Vec<f64>, String> {
-        let mut head = [[0; 8]; 2];
-        self.stream.read_exact(head.as_flattened_mut()).map_err(|e| self.broken(tick, &e))?;
+        let (mut head, by) = ([[0; 8]; 2], now() + (1e9 * self.timeout) as u64);
+        read_by(&mut self.stream, head.as_flattened_mut(), by).map_err(|e| self.broken(tick, &e))?;
         let ([of, count], expected) = (head.map(u64::from_le_bytes), answer_len(self.robot.joints.len()));
         if of != tick {
             return Err(self.wrong(tick, &format!("answered cycle {of}")));
@@ -198,7 +204,7 @@ impl ExternalPlant {
             return Err(self.wrong(tick, &format!("{count} numbers instead of {expected}")));
         }
         self.bytes.resize(8 * expected, 0);
-        self.stream.read_exact(&mut self.bytes).map_err(|e| self.broken(tick, &e))?;
+        read_by(&mut self.stream, &mut self.bytes, by).map_err(|e| self.broken(tick, &e))?;
         Ok(self.bytes.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect())
     }
 
@@ -211,8 +217,8 @@ impl ExternalPlant {
             let (now, later) = rest.split_at(out.len());
             out.copy_from_slice(now);
             rest = later;
-            if let Some(i) = now.iter().position(|x| !(x.is_finite() || may_be_nan && x.is_nan())) {
-                problem = problem.take().or(Some(format!("{name}[{i}] is {}", now[i])));
+            if let Some(i) = now.iter().position(|x| !(x.abs() <= MOST || may_be_nan && x.is_nan())) {
+                problem = problem.take().or(Some(format!("{name}[{i}] is {}, which no robot has", now[i])));
             }
         };
         let s = &mut self.readings;
@@ -280,6 +286,21 @@ impl ExternalPlant {
     }
 }
 
+/// Fills `bytes` until the time `by` \[ns\].
+fn read_by(stream: &mut UnixStream, mut bytes: &mut [u8], by: u64) -> io::Result<()> {
+    while !bytes.is_empty() {
+        let left = by.checked_sub(now()).filter(|left| *left > 0).ok_or(ErrorKind::TimedOut)?;
+        stream.set_read_timeout(Some(Duration::from_nanos(left)))?;
+        match stream.read(bytes) {
+            Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
+            Ok(count) => bytes = &mut bytes[count..],
+            Err(e) if e.kind() == ErrorKind::Interrupted => {}
+            Err(e) => return Err(e),
+        }
+    }
+    Ok(())
+}
+
 /// \[1\] Numbers of an answer, for a robot with so many joints.
 pub fn answer_len(joints: usize) -> usize {
     5 * joints + 12 + 10 + 16 + 12 + 8 + 1 + 6 * MAX_CONTACTS
@@ -294,6 +315,7 @@ fn ours_alone(scene: &Scene) -> Option<&'static str> {
         ("plant_mismatch", scene.plant_mismatch != Default::default()),
         ("sensors", scene.sensors != Default::default()),
         ("joint_control", scene.joint_control.is_some()),
+        ("components", !scene.components.is_empty()),
     ];
     asked.into_iter().find(|(_, asked)| *asked).map(|(key, _)| key)
 }

@@ -404,7 +404,8 @@ impl Segment {
 fn layer(robot: &Robot) -> Result<Arc<Layer>, Box<dyn Error>> {
     let Some(p) = robot.contact.pads else {
         return Err(format!(
-            "robot `{}`: robot.toml has no [contact.pads]; choose depth 1, 2 or 3, or describe the pads",
+            "robot `{}`: robot.toml has no [contact.pads]; take contact points (depth 1 to 3, components.contact = \"points\"), or \
+             describe the pads",
             robot.name
         )
         .into());

@@ -99,6 +99,8 @@ impl Instruments {
         let (plant, x) = body.parts();
         let mut seen = self.see(plant, x, joints.motions().len());
         (self.state.joint_angle, self.state.motor_angle) = (seen.joint_angle, seen.motor_angle);
+        plant.hold_locked(&mut self.state.joint_angle);
+        plant.hold_locked(&mut self.state.motor_angle);
         add_reading_errors(joints, &mut seen);
         let report = self.sensors.measure(&seen, &mut self.readings);
         joints.electronics().report(&mut self.readings);

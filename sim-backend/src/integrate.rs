@@ -63,6 +63,10 @@ impl Stepper {
                     let at = gave_up.time;
                     self.gave_up = Some(gave_up);
                     plant.implicit_step(at, t + h - at, state, drives, inputs);
+                } else {
+                    // States that were tried, and references beyond their cycle, are no faults: where it came to counts.
+                    plant.take_fault();
+                    plant.rate(t + h, state, drives, inputs, &mut self.x);
                 }
             }
         }

@@ -93,8 +93,11 @@ impl Plant {
             (0..robot.joints.len()).filter(|j| !outside.contains(j)).map(|j| (name(j), pose[j])).collect();
         let model = Model::from_urdf_locked(&robot.urdf, &robot.torso, &order, &locked)?
             .with_rotors(&rotors(&computed))?;
-        let moving = (!locked.is_empty())
-            .then(|| MovingJoints { outside, reference: vec![JointMotion::default(); robot.joints.len()] });
+        let moving = (!locked.is_empty()).then(|| MovingJoints {
+            outside,
+            reference: vec![JointMotion::default(); robot.joints.len()],
+            locked: pose.to_vec(),
+        });
         let pose = of_moving(moving.as_ref(), pose);
         let ground = GroundContact::new(robot, &model, environment, components.contact)?;
         let described = !computed.drives.is_empty();

@@ -158,13 +158,19 @@ pub(crate) fn check(robot: &Robot, scene: &Scene) -> Result<()> {
     let enough = (scene.cycle / limit.step).ceil();
     let advice = if enough <= 1000.0 { format!("substeps = {enough} or more, or ") } else { String::new() };
     Err(format!(
-        "scene `{}`: integrator = \"{name}\" with substeps = {}: a step of {} ms is longer than {} ms, the largest stable one \
+        "scene `{}`: integrator = \"{name}\" with substeps = {}: a step of {} ms is longer than {}, the largest stable one \
          ({}); take {advice}integrator = \"semi_implicit\", or force_step = true to see what happens",
         scene.name,
         scene.substeps,
         1e3 * step,
-        (1e6 * limit.step).floor() / 1e3,
+        in_ms(limit.step),
         limit.regime
     )
     .into())
+}
+
+/// A step \[s\], rounded down to what is still stable.
+fn in_ms(step: f64) -> String {
+    let ms = 1e3 * step;
+    if ms >= 0.01 { format!("{} ms", (1e3 * ms).floor() / 1e3) } else { format!("{:.1e} ms", 0.95 * ms) }
 }

@@ -31,7 +31,7 @@ const STEPS: u32 = 4;
 
 const COLUMNS: &[Column] = &[
     plain("/components", "components"),
-    fixed("/states", "states", 0),
+    fixed("/equations", "equations", 0),
     fixed("/step_us", "one step [us]", 2),
     fixed("/share", "of the type's [%]", 0).times(100.0),
     fixed("/force_n", "largest force of a foot [N]", 0),
@@ -163,7 +163,7 @@ impl Variant {
         let [x, y] = f.inclination_error_rms_rad.map(|e| 1e3 * e);
         json!({
             "components": self.name,
-            "states": self.plant.layout().len(),
+            "equations": self.plant.layout().counts().odes,
             "step_us": self.median(),
             "share": self.median() / of_type,
             "force_n": f.peak_normal_force_n,

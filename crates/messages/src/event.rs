@@ -217,7 +217,7 @@ events! {
     EventsLost = 66, Count, "more happened at once than is reported", "{n} events are missing", "";
     /// A simulated speed turns round in every time step: the step is longer than the stable one; detail: the state.
     StepTooLong = 67, Number, "a simulated speed turns round in every time step, which is too long", "state {n}",
-        "more substeps, or integrator = \"semi_implicit\" in the scene";
+        "more substeps in the scene; explicit methods: integrator = \"semi_implicit\"";
     /// The ground pushes with more than a hundred weights of the simulated robot: its numbers say nothing from here on.
     ForceImplausible = 68, Newtons, "the ground pushes with more than a hundred weights of the robot; the simulation has lost its way",
         "{n} N", "more substeps, or another integrator in the scene";

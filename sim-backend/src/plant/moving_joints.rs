@@ -12,6 +12,8 @@ pub(super) struct MovingJoints {
     pub(super) outside: Vec<usize>,
     /// References of all joints of the robot.
     pub(super) reference: Vec<JointMotion>,
+    /// \[rad\] Where the joints of the robot were locked.
+    pub(super) locked: Vec<f64>,
 }
 
 /// Those of a robot's numbers, one per joint, that belong to joints that move.
@@ -31,6 +33,14 @@ impl Plant {
     /// Those of a robot's numbers, one per joint, that belong to joints of the model.
     pub(crate) fn of_moving(&self, of_robot: &[f64]) -> Vec<f64> {
         of_moving(self.moving.as_ref(), of_robot)
+    }
+
+    /// Writes where locked joints are \[rad\]; what is told of them, and read, is their target.
+    pub(crate) fn hold_locked(&self, angle: &mut [f64]) {
+        let Some(MovingJoints { outside, locked, .. }) = &self.moving else { return };
+        for (j, at) in locked.iter().enumerate().filter(|(j, _)| outside.binary_search(j).is_err()) {
+            angle[j] = *at;
+        }
     }
 
     /// Switches of the model's drives.

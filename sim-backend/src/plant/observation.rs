@@ -128,6 +128,9 @@ impl Plant {
             let j = self.outside(joint);
             (angle[j], speed[j]) = (x[l.rotor_angle()][e], x[l.rotor_speed()][e]);
         }
+        if let Some(moving) = &self.moving {
+            current[..moving.reference.len()].fill(0.0); // drives of locked joints have nothing to do
+        }
         for (i, steady) in train.steady_currents().enumerate() {
             current[self.outside(i)] = x[l.current()].get(i).copied().unwrap_or(steady);
         }
