@@ -46,6 +46,7 @@ fn what_there_is_not_is_refused_with_its_name() {
             "components.elastic: `right_hip` is no drive of lola with a spring",
         ),
         ("1", "friction = true", "components.friction: needs joints = \"motors\", or depth 2 to 5"),
+        ("1", "currents = false", "components.currents: needs joints = \"motors\", or depth 2 to 5"),
         ("2", "rotors = false", "components.rotors: false needs joints that follow their targets"),
         ("2", "contact = [\"pads\"]", "takes \"points\" or \"pads\", or two of them: right, left"),
         ("2", "joints = \"legs\"", "`legs` is not known; it takes one of"),

@@ -2,11 +2,14 @@
 
 mod rig;
 
+use codec::frames::{DriveCommand, decode_sensors, encode_targets};
 use config::components::{Components, ContactModel, JointModel, Selection};
 use config::method::Integrator;
 use config::{Robot, Setup};
 use environment::Environment;
+use messages::{BusFrames, JointMode, JointTargets, Power, Sensors};
 use rig::lola;
+use sim_backend::SimBackend;
 use sim_backend::drive::{JointCubic, JointMotion};
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs};
@@ -143,6 +146,31 @@ fn locked_joints_are_joints_at_rest() {
         assert_eq!(second.joint(j), all.joint(j), "{}", robot.joints[j].name);
         assert!(j > 20 || plant.joint(j).0.is_finite());
     }
+}
+
+/// A locked joint is read where it is told to be, stands where it was locked, and its drive takes no current: no drive of a
+/// standing robot is at fault.
+#[test]
+fn locked_joints_stand_still_and_are_no_fault() {
+    let mut setup = Setup::load(&config::root(None), "walk_without_currents").unwrap();
+    setup.scene.drives = Some(config::crane::DriveStart { homing: false });
+    let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+    let head = setup.robot.joint("head_pan").unwrap();
+    let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
+    targets.angle[..setup.robot.joints.len()].copy_from_slice(&setup.robot.poses["stand"]);
+    let (mut frames, mut sensors) = (BusFrames::default(), Sensors::default());
+    for tick in 1..=300 {
+        targets.header.tick = tick;
+        targets.angle[head] = 1e-4 * tick as f64;
+        let control = [if tick == 1 { 0x06 } else { 0x0F }; messages::MAX_JOINTS];
+        encode_targets(&setup.robot.layout, &DriveCommand { targets, control }, &mut frames);
+        let power = Power { toggle: tick, on: 1, arming: 1, ..Power::default() };
+        let (answer, truth) = sim.step(Some(&frames), Some(&power));
+        assert_eq!(truth.joint_angle[head], setup.robot.poses["stand"][head], "in cycle {tick}");
+        decode_sensors(&setup.robot.layout, answer, &mut sensors);
+    }
+    assert!((sensors.joint_angle[head] - 0.03).abs() < 2e-4, "{}", sensors.joint_angle[head]);
+    assert_eq!((sensors.motor_current[head], sensors.drive_error), (0.0, [0; messages::MAX_JOINTS]));
 }
 
 /// With motors, too: the stiffer the drives that hold joints, the nearer these are to locked ones.

@@ -31,9 +31,11 @@ impl Bounds {
     /// \[m^2\] Squared distance from `p` \[m\] to the box; 0 inside.
     #[inline]
     pub(crate) fn distance_squared(&self, p: &Vector3<f64>) -> f64 {
+        // Not f64::max, which looks for NaN.
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
         let mut sum = 0.0;
         for i in 0..3 {
-            let d = (self.lo[i] - p[i]).max(p[i] - self.hi[i]).max(0.0);
+            let d = larger(larger(self.lo[i] - p[i], p[i] - self.hi[i]), 0.0);
             sum += d * d;
         }
         sum

@@ -1,8 +1,8 @@
 //! Boxes in boxes over the triangles of a mesh, so that a query looks at few of them.
 //!
-//! A node's box is nearer than the best triangle so far, or the node is passed over. The tree is built once by halving
-//! the triangles along the longest extent of their centres, which bounds its depth by the logarithm of their number; the
-//! nodes still to be visited fit a stack of fixed size.
+//! A node has four children, nodes or triangles. Those whose boxes are nearer than the best triangle so far wait on a
+//! stack, the nearest on top. The tree is built once by halving the triangles twice per node; that bounds its depth by
+//! the logarithm of their number, and the stack has a fixed size.
 
 use nalgebra::Vector3;
 
@@ -10,57 +10,38 @@ use crate::bounds::Bounds;
 use crate::point_triangle::{self, Feature};
 use crate::triangle::Triangle;
 
-/// Triangles below which a node is not divided further (measured: `benches/queries.rs`).
-const LEAF: usize = 4;
-/// Levels of a tree over 2^32 triangles, and one to spare.
-const DEPTH: usize = 33;
+/// Marks a child that is a triangle, not a node.
+const TRIANGLE: u32 = 1 << 31;
+/// Children waiting at most: three at each of the 16 levels of a tree over 2^31 triangles, and the one on top.
+const WAITING: usize = 3 * 16 + 1;
 
-/// A node: two children one after the other, or a run of triangles.
-#[derive(Clone, Debug)]
-struct TreeNode {
-    bounds: Bounds,
-    /// First child, or first place in `order`.
-    first: u32,
-    /// Number of triangles; 0 for an inner node.
-    count: u32,
-}
+/// A node: its children and the boxes around them. The box around nothing is at no finite distance.
+type TreeNode = [(Bounds, u32); 4];
 
-/// The tree over the triangles of one mesh.
+/// The tree over the triangles of one mesh; its root is the first node.
 #[derive(Clone, Debug)]
-pub(crate) struct Hierarchy {
-    nodes: Vec<TreeNode>,
-    order: Vec<u32>,
-}
+pub(crate) struct Hierarchy(Vec<TreeNode>);
 
 impl Hierarchy {
     pub(crate) fn new(triangles: &[Triangle]) -> Self {
         let boxes: Vec<Bounds> = triangles.iter().map(|t| Bounds::of(t.corners)).collect();
-        let mut tree = Self { nodes: Vec::new(), order: (0..triangles.len() as u32).collect() };
-        let (mut order, count) = (std::mem::take(&mut tree.order), triangles.len());
-        tree.nodes.push(TreeNode { bounds: Bounds::NOTHING, first: 0, count: 0 });
-        tree.divide(0, &boxes, &mut order, 0, count);
-        tree.order = order;
+        let mut tree = Self(Vec::new());
+        tree.add(&boxes, &mut (0..triangles.len() as u32).collect::<Vec<_>>());
         tree
     }
 
-    /// Makes node `n` over the places `from..to` of `order`.
-    fn divide(&mut self, n: usize, boxes: &[Bounds], order: &mut [u32], from: usize, to: usize) {
-        let run = &mut order[from..to];
-        let bounds = run.iter().fold(Bounds::NOTHING, |b, i| b.with(&boxes[*i as usize]));
-        if run.len() <= LEAF {
-            self.nodes[n] = TreeNode { bounds, first: from as u32, count: run.len() as u32 };
-            return;
-        }
-        let centre = |i: &u32| (boxes[*i as usize].lo + boxes[*i as usize].hi) / 2.0;
-        let axis = Bounds::of(run.iter().map(centre)).size().imax();
-        let half = run.len() / 2;
-        run.select_nth_unstable_by(half, |a, b| centre(a)[axis].total_cmp(&centre(b)[axis]));
-        let first = self.nodes.len();
-        self.nodes[n] = TreeNode { bounds, first: first as u32, count: 0 };
-        let empty = TreeNode { bounds: Bounds::NOTHING, first: 0, count: 0 };
-        self.nodes.extend([empty.clone(), empty]);
-        self.divide(first, boxes, order, from, from + half);
-        self.divide(first + 1, boxes, order, from + half, to);
+    /// Adds the node over the triangles of `run`, and those below it.
+    fn add(&mut self, boxes: &[Bounds], run: &mut [u32]) -> u32 {
+        let n = self.0.len();
+        self.0.push([(Bounds::NOTHING, 0); 4]);
+        let (left, right) = halve(boxes, run);
+        let ((a, b), (c, d)) = (halve(boxes, left), halve(boxes, right));
+        self.0[n] = [a, b, c, d].map(|part| match part {
+            [] => (Bounds::NOTHING, 0),
+            [one] => (boxes[*one as usize], TRIANGLE | *one),
+            more => (around(boxes, more), self.add(boxes, more)),
+        });
+        n as u32
     }
 
     /// The triangle nearest to `p` \[m\] that is nearer than `within` \[m\] and `wanted`, with the point on it.
@@ -73,37 +54,59 @@ impl Hierarchy {
     ) -> Option<(usize, Vector3<f64>, Feature)> {
         let mut best = None;
         let mut nearest = within * within;
-        let mut waiting = [(0u32, 0.0); DEPTH];
+        let mut waiting = [(0u32, 0.0); WAITING];
         let mut open = 1;
-        waiting[0] = (0, self.nodes[0].bounds.distance_squared(p));
         while open > 0 {
             open -= 1;
-            let (n, distance) = waiting[open];
+            let (child, distance) = waiting[open];
             if distance >= nearest {
                 continue;
             }
-            let node = &self.nodes[n as usize];
-            let first = node.first as usize;
-            for &i in &self.order[first..first + node.count as usize] {
-                let (point, feature) = point_triangle::closest(p, &triangles[i as usize].corners);
+            if child >= TRIANGLE {
+                let i = (child - TRIANGLE) as usize;
+                let (point, feature) = point_triangle::closest_of_face(p, &triangles[i].corners);
                 let d = (p - point).norm_squared();
-                if d < nearest && wanted(i as usize) {
-                    (best, nearest) = (Some((i as usize, point, feature)), d);
+                if d < nearest && wanted(i) {
+                    (best, nearest) = (Some((i, point, feature)), d);
                 }
+                continue;
             }
-            if node.count == 0 {
-                let [a, b] = [first, first + 1]
-                    .map(|child| (child as u32, self.nodes[child].bounds.distance_squared(p)));
-                // The nearer one on top: it is visited first and shortens the rest.
-                let (far, near) = if a.1 < b.1 { (b, a) } else { (a, b) };
-                for child in [far, near] {
-                    if child.1 < nearest {
-                        waiting[open] = child;
-                        open += 1;
+            let bottom = open;
+            for (bounds, child) in &self.0[child as usize] {
+                let d = bounds.distance_squared(p);
+                if d < nearest {
+                    // The nearest one on top: it is visited first and shortens the rest.
+                    let mut at = open;
+                    while at > bottom && waiting[at - 1].1 < d {
+                        waiting[at] = waiting[at - 1];
+                        at -= 1;
                     }
+                    waiting[at] = (*child, d);
+                    open += 1;
                 }
             }
         }
         best
     }
+}
+
+fn around(boxes: &[Bounds], run: &[u32]) -> Bounds {
+    run.iter().fold(Bounds::NOTHING, |b, i| b.with(&boxes[*i as usize]))
+}
+
+/// Halves `run` along the axis that leaves the two boxes with the least surface: halved along the longest axis, the large
+/// triangles of a floor's bottom would stay among the small ones of its top.
+fn halve<'a>(boxes: &[Bounds], run: &'a mut [u32]) -> (&'a mut [u32], &'a mut [u32]) {
+    let half = run.len().div_ceil(2);
+    if run.len() > 2 {
+        let centre = |i: &u32| boxes[*i as usize].lo + boxes[*i as usize].hi;
+        let mut divide = |axis: usize| {
+            run.select_nth_unstable_by(half, |a, b| centre(a)[axis].total_cmp(&centre(b)[axis]));
+            let [a, b] = [&run[..half], &run[half..]].map(|part| around(boxes, part).size());
+            a.dot(&a.yzx()) + b.dot(&b.yzx())
+        };
+        let surfaces = Vector3::from([0, 1, 2].map(&mut divide));
+        divide(surfaces.imin());
+    }
+    run.split_at_mut(half)
 }

@@ -28,10 +28,17 @@ pub enum Feature {
 /// they are.
 pub fn closest(p: &Vector3<f64>, corners: &[Vector3<f64>; 3]) -> (Vector3<f64>, Feature) {
     let [a, b, c] = corners;
-    let (ab, ac) = (b - a, c - a);
-    if degenerate(&ab, &ac) {
+    if degenerate(&(b - a), &(c - a)) {
         return closest_on_edges(p, corners);
     }
+    closest_of_face(p, corners)
+}
+
+/// As [`closest`], of a triangle that is known not to be degenerate: those of a [`crate::Mesh`] are not.
+#[inline]
+pub(crate) fn closest_of_face(p: &Vector3<f64>, corners: &[Vector3<f64>; 3]) -> (Vector3<f64>, Feature) {
+    let [a, b, c] = corners;
+    let (ab, ac) = (b - a, c - a);
     let ap = p - a;
     let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
     if d1 <= 0.0 && d2 <= 0.0 {

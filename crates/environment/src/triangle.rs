@@ -47,10 +47,13 @@ impl Triangle {
         triangle: usize,
     ) -> Nearest {
         let normal = match feature {
-            Feature::Face => {
+            // An edge within a plane is no edge, and r would give the normal with its rounding over the distance.
+            Feature::Edge(k) if self.edge_normals[usize::from(k)] != self.normal => {
+                self.edge_normals[usize::from(k)]
+            }
+            Feature::Face | Feature::Edge(_) => {
                 return Nearest { gap: self.height(p), normal: self.normal, point, triangle };
             }
-            Feature::Edge(k) => self.edge_normals[usize::from(k)],
             Feature::Vertex(k) => self.vertex_normals[usize::from(k)],
         };
         let r = p - point;

@@ -70,6 +70,19 @@ fn beside_an_acute_edge_is_outside() {
     }
 }
 
+/// Above the diagonal that divides a flat face in two triangles, the normal is that of the face, bit for bit.
+#[test]
+fn an_edge_within_a_plane_is_no_edge() {
+    let mesh = Mesh::cuboid([0.4, 0.6, 0.02]).unwrap();
+    for i in -49..50 {
+        let (x, y) = (0.004 * f64::from(i), 0.006 * f64::from(i));
+        for p in [Vector3::new(x, y, 0.0101), Vector3::new(x, -y, 0.0101)] {
+            let found = mesh.nearest(&p).unwrap();
+            assert_eq!(found.normal, Vector3::z(), "{p:?}: {found:?}");
+        }
+    }
+}
+
 proptest! {
     #[test]
     fn the_hierarchy_misses_nothing(p in prop::array::uniform3(-1.5..1.5f64)) {
