@@ -86,7 +86,7 @@ fn hanging(joints: usize, angle: &[f64]) -> Vec<f64> {
     numbers.extend([0.0; 12]); // force sensors
     numbers.extend([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 9.81]); // inertial measurement unit
     numbers.extend([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]); // pose
-    numbers.extend([0.0; 9 + 12 + 8]);
+    numbers.extend([0.0; 9 + 12 + 8 + 193]); // no contact point
     numbers
 }
 
@@ -192,11 +192,25 @@ fn a_plant_that_goes_wrong_ends_the_run() {
     };
     let gone = |_: &mut Peer, _, _| false;
     let silent = |_: &mut Peer, _, _| true;
-    let table: [(Fault, &str); 8] = [
-        (nan, "joint_angle[7] is NaN, in cycle 50"),
-        (infinite_current, "motor_current[0] is inf, in cycle 50"),
+    let absurd = |peer: &mut Peer, tick, mut numbers: Vec<f64>| {
+        numbers[5 * peer.joints() + 2] = 1e300;
+        peer.answer(tick, &numbers);
+        true
+    };
+    // A byte now and then is no answer.
+    let slow = |peer: &mut Peer, _, _| {
+        while peer.stream.get_mut().write_all(&[0]).is_ok() {
+            harness::doze(0.05);
+        }
+        false
+    };
+    let table: [(Fault, &str); 10] = [
+        (nan, "joint_angle[7] is NaN, which no robot has, in cycle 50"),
+        (infinite_current, "motor_current[0] is inf, which no robot has, in cycle 50"),
+        (absurd, "foot_wrench[2] is 1e300, which no robot has, in cycle 50"),
+        (slow, "did not answer within 0.5 s, in cycle 50"),
         (no_orientation, "an orientation has the norm 0, in cycle 50"),
-        (short, "177 numbers instead of 178, in cycle 50"),
+        (short, "370 numbers instead of 371, in cycle 50"),
         (of_yesterday, "answered cycle 49, in cycle 50"),
         (half, "closed the connection, in cycle 50"),
         (gone, "closed the connection, in cycle 50"),

@@ -218,7 +218,7 @@ impl ExternalPlant {
             out.copy_from_slice(now);
             rest = later;
             if let Some(i) = now.iter().position(|x| !(x.abs() <= MOST || may_be_nan && x.is_nan())) {
-                problem = problem.take().or(Some(format!("{name}[{i}] is {}, which no robot has", now[i])));
+                problem = problem.take().or(Some(format!("{name}[{i}] is {:?}, which no robot has", now[i])));
             }
         };
         let s = &mut self.readings;

@@ -1,7 +1,7 @@
 //! Integrators with their steps or tolerances, as they are compared on whole robots.
 //!
 //! Only the semi-implicit one sees dry friction as it is; the others see a ramp, whose width is part of the method. All are
-//! held against one reference, which is that of dry friction ([`super::reference`]).
+//! held against one reference, which is that of dry friction (`reference.rs`).
 
 use std::error::Error;
 

@@ -1,7 +1,7 @@
 //! Model depth: the whole chain walks on models of type 1 to 5, and each type is held against type 5.
 //!
 //! The reference is type 5 in the limit of small steps, from walks with steps of 0.0125 ms, 0.025 ms and 0.05 ms
-//! ([`super::reference`]); the order that these three show of each quantity is measured beside the method's.
+//! (`reference.rs`); the order that these three show of each quantity is measured beside the method's.
 //!
 //! | chart | difference from type 5 of |
 //! |---|---|
