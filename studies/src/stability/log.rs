@@ -128,12 +128,15 @@ pub(super) fn judge(instants: &[Instant]) -> ContactStability {
     }
 }
 
+/// \[m, 1\] Distances to a border by which nothing is outside of it.
+const ROUNDING: f64 = 1e-6;
+
 fn margin((name, unit, value): (&'static str, &'static str, Measure), instants: &[Instant]) -> Margin {
     let defined: Vec<(f64, f64)> =
         instants.iter().map(|i| (i.time, value(i))).filter(|(_, x)| x.is_finite()).collect();
     let n = defined.len() as f64;
     let least = defined.iter().min_by(|a, b| a.1.total_cmp(&b.1));
-    let outside = defined.iter().filter(|(_, x)| *x < 0.0).count() as f64;
+    let outside = defined.iter().filter(|(_, x)| *x < -ROUNDING).count() as f64;
     Margin {
         name,
         unit,
