@@ -5,6 +5,7 @@
 
 mod boundary;
 pub mod cost;
+mod distance;
 mod flight;
 pub mod gallery;
 mod joint;
@@ -13,6 +14,7 @@ pub mod landing;
 pub mod methods;
 pub mod models;
 pub mod order;
+mod pads;
 pub mod peers;
 mod picture;
 pub mod planner;
@@ -56,6 +58,8 @@ pub const PARTS: &[(&str, Part)] = &[
     ("stiction", stiction::PART),
     ("joint", joint::PART),
     ("solver", solver::PART),
+    ("pads", pads::PART),
+    ("distance", distance::PART),
     ("walking", walking::charts),
     ("landing", landing::charts),
     ("models", models::charts),

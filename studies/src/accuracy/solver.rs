@@ -52,6 +52,7 @@ fn chart(layer: &Layer, poisson: f64, friction: f64) -> ErrorChart {
         ("Gauss-Seidel, gamma 1", CouplingMethod::GaussSeidel, 1.0),
         ("Gauss-Seidel, gamma 1.5", CouplingMethod::GaussSeidel, 1.5),
         ("velocity sweeps", CouplingMethod::Velocity, 1.0),
+        ("fastest, as in a walk", CouplingMethod::Fastest, 1.0),
     ] {
         for tolerance in TOLERANCES {
             let settings = settings(method, gamma, tolerance);
@@ -86,11 +87,13 @@ fn layer(poisson: f64) -> Result<Layer, Box<dyn Error>> {
 }
 
 /// The pad as it is when the foot rolls and turns: one edge lifts off, the middle slides, the other edge sticks.
-fn rolled(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> SolverReport {
+pub(super) fn rolled(coupling: &Coupling, memory: &mut Memory, settings: &Settings) -> SolverReport {
     memory.clear();
     memory.begin();
+    let side = coupling.nodes().isqrt();
+    let share = |k: usize| k as f64 / (side - 1) as f64;
     for i in 0..coupling.nodes() {
-        let (along, across) = ((i % 6) as f64 / 5.0, (i / 6) as f64 / 5.0);
+        let (along, across) = (share(i % side), share(i / side));
         let c = Vector3::new(0.03 * along - 0.01, 0.02 * (across - 0.5), 0.04 * along - 0.03);
         memory.set(i, c, Some(Vector3::z()));
     }
