@@ -5,6 +5,7 @@
 use std::error::Error;
 
 use contact::point::{self, ContactLaw};
+use sim_backend::step_limit::{eigenvalues, euler_limit, runge_kutta_limit};
 
 use crate::search::{NoBorder, Width, border};
 
@@ -45,6 +46,11 @@ fn charts(_: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     for tolerance in [1e-4, 1e-6, 1e-8, 1e-10] {
         add(SteppingMethod::Bdf(tolerance));
     }
+    // Of the mass at rest on its point.
+    let rest = MASS * multibody::GRAVITY_ACCELERATION / LAW.stiffness[2];
+    let values = eigenvalues(&[-rest, 0.0, rest], |x, dx| Mass.rate(0.0, x, dx))?;
+    chart.limit("Euler", euler_limit(&values));
+    chart.limit("RK4", runge_kutta_limit(&values));
     chart.expect_order("Euler", 1.0, 1e-6..=2e-4);
     chart.expect_order("RK4", 1.0, 1e-6..=2e-4);
     chart.expect_order(LOCATED, 4.0, 1e-4..=2e-3);
