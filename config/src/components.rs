@@ -30,7 +30,7 @@ use drives::Friction;
 use crate::robot::Robot;
 use crate::section::Section;
 
-/// What is computed of a robot.
+/// Set of components of a simulated robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Components {
     /// Cause of the joints' motion.

@@ -101,7 +101,7 @@ impl SafetyWatch {
 mod tests {
     use super::*;
 
-    /// What counts as contact is the same share of every robot's weight: a foot that carries an eighth of it stands on the
+    /// Contact is the same share of every robot's weight: a foot that carries an eighth of it stands on the
     /// ground, one that reads a twelfth has not met it yet, and one that keeps a fortieth has left it.
     #[test]
     fn contact_is_a_share_of_the_weight() {

@@ -36,7 +36,7 @@ const UNIT: f64 = 1e-3;
 /// \[SI\] Numbers of an answer are not larger.
 const MOST: f64 = 1e6;
 
-/// What a drive does in a cycle, on the socket.
+/// Task of a drive in a cycle, on the socket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum DriveTask {

@@ -308,7 +308,7 @@ fn points(
     (sum, moment)
 }
 
-/// Whether a node with the displacement `d`, world axes, is at the ground and compressed.
+/// True for a node at the ground that is compressed; its displacement `d` \[m\] in world axes.
 fn at_ground(hit: &Hit, d: &Vector3<f64>) -> bool {
     hit.gap < AT_GROUND && Vector3::from(hit.normal).dot(d) > 0.0
 }

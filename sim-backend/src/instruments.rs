@@ -126,7 +126,7 @@ impl Instruments {
         self.sensors.observe(&seen);
     }
 
-    /// What there is to be measured in a state that the plant has looked at.
+    /// True values of all sensors in a state that the plant has looked at.
     fn see(&self, plant: &mut Plant, x: &[f64], joints: usize) -> Truth {
         let mut seen = Truth { motor_current: [f64::NAN; messages::MAX_JOINTS], ..Truth::default() };
         for j in 0..joints {

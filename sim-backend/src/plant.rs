@@ -1,6 +1,6 @@
 //! The equations of motion of one robot: bodies, drives and contact layer put together as deep as a scene asks.
 //!
-//! What is computed: [`config::components`]; states: [`crate::layout`]; drives: [`crate::train`]; contact: [`crate::feet`].
+//! Components: [`config::components`]; states: [`crate::layout`]; drives: [`crate::train`]; contact: [`crate::feet`].
 
 mod moving_joints;
 mod observation;
@@ -120,7 +120,7 @@ impl Plant {
         Ok(Self { model, data, components, layout, ground, joints, moving, scratch })
     }
 
-    /// What is computed.
+    /// Components.
     pub fn components(&self) -> &Components {
         &self.components
     }

@@ -164,7 +164,7 @@ impl SparseLu {
         Self { factors: Rc::new(RefCell::new(factors)), matrix: None }
     }
 
-    /// What it has, once its solver is gone.
+    /// Factors, once their solver is gone.
     pub(crate) fn into_factors(self) -> Factors {
         self.factors.take()
     }

@@ -109,7 +109,7 @@ pub struct Stiff {
     /// J by columns; empty while there is none.
     jacobian: Vec<f64>,
     factors: Factors,
-    /// Where the last call ended, with its history; none if the method has to begin anew.
+    /// End of the last call, with its history; none if the method has to begin anew.
     kept: Option<CallEnd>,
 }
 
@@ -122,7 +122,7 @@ struct CallEnd {
 }
 
 impl CallEnd {
-    /// Whether a motion goes on from here: at `x`, with the rate `dx`.
+    /// True if a motion goes on from here: at `x`, with the rate `dx`.
     fn goes_on(&self, x: &[f64], dx: &[f64], tolerance: f64) -> bool {
         let state = self.state.as_ref();
         let y = state.y.inner().as_slice();

@@ -114,6 +114,7 @@ pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<(u64, u64), Error> {
             return Err(format!("scene {}: the robot falls without a push", setup.scene.name).into());
         }
         let (now, gait) = (c.controller_state.load_left, GaitState::from(c.controller_state.gait));
+        // A stride begins where the right foot takes all of the load from the left one.
         let carries = if now >= 1.0 {
             LEFT
         } else if now <= 0.0 {

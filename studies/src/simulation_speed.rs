@@ -121,6 +121,7 @@ fn row(
             best = again;
         }
     }
+    // Errors of its motion, the same in every run; then what cycles on one foot cost.
     let pairs = || best.iter().zip(reference);
     let position = pairs().map(|(a, b)| distance(&a.pose[..3], &b.pose[..3]));
     let turned = pairs().map(|(a, b)| orientation(&a.pose).angle_to(&orientation(&b.pose)));

@@ -74,6 +74,7 @@ fn target(bench: &Bench) -> Finding {
         let mut targets = JointTargets { mode: JointMode::Track as u64, ..JointTargets::default() };
         targets.header.tick = tick;
         targets.angle = sensors.joint_angle;
+        // At rest for ten cycles, so that there is something good to go on with.
         if tick > 10 {
             targets.angle[3] = f64::NAN;
             targets.speed[4] = 1e300;

@@ -65,6 +65,7 @@ pub(super) fn mass_on_layer(_: &Bench) -> Findings {
         let (k, b) = (law.stiffness[2], law.damping[2]);
         let root = Complex::new(b * b - 4.0 * m * k, 0.0).sqrt();
         let values = [1.0, -1.0].map(|sign| (root * sign - b) / (2.0 * m));
+        // Stable: a small speed at rest on the layer does not grow.
         let at_rest = [0.0, 0.0, multibody::GRAVITY_ACCELERATION * m / k];
         let stable = |h: f64| {
             let (mut method, mut x) = (stepper(3), at_rest);

@@ -185,6 +185,7 @@ impl Scorecard {
         for rows in self.rows.chunk_by(walk) {
             let ScorecardRow { entry, scene, depth, cycle_s, cpu_s, .. } = &rows[0];
             sheet.line(format!("{entry} ({scene}): {depth}, cycle {} ms, {cpu_s:.1} s CPU", 1e3 * cycle_s));
+            // Demanded, ours, published, and whether the goal is met; what is to be said about them below.
             let shown = |row: &ScorecardRow| {
                 let ours = row.ours.map_or("-".into(), |x| format!("{} {}", figure(x), row.unit));
                 let goal = match row.goal {

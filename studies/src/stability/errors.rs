@@ -41,6 +41,7 @@ impl ErrorSource {
 /// All errors that make sense for a scene in which the robot gets `way` \[m\] far.
 pub(super) fn kinds(setup: &Setup, way: f64) -> Vec<ErrorSource> {
     let mut all = Vec::new();
+    // What the robot believes of itself: inclination, zeros of its joints. Then the ground, the soles, the sensors' delay.
     for (axis, name) in ["roll", "pitch"].into_iter().enumerate() {
         all.push(ErrorSource::new(format!("IMU bias, {name}"), "deg", [-20.0, 20.0], 0.1, move |s, x| {
             s.scene.sensors.imu.bias[axis] = x.to_radians();

@@ -104,6 +104,7 @@ impl Study for Floquet {
             rows.extend(found);
             pushes.push((scene, pushed));
         }
+        // A table of all scenes; below it, scene by scene, every multiplier and a push for comparison.
         let mut sheet = Sheet::titled(format!(
             "Floquet multipliers of the gait: what a stride leaves of a small deviation, by regression over {} random \
              disturbances of all states",
@@ -134,6 +135,7 @@ fn of_scene(mut setup: Setup, study: &Floquet) -> Result<(Vec<FloquetRow>, Vec<f
         return Err(format!("scene {}: only type 1 has a Poincaré map here", setup.scene.name).into());
     }
     (0..begin).for_each(|_| _ = chain.step());
+    // The map: a copy of the walk, disturbed where a stride begins, one and two strides later.
     let period = end - begin;
     let section = PoincareSection::of(&mut chain);
     let start = &chain;

@@ -83,6 +83,7 @@ pub fn run(log: &Path, friction: f64, out: Option<&Path>) -> Result<Sheet, Strin
     sheet.fact("scene", &scene);
     sheet.fact("friction", friction);
     sheet.table(COLUMNS, &found.margins);
+    // Below the table: causes, and the log held against itself.
     let [x, y, z] = found.momentum_rate_max_n_m;
     sheet.line(format!("what gives way first of the nearest flat sole: {}", found.nearest_border));
     sheet.line(format!(

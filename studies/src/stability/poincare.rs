@@ -49,7 +49,7 @@ pub(crate) struct Multipliers {
 pub(crate) enum Verdict {
     /// Both intervals hold a common value.
     Known,
-    /// They do not, or a linear map explains too little; but both end below one, and what is left becomes less: disturbances of
+    /// They do not; but both end below one, and the deviation becomes less: disturbances of
     /// these sizes are forgotten.
     BelowOne,
     /// Too little is known, or something does not die away.
@@ -66,7 +66,7 @@ impl Verdict {
         let shrinks = found.iter().all(|m| m.left[1] < m.left[0]);
         if narrow && linear && agree {
             Self::Known
-        } else if narrow && shrinks && a[1].max(b[1]) < 1.0 {
+        } else if narrow && linear && shrinks && a[1].max(b[1]) < 1.0 {
             Self::BelowOne
         } else {
             Self::CannotTell
@@ -252,6 +252,7 @@ mod tests {
             assert_eq!(verdict, Verdict::Known, "{found:?}");
             assert!(found.iter().all(|m| holds(m, 0.8)), "jumps of {jump}: {found:?}");
             assert!(found.iter().all(|m| m.interval[1] - m.interval[0] < 0.25), "{found:?}");
+            // The complex pair, by its size.
             let width = 1e-9 + 0.2 * jump;
             for m in &found {
                 let pair: Vec<_> = m.values.iter().filter(|l| l[1].abs() > 0.3).collect();

@@ -18,8 +18,8 @@ use super::points::{self, Load};
 
 /// \[N\] A sole that carries less does not count as part of the support.
 pub const TOUCHING: f64 = 1.0;
-/// \[N\] The wrench of a sole that carries less says nothing about the robot: its cone is not asked.
-pub const LOADED: f64 = 20.0;
+/// \[1\] The wrench of a sole that carries less of the robot's weight says nothing about it: its cone is not asked.
+pub const LOADED: f64 = 1.0 / 30.0;
 
 /// One cycle. What is not defined in it is NaN.
 #[derive(Clone, Debug)]
@@ -123,6 +123,7 @@ impl LoggedRobot {
         let soles: Vec<usize> = (0..2).filter(|&i| loaded[i]).collect();
         let (z, support) = (polygon::contact_height(now)?, polygon::support_polygon(now));
 
+        // Motion by differences over three cycles; the ground's force and the push must account for it.
         let com = Vector3::from(now.com);
         let (earlier, later) = (Vector3::from(before.com), Vector3::from(after.com));
         let velocity = (later - earlier) / (2.0 * h);
@@ -131,8 +132,9 @@ impl LoggedRobot {
         let (push, pushed) = self.push(now);
         let other = (pushed - com).cross(&push);
         let balance = (acceleration - multibody::GRAVITY) * self.model.mass() - ground.force - push;
+        // Friction cones: of the nearest flat sole, and of all contact points.
         let (sole_cone, border) = self.sole_cone(now, &soles);
-        let cone = Some(ground.force.z).filter(|f| *f > LOADED);
+        let cone = Some(ground.force.z).filter(|f| *f > LOADED * self.weight());
         let cone = cone.and_then(|_| contact_cone::margin(now.carrying(), &ground, self.friction));
         let or_none = |p: Option<Point>| p.unwrap_or([f64::NAN; 2]);
         let fri = match soles[..] {
@@ -157,6 +159,11 @@ impl LoggedRobot {
         })
     }
 
+    /// \[N\]
+    fn weight(&self) -> f64 {
+        self.model.mass() * multibody::GRAVITY_ACCELERATION
+    }
+
     /// The push and where it acts: at the torso's own centre of gravity.
     fn push(&self, s: &SimState) -> (Vector3<f64>, Vector3<f64>) {
         let at = Vector3::from(s.position) + orientation(s) * self.model.base_cog();
@@ -165,7 +172,7 @@ impl LoggedRobot {
 
     /// Margin of the loaded sole that is nearest to its border.
     fn sole_cone(&self, s: &SimState, soles: &[usize]) -> (f64, Option<Border>) {
-        let heavy = |i: &&usize| s.foot_wrench[**i].force[2] > LOADED;
+        let heavy = |i: &&usize| s.foot_wrench[**i].force[2] > LOADED * self.weight();
         let of = |&i: &usize| {
             let [back, front, right, left] = self.info.feet[i].support;
             let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -s.feet[i][3]);
