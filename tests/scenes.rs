@@ -325,6 +325,30 @@ fn archie_walk() {
     assert!((number(&f, "step_length_m") - 0.25).abs() < 0.01, "{f:#}");
 }
 
+/// As his thesis reports it: 0.25 m in 12 s, without a look at the world.
+#[test]
+fn archie_static() {
+    let f = figures("archie_static", 160.0);
+    let speed = number(&f, "step_length_m") / number(&f, "step_duration_s");
+    assert!((speed - 0.25 / 12.0).abs() < 0.02 * 0.25 / 12.0, "{f:#}");
+    assert!(number(&f, "steps") > 9.0, "{f:#}");
+}
+
+/// The same steps, played by the drives from tables: into the walk, from plan to plan, to a stand two steps on.
+#[test]
+fn archie_tables() {
+    let f = figures("archie_tables", 55.0);
+    assert_eq!((&f["steps"], &f["ended_by"]), (&3.into(), &"done".into()));
+    let [x, y] = [0, 1].map(|i| f["end_pose"][i].as_f64().unwrap());
+    assert!((x - 0.5).abs() < 0.05 && y.abs() < 0.01, "{f:#}");
+}
+
+/// From his crane: every joint finds its angle at a switch, and the drives that protect themselves let him make some steps.
+#[test]
+fn archie_startup() {
+    assert!(number(&figures("archie_startup", 18.0), "steps") >= 4.0);
+}
+
 /// The model is chosen, the same one every time, and it says why.
 #[test]
 fn walk_auto() {

@@ -76,15 +76,12 @@ fn a_command_whose_reader_is_gone_ends_quietly() {
     for arguments in
         [&["sim", "stand", "--json"][..], &["scene", "list"], &["topic", "list"], &["completions", "bash"]]
     {
-        let mut child = Command::new(EXE)
-            .args(arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .current_dir(harness::root())
-            .spawn()
-            .unwrap();
-        drop(child.stdout.take());
-        let said = child.wait_with_output().unwrap();
+        // Gone before the command begins: who is quick would have said everything.
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut command = Command::new(EXE);
+        command.args(arguments).stdout(writer).stderr(Stdio::piped()).current_dir(harness::root());
+        let said = command.spawn().unwrap().wait_with_output().unwrap();
         assert_eq!(said.status.signal(), Some(13), "{arguments:?}: {said:?}");
         assert!(!String::from_utf8_lossy(&said.stderr).contains("panicked"), "{arguments:?}: {said:?}");
     }

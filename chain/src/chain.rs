@@ -81,7 +81,7 @@ impl Chain {
     pub fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
         let Setup { scene, robot, gait, system, .. } = &setup.clone().with_method(None)?;
         let mut sim = SimBackend::new(robot, scene)?.with_relay(system.toggle_missed);
-        let mut planner = Planner::of(gait, robot);
+        let mut planner = Planner::of(gait, robot).map_err(|fault| fault.of_gait(&scene.gait))?;
         planner.see(KnownObstacles::new(setup.known_obstacles()?));
         let answer = *sim.step(None, None).0;
         Ok(Self {
@@ -167,6 +167,16 @@ impl Chain {
         self.step_without(&[])
     }
 
+    /// One bus cycle in which what the controller says to the joints is altered on its way.
+    pub fn step_altered(&mut self, alter: &mut dyn FnMut(&mut JointTargets)) -> &Cycle {
+        self.software(&[], alter);
+        let told = Some(*self.joint_loop.commanded());
+        self.bus.push_back(told);
+        self.simulate();
+        self.tell();
+        &self.cycle
+    }
+
     /// One bus cycle with another robot in place of the simulated one, which stands still.
     ///
     /// # Errors
@@ -175,7 +185,7 @@ impl Chain {
         if self.tick == 0 {
             self.answer = *plant.frames();
         }
-        self.software(&[]);
+        self.software(&[], &mut |_| ());
         let c = &mut self.cycle;
         let (answer, state) = plant.step(Some(self.joint_loop.commanded()), Some(&c.power))?;
         (self.answer, self.answered, c.sim_state) = (*answer, true, *state);
@@ -189,7 +199,7 @@ impl Chain {
     /// missed. Ticks are counted by the joint loop and stand still without it.
     pub fn step_without(&mut self, stopped: &[Process]) -> &Cycle {
         let runs = |process: Process| !stopped.contains(&process);
-        self.software(stopped);
+        self.software(stopped, &mut |_| ());
         let told = runs(Process::Lowlevel).then(|| *self.joint_loop.commanded());
         self.bus.push_back(told);
         if runs(Process::SimBackend) {
@@ -202,7 +212,7 @@ impl Chain {
     }
 
     /// Everything of a cycle but the robot.
-    fn software(&mut self, stopped: &[Process]) {
+    fn software(&mut self, stopped: &[Process], alter: &mut dyn FnMut(&mut JointTargets)) {
         let runs = |process: Process| !stopped.contains(&process);
         self.elapsed += 1;
         self.cycle.events.clear();
@@ -217,6 +227,7 @@ impl Chain {
             }
             if runs(Process::Controller) {
                 self.stabilize();
+                alter(&mut self.cycle.joint_targets);
             }
             self.drive_joints();
         }
@@ -257,6 +268,9 @@ impl Chain {
         }
         let (targets, state) = self.controller.step(&c.sensors, (self.plan.id > 0).then_some(&*self.plan));
         (c.joint_targets, c.controller_state) = (*targets, *state);
+        if let Some(tables) = self.controller.tables() {
+            self.joint_loop.take_tables(tables);
+        }
         let events = self.controller.events().drain();
         c.events.extend(events.map(|(code, detail)| (Process::Controller, code, detail)));
     }

@@ -32,7 +32,7 @@ fn accepted_steps_leave_nothing_to_doubt() {
         for (depth, integrator) in
             [(1, Euler), (1, RungeKutta4), (2, Euler), (2, RungeKutta4), (3, RungeKutta4)]
         {
-            let fewest = (1..=40).find(|&n| {
+            let fewest = (1..=66).find(|&n| {
                 let setup = setup(scene, depth, integrator, n);
                 SimBackend::new(&setup.robot, &setup.scene).is_ok()
             });
@@ -77,7 +77,7 @@ fn semi_implicit_steps_leave_nothing_to_doubt() {
         ("walk_5kmh", 3, 10),
         ("johnnie_25kmh", 2, 4),
         ("johnnie_25kmh", 3, 4),
-        ("archie_walk", 3, 4),
+        ("archie_walk", 3, 22),
     ] {
         let setup = setup(scene, depth, SemiImplicit, steps);
         let ending = ending(&setup, 9.0);

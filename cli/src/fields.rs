@@ -157,6 +157,9 @@ impl Visit for FieldVisitor<'_> {
     fn u32(&mut self, value: u32) {
         self.number(FieldValue::Whole(value.into()));
     }
+    fn i32(&mut self, value: i32) {
+        self.number(FieldValue::Real(value.into()));
+    }
     fn u8(&mut self, value: u8) {
         self.number(FieldValue::Whole(value.into()));
     }

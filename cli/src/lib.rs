@@ -16,6 +16,7 @@ pub mod log;
 pub mod operator;
 pub mod param;
 pub mod plot;
+pub mod preview;
 pub mod replay;
 pub mod run;
 pub mod scorecard;

@@ -183,6 +183,13 @@ enum GangwerkTask {
         #[command(flatten)]
         form: study::SheetForm,
     },
+    /// Tune the drive of a joint on a simulated bench.
+    Tune {
+        #[command(subcommand)]
+        what: study::TuneTask,
+        #[command(flatten)]
+        form: study::SheetForm,
+    },
     /// Walk everything the robots are to be able to do, and hold it against what is demanded and what others reached.
     Scorecard {
         /// Only entries whose name contains this, for example: "2 km/h", push.
@@ -203,6 +210,17 @@ enum GangwerkTask {
     },
     /// Faults F1 to F40 against a walking robot: expected, observed, time. Exit code 1 if one is not as expected.
     Faults(fault_table::FaultTableArguments),
+    /// Draw the walking pattern of a gait on a robot, without masses: stick figures, trajectories, joint angles, and what cannot be walked.
+    Preview {
+        /// Name of a gait, for example archie_static, or path of a gait file; it has a section `pattern`.
+        gait: PathBuf,
+        /// Name of the robot.
+        #[arg(long, default_value = "archie")]
+        robot: String,
+        /// Where the pictures go.
+        #[arg(long, value_name = "DIR", default_value = "preview")]
+        out: PathBuf,
+    },
     /// Fit friction parameters of a gear to a table of efficiencies, with the older model beside the newer one.
     FitFriction {
         /// A table, for example config/gears/hfuc_25_100.toml.
@@ -365,6 +383,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             study::stability(&config()?, &log, &out, friction, &form)
         }
         GangwerkTask::Study { what, form } => study::run(&config()?, &what, &form),
+        GangwerkTask::Tune { what, form } => study::tune(&config()?, &what, &form),
         GangwerkTask::Scorecard { only, quick, seed, json, out } => {
             let config = config()?;
             let order =
@@ -373,6 +392,14 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             Ok(ExitCode::SUCCESS)
         }
         GangwerkTask::Faults(arguments) => fault_table::run(&arguments),
+        GangwerkTask::Preview { gait, robot, out } => {
+            let preview = cli::preview::of_files(&config()?, &gait, &robot, &out)?;
+            preview.files.iter().for_each(|file| println!("{}", file.display()));
+            match preview.fault {
+                None => Ok(ExitCode::SUCCESS),
+                Some(fault) => Err(fault.into()),
+            }
+        }
         GangwerkTask::FitFriction { file, out, json } => {
             cli::fit_friction::main(&file, out, json)?;
             Ok(ExitCode::SUCCESS)

@@ -21,6 +21,13 @@ pub(super) enum StudyTask {
     Realtime(Realtime),
 }
 
+/// What is tuned.
+#[derive(Subcommand)]
+pub(super) enum TuneTask {
+    /// Gains of its cascade: the procedure of the thesis (6.1.2) step by step, and a placement by model.
+    Joint(studies::tune::TuneJoint),
+}
+
 /// In which form a sheet is printed.
 #[derive(clap::Args)]
 pub(super) struct SheetForm {
@@ -48,6 +55,19 @@ pub(super) struct Realtime {
 
 /// Carries out a study, with progress on standard error, and prints what it found.
 pub(super) fn run(config: &Path, what: &StudyTask, form: &SheetForm) -> Result<ExitCode, Box<dyn Error>> {
+    match what {
+        StudyTask::Simulated(study) => answer(config, study, form),
+        StudyTask::Realtime(study) => answer(config, study, form),
+    }
+}
+
+/// Carries out a tuning in the same way.
+pub(super) fn tune(config: &Path, what: &TuneTask, form: &SheetForm) -> Result<ExitCode, Box<dyn Error>> {
+    let TuneTask::Joint(joint) = what;
+    answer(config, joint, form)
+}
+
+fn answer(config: &Path, study: &dyn Study, form: &SheetForm) -> Result<ExitCode, Box<dyn Error>> {
     let bar = ProgressBar::new(0).with_style(ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}")?);
     let progress = |done: usize, of: usize, next: &str| {
         if of == 0 {
@@ -57,11 +77,7 @@ pub(super) fn run(config: &Path, what: &StudyTask, form: &SheetForm) -> Result<E
         bar.set_position(done as u64);
         bar.set_message(next.to_string());
     };
-    let given = Given { config, progress: &progress };
-    let sheet = match what {
-        StudyTask::Simulated(study) => study.run(&given),
-        StudyTask::Realtime(study) => study.run(&given),
-    };
+    let sheet = study.run(&Given { config, progress: &progress });
     bar.finish_and_clear();
     print(&sheet?, form);
     Ok(ExitCode::SUCCESS)

@@ -11,15 +11,20 @@
 //! | `JOINT_motor`, `JOINT_mspeed` | from the drives | motor side by the gear ratio \[rad\], \[rad/s\] |
 //! | `JOINT_current`, `JOINT_temp` | from the drives | \[A\], winding \[deg C\] |
 //! | `JOINT_status`, `JOINT_error` | from the drives | statusword, error code of CiA 402 |
+//! | `JOINT_letters`, `_index`, `_query`, `_float`, `_value` | both | telegram of the interpreter in a drive that plays tables |
 //! | `SIDE_force_AXIS`, `SIDE_moment_AXIS` | from the drives | ground on the foot, sensor frame \[N\], \[N m\] |
 //! | `imu_quaternion_x` … `w`, `imu_rate_AXIS`, `imu_accel_AXIS` | from the drives | see `Imu` in `messages` |
 //!
 //! Node `PC` is lowlevel; every other node is a local controller on a line of its own. A message of the PC goes to the nodes
 //! that receive its first signal. The last message to a node carries its counter alone: it ends the cycle.
+//!
+//! A message whose `GenMsgCycleTime` is 0 does not come in every cycle. A robot whose drives play tables has neither targets
+//! nor `feed`, but an interpreter in every drive; force and inertial sensors may be missing there, all of them.
 
 use std::path::Path;
 
-use can_dbc::{ByteOrder, Dbc, MessageId, MultiplexIndicator, ValueType};
+use can_dbc::{AttributeValue, ByteOrder, Dbc, MessageId, MultiplexIndicator, ValueType};
+use codec::interpreter;
 use codec::layout::{BusMessage, BusSignal, Carries, FrameLayout, MAX_NODES};
 use messages::{MAX_FRAMES, nearest};
 
@@ -108,6 +113,10 @@ impl DbcReader<'_> {
         let mut used = [0u64; 8];
         let signals =
             m.signals.iter().filter_map(|s| self.signal(dbc, m, s, to_drives, &mut used)).collect::<Vec<_>>();
+        let cyclic = !matches!(
+            dbc.resolved_message_attribute(m.id, "GenMsgCycleTime"),
+            Some(AttributeValue::Double(0.0) | AttributeValue::Uint(0) | AttributeValue::Int(0))
+        );
         for node in at {
             if into.iter().any(|other| other.node == node && other.id == u32::from(id)) {
                 self.problem(line, &m.name, format!("identifier {id} is taken on this line"));
@@ -118,6 +127,7 @@ impl DbcReader<'_> {
                 len: m.size as u32,
                 node,
                 to_drives,
+                cyclic,
                 signals: signals.clone(),
             });
         }
@@ -219,12 +229,13 @@ impl DbcReader<'_> {
             ("status", false) => Carries::Status,
             ("temp", false) => Carries::Temperature,
             ("error", false) => Carries::Error,
+            ("letters" | "index" | "query" | "float" | "value", _) => Carries::Interpreter,
             _ => {
                 let there = if to_drives {
-                    "counter, mode, JOINT_target, JOINT_feed, JOINT_control"
+                    "counter, mode, JOINT_target, JOINT_feed, JOINT_control, JOINT_letters, _index, _value"
                 } else {
                     "counter, supply, JOINT_angle, _speed, _motor, _mspeed, _current, _status, _temp, _error, \
-                     right_force_x, left_moment_z, imu_quaternion_w, imu_rate_x, imu_accel_x and the like"
+                     _letters, _index, _value, right_force_x, left_moment_z, imu_quaternion_w, imu_rate_x, imu_accel_x and the like"
                 };
                 return Err(format!("nothing of that name goes this way; there is {there}"));
             }
@@ -251,7 +262,10 @@ impl DbcReader<'_> {
     fn everything_once(&mut self, messages: &[BusMessage]) {
         let mut all: Vec<(Carries, &str)> = Vec::new();
         for signal in messages.iter().flat_map(|m| &m.signals) {
-            let many = matches!(signal.carries, Carries::Counter | Carries::Mode | Carries::Supply);
+            let many = matches!(
+                signal.carries,
+                Carries::Counter | Carries::Mode | Carries::Supply | Carries::Interpreter(_)
+            );
             if !many && all.iter().any(|(other, _)| *other == signal.carries) {
                 self.problem(0, &signal.name, "comes more than once".into());
             }
@@ -259,18 +273,39 @@ impl DbcReader<'_> {
         }
         // What a walk cannot do without; currents, temperatures and motor sides may be missing.
         let joints = self.joints;
+        let tables = all.iter().any(|(carries, _)| matches!(carries, Carries::Interpreter(_)));
+        let sensors =
+            |(carries, _): &(Carries, &str)| matches!(carries, Carries::Force(..) | Carries::Orientation(_));
+        let senses = !tables || all.iter().any(sensors);
+        for (j, joint) in joints.iter().enumerate().filter(|_| tables) {
+            for (to_drives, way) in [(true, "to"), (false, "from")] {
+                let telegrams =
+                    messages.iter().filter(|m| m.to_drives == to_drives && m.interpreter() == Some(j));
+                if telegrams.filter(|m| m.len == interpreter::LEN && !m.cyclic).count() != 1 {
+                    let text = format!(
+                        "one message {way} its drive must hold _letters, _index, _query, _float and _value in 8 \
+                         bytes, with a GenMsgCycleTime of 0"
+                    );
+                    self.problem(0, joint, text);
+                }
+            }
+        }
         let mut need = |carries: Carries, name: String| {
             if !all.iter().any(|(other, _)| *other == carries) {
                 self.problem(0, &name, "is missing".into());
             }
         };
         for (j, joint) in joints.iter().enumerate() {
-            need(Carries::Target(j), format!("{joint}_target"));
-            need(Carries::Feed(j), format!("{joint}_feed"));
+            if tables {
+                need(Carries::Control(j), format!("{joint}_control"));
+            } else {
+                need(Carries::Target(j), format!("{joint}_target"));
+                need(Carries::Feed(j), format!("{joint}_feed"));
+            }
             need(Carries::Angle(j), format!("{joint}_angle"));
             need(Carries::Speed(j), format!("{joint}_speed"));
         }
-        for k in 0..3 {
+        for k in (0..3).filter(|_| senses) {
             for (foot, side) in SIDES.iter().enumerate() {
                 need(Carries::Force(foot, k), format!("{side}_force_{}", AXES[k]));
                 need(Carries::Moment(foot, k), format!("{side}_moment_{}", AXES[k]));
@@ -278,7 +313,9 @@ impl DbcReader<'_> {
             need(Carries::Rate(k), format!("imu_rate_{}", AXES[k]));
             need(Carries::Acceleration(k), format!("imu_accel_{}", AXES[k]));
         }
-        (0..4).for_each(|k| need(Carries::Orientation(k), format!("imu_quaternion_{}", AXES[k])));
+        (0..4)
+            .filter(|_| senses)
+            .for_each(|k| need(Carries::Orientation(k), format!("imu_quaternion_{}", AXES[k])));
         need(Carries::Mode, "mode".into());
         need(Carries::Supply, "supply".into());
     }

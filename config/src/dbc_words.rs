@@ -20,7 +20,7 @@ const CONTROLWORDS: &str = "0 \"disable voltage\" 2 \"quick stop\" 6 \"shutdown\
 const STATUSWORD: &str = "Statusword of CiA 402: bit 0 ready to switch on, 1 switched on, 2 operation enabled, 3 fault, 4 \
                           voltage, 5 quick stop (0 stops), 6 switch on disabled, 7 warning, 15 angle known (maker's own).";
 const ERRORS: &str = "0 \"none\" 8976 \"over-current\" 17168 \"winding too hot\" 33072 \"no frames on the bus\" 34321 \
-                      \"following error\"";
+                      \"following error\" 65332 \"table ended in motion\"";
 
 /// Every statusword a drive may send, in words, smallest first.
 fn statuswords() -> String {

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
+use crate::pattern::Pattern;
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 
 /// `gaits/NAME.toml`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Gait {
     /// Steps.
     pub step: StepSettings,
@@ -19,6 +20,9 @@ pub struct Gait {
     pub obstacles: Option<Obstacles>,
     /// Stabilizing control.
     pub control: StabilizerGains,
+    /// Walking pattern with fixed parameters, which nobody stabilizes; it then says what the steps, limits and heights
+    /// above are. None: walks are balanced (thesis 4.6).
+    pub pattern: Option<Pattern>,
     /// \[1\] How far an arm's centre of gravity moves with that of the opposite leg; none: arms hang still.
     pub arm_swing: Option<f64>,
     /// How far the toe joints bend when the heel leaves the ground; none: toes stay straight.
@@ -203,12 +207,16 @@ impl Gait {
     pub(crate) fn load_hashed(path: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
         let text = file::text(path, hash)?;
         section::read(path, &text, |top| {
+            if top.has("pattern") {
+                return Self::of_pattern(top);
+            }
             let gait = Self {
                 step: top.table("step", StepSettings::build).unwrap_or_default(),
                 model: top.table("model", GaitModel::build).unwrap_or_default(),
                 limits: top.table("limits", CommandLimits::build).unwrap_or_default(),
                 obstacles: top.has("obstacles").then(|| top.table("obstacles", Obstacles::build)).flatten(),
                 control: top.table("control", StabilizerGains::build).unwrap_or_default(),
+                pattern: None,
                 arm_swing: top.has("arm_swing").then(|| top.number("arm_swing", "1", 0.0..=3.0)),
                 toes: bend(top, "toes"),
                 heel_strike: bend(top, "heel_strike"),
@@ -216,6 +224,11 @@ impl Gait {
             gait.check(top);
             gait
         })
+    }
+
+    /// A gait that is a pattern: `[pattern]` says what other gaits say in several tables.
+    fn of_pattern(top: &Section<'_, '_>) -> Self {
+        top.table("pattern", Pattern::build).map_or_else(Self::default, Self::from)
     }
 
     /// Rules between tables.
@@ -276,6 +289,18 @@ impl Gait {
                     format!("by_speed[{i}]: {length} m in {duration} s are {is:.3} m/s, not {speed}"),
                 );
             }
+        }
+    }
+}
+
+impl From<Pattern> for Gait {
+    fn from(pattern: Pattern) -> Self {
+        Self {
+            step: pattern.step(),
+            model: pattern.model(),
+            limits: pattern.limits(),
+            pattern: Some(pattern),
+            ..Self::default()
         }
     }
 }

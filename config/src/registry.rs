@@ -127,16 +127,45 @@ const FIXED: &[Fixed] = &[
     fixed!("planner", "gaits", "limits.length.most", "m", [-1.5, 1.5], |s| Some(s.gait.limits.length[1]), "greatest step length that may be commanded"),
     fixed!("planner", "gaits", "limits.duration.least", "s", [0.2, 20.0], |s| Some(s.gait.limits.duration[0]), "least duration of a step that may be commanded"),
     fixed!("planner", "gaits", "limits.duration.most", "s", [0.2, 20.0], |s| Some(s.gait.limits.duration[1]), "greatest duration of a step that may be commanded"),
+    fixed!("planner", "gaits", "pattern.T_c", "s", [0.0, 20.0], |s| s.gait.pattern.map(|p| p.step_time), "time of a step"),
+    fixed!("planner", "gaits", "pattern.T_d", "s", [0.0, 20.0], |s| s.gait.pattern.map(|p| p.double_support), "double support"),
+    fixed!("planner", "gaits", "pattern.T_o", "s", [0.0, 20.0], |s| s.gait.pattern.map(|p| p.over_time), "instant at which the swinging ankle passes l_ao, H_ao"),
+    fixed!("planner", "gaits", "pattern.T_min", "s", [0.0, 20.0], |s| s.gait.pattern.map(|p| p.low_time), "instant at which the torso is lowest"),
+    fixed!("planner", "gaits", "pattern.T_max", "s", [0.0, 20.0], |s| s.gait.pattern.map(|p| p.high_time), "instant at which it is highest"),
+    fixed!("planner", "gaits", "pattern.T_1", "s", [0.0, 20.0], |s| s.gait.pattern.map(|p| p.pitch_times[0]), "the rear foot begins to pitch"),
+    fixed!("planner", "gaits", "pattern.T_2", "s", [0.0, 20.0], |s| s.gait.pattern.map(|p| p.pitch_times[1]), "the swinging foot has its landing angle"),
+    fixed!("planner", "gaits", "pattern.T_3", "s", [0.0, 40.0], |s| s.gait.pattern.map(|p| p.pitch_times[2]), "the front foot lies flat"),
+    fixed!("planner", "gaits", "pattern.D_s", "m", [0.0, 1.5], |s| s.gait.pattern.map(|p| p.length), "step length"),
+    fixed!("planner", "gaits", "pattern.l_ao", "m", [0.0, 1.5], |s| s.gait.pattern.map(|p| p.over_length), "way of the swinging ankle up to T_o"),
+    fixed!("planner", "gaits", "pattern.H_ao", "m", [0.0, 1.5], |s| s.gait.pattern.map(|p| p.over_height), "height of the ankle then"),
+    fixed!("planner", "gaits", "pattern.q_b", "rad", [0.0, 0.8], |s| s.gait.pattern.map(|p| p.leave), "pitch, toes down, with which a foot leaves the ground"),
+    fixed!("planner", "gaits", "pattern.q_f", "rad", [0.0, 0.8], |s| s.gait.pattern.map(|p| p.land), "pitch, toes up, with which it lands"),
+    fixed!("planner", "gaits", "pattern.w_s", "m", [0.0, 1.0], |s| s.gait.pattern.map(|p| p.width), "distance of the feet from side to side"),
+    fixed!("planner", "gaits", "pattern.w_p", "m", [0.0, 1.0], |s| s.gait.pattern.map(|p| p.pass), "how far the swinging foot moves outwards in passing"),
+    fixed!("planner", "gaits", "pattern.w_m", "m", [-0.5, 0.5], |s| s.gait.pattern.map(|p| p.shift), "how far the torso stands outside of the stance foot"),
+    fixed!("planner", "gaits", "pattern.x_ed", "m", [-0.5, 0.5], |s| s.gait.pattern.map(|p| p.end_ahead), "torso in front of the stance ankle at the end of single support"),
+    fixed!("planner", "gaits", "pattern.x_sd", "m", [-0.5, 0.5], |s| s.gait.pattern.map(|p| p.start_behind), "torso behind it at the begin of single support"),
+    fixed!("planner", "gaits", "pattern.H_min", "m", [0.0, 3.0], |s| s.gait.pattern.map(|p| p.heights[0]), "least height of the torso"),
+    fixed!("planner", "gaits", "pattern.H_max", "m", [0.0, 3.0], |s| s.gait.pattern.map(|p| p.heights[1]), "greatest height of the torso"),
+    fixed!("planner", "gaits", "pattern.N", "", [2.0, 1024.0], |s| s.gait.pattern.map(|p| p.points as f64), "points of a stride in the tables of the drives"),
     fixed!("planner", "gaits", "obstacles.height", "m", [0.0, 0.5], |s| s.gait.obstacles.map(|o| o.height), "highest obstacle or platform"),
     fixed!("controller", "gaits", "feedback", "", [1.0, 2.0], |s| Some(s.gait.control.feedback as f64), "feedback path of figure 5.8"),
 ];
 
 /// All parameters of this configuration, by process.
 pub fn entries(setup: &Setup) -> Vec<ParameterEntry> {
-    let mut all = live("planner", PLANNER, &setup.gait.step);
-    all.extend(live("controller", STABILIZER, &setup.gait.control));
+    // A pattern is checked as a whole, when it is loaded; nothing of it changes while it is walked.
+    let mut all = Vec::new();
+    if setup.gait.pattern.is_none() {
+        all.extend(live("planner", PLANNER, &setup.gait.step));
+        all.extend(live("controller", STABILIZER, &setup.gait.control));
+    }
     all.extend(FIXED.iter().filter_map(|row| {
         let &Fixed { process, name, unit, range, file, about, get } = row;
+        // Keys that a gait with a pattern has not.
+        if file == "gaits" && setup.gait.pattern.is_some() && !name.starts_with("pattern.") {
+            return None;
+        }
         let change = Change::File(file);
         Some(ParameterEntry { process, name: name.into(), unit, range, default: get(setup)?, about, change })
     }));
@@ -212,7 +241,10 @@ mod tests {
             let name = file.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned();
             let entries = entries(&Setup::load(&root, &name).unwrap());
             let mut names: Vec<_> = entries.iter().map(ParameterEntry::full_name).collect();
-            for process in messages::Process::ALL.map(messages::Process::name) {
+            // A pattern is played by a controller that has nothing to set.
+            let plays = Setup::load(&root, &name).unwrap().gait.pattern.is_some();
+            let all = messages::Process::ALL.map(messages::Process::name);
+            for process in all.into_iter().filter(|name| !(plays && *name == "controller")) {
                 assert!(entries.iter().any(|e| e.process == process), "{process} has none");
             }
             for e in &entries {
@@ -223,6 +255,17 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), entries.len(), "{name}: a name stands for two parameters");
         }
+    }
+
+    #[test]
+    fn a_pattern_has_its_own_parameters_and_none_that_can_be_changed() {
+        let entries = entries(&Setup::load(&crate::root(None), "archie_static").unwrap());
+        assert_eq!(entries.iter().filter(|e| matches!(e.change, Change::Live(_))).count(), 0);
+        let refused = find(&entries, "planner.pattern.w_m").unwrap().command(0.03).unwrap_err();
+        assert_eq!(refused, "planner.pattern.w_m is fixed at start: change it in config/gaits");
+        assert!(
+            find(&entries, "planner.swing_height").is_err() && find(&entries, "planner.step.width").is_err()
+        );
     }
 
     #[test]

@@ -16,9 +16,11 @@ use crate::error::ConfigError;
 use crate::file::{self, Hash};
 pub use crate::joint::Joint;
 use crate::joint::joint_index;
+use crate::leg::{self, Leg};
 use crate::limbs::{Arms, Head};
 use crate::protection::{Protection, homes};
 use crate::section::{self, POSITIVE, Section};
+use crate::tables::TableDrives;
 
 /// A robot: its URDF and everything else that is data about it.
 #[derive(Clone, Debug)]
@@ -47,12 +49,18 @@ pub struct Robot {
     pub classic: Result<FrameLayout, String>,
     /// Local controllers and DBC files that both come from.
     pub can: Can,
+    /// Frames of drives that play tables of points, if the robot's can.
+    table_layout: FrameLayout,
+    /// Drives that play tables: [`Robot::play_tables`] makes them.
+    pub tables: Option<TableDrives>,
     /// Local controllers (indices) that the robot can walk without: nobody stops it if one of them falls silent.
     pub spare: Vec<usize>,
     /// Camera head, if it has one.
     pub head: Option<Head>,
     /// Arms that swing, if it has them.
     pub arms: Option<Arms>,
+    /// Right and left leg in closed form, if the file has their Denavit-Hartenberg rows; the URDF agrees with them.
+    pub legs: Option<[Leg; 2]>,
     /// Drives, one per joint in the joints' order; empty for a robot of ideal drives.
     pub drives: Vec<Drive>,
     /// At what the drives fail safe by themselves; only scenes with `[drives]` need it.
@@ -137,6 +145,9 @@ impl Robot {
             Some(file) => dbc::load(&directory.join(file), &joints, hash).map(Ok)?,
             None => written(&robot.name, &can, FrameForm::Classic, &joints),
         };
+        if let Some(tables) = &can.tables {
+            robot.table_layout = dbc::load(&directory.join(&tables.file), &joints, hash)?;
+        }
         robot.spare = spare(&robot.layout, &can.spare).map_err(of_robot)?;
         robot.can = can;
         // The URDF is parsed where models are built; here only its masses are compared.
@@ -149,7 +160,29 @@ impl Robot {
                 format!("its masses sum to {masses:.3} kg, but total_mass in robot.toml is {wanted} kg");
             return Err(ConfigError::of_file(urdf_path, text));
         }
+        leg::compare_with_urdf(&robot).map_err(of_robot)?;
         Ok(robot)
+    }
+
+    /// The same with drives that play tables of points, on every bus.
+    ///
+    /// # Errors
+    /// Its drives cannot, or the file of their frames is one of targets in every cycle.
+    pub fn play_tables(&mut self) -> Result<(), String> {
+        let name = &self.name;
+        let tables = self.can.tables.clone().ok_or_else(|| {
+            format!("robot {name} has no [can.tables]: its drives take a point in every cycle")
+        })?;
+        if !self.table_layout.plays_tables() {
+            let file = &tables.file;
+            return Err(format!(
+                "robot {name}, can.tables: {file} has no JOINT_letters, JOINT_index, JOINT_value"
+            ));
+        }
+        self.layout = self.table_layout.clone();
+        self.classic = Ok(self.table_layout.clone());
+        self.tables = Some(tables);
+        Ok(())
     }
 
     /// Index of a joint in every array of joints.
@@ -179,21 +212,25 @@ impl Robot {
             top.problem("joint", format!("joint[{i}]: the name `{name}` is taken already"));
         }
         let drives = drives(top, &joints);
+        let feet = feet(top, &names);
         Self {
             name,
             urdf: top.text("urdf"),
             total_mass: top.number("total_mass", "kg", POSITIVE),
             torso: top.text("torso"),
-            feet: feet(top, &names),
             contact: top.table("contact", Contact::build).unwrap_or(Contact::NONE),
             imu: top.numbers("imu", "m", -2.0..=2.0),
             poses: poses(top, &joints),
             layout: FrameLayout::default(),
             classic: Ok(FrameLayout::default()),
             can: Can::default(),
+            table_layout: FrameLayout::default(),
+            tables: None,
             spare: Vec::new(),
             head: optional(top, "head", |table| Head::build(table, &joints)),
             arms: optional(top, "arms", |table| Arms::build(table, &joints)),
+            legs: optional(top, "leg", |table| leg::build(table, &joints, &feet)),
+            feet,
             protection: optional(top, "protection", |table| Some(Protection::build(table, &drives))),
             homes: homes(top, &joints),
             drives,
@@ -328,6 +365,8 @@ pub struct Can {
     pub nodes: Vec<LocalController>,
     /// The drives report the motor side, too.
     pub motor_side: bool,
+    /// Drives that play tables, in scenes that want it.
+    pub tables: Option<TableDrives>,
     /// Names of the local controllers that the robot can walk without.
     spare: Vec<String>,
 }
@@ -342,6 +381,7 @@ impl Can {
                 fd: file("fd"),
                 nodes,
                 motor_side: can.has("motor_side") && can.flag("motor_side"),
+                tables: can.has("tables").then(|| can.table("tables", TableDrives::build)).flatten(),
                 spare: if can.has("spare") { can.texts("spare") } else { Vec::new() },
             }
         };

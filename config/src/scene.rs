@@ -26,6 +26,9 @@ pub const SEED: u64 = 1;
 /// \[rad/s\] Ramp of dry friction of a scene that says none.
 pub const FRICTION_RAMP: f64 = 1.0;
 
+/// Words of `points`: how drives are told where to go.
+const POINTS: [&str; 2] = ["every_cycle", "tables"];
+
 /// `scenes/NAME.toml`.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -57,6 +60,8 @@ pub struct Scene {
     pub friction_ramp: f64,
     /// \[s\] Bus cycle.
     pub cycle: f64,
+    /// Drives play tables of points by themselves, instead of following a point in every cycle.
+    pub plays_tables: bool,
     /// Name of the joint pose the robot starts in, standing on the ground.
     pub start_pose: String,
     /// \[s\]
@@ -124,6 +129,7 @@ impl Scene {
             tolerance: adaptive.then(|| top.number("tolerance", "1", 1e-12..=1e-2)),
             friction_ramp: friction_ramp(top),
             cycle: top.number("cycle", "s", 1e-4..=0.02),
+            plays_tables: top.has("points") && top.word("points", &POINTS) == 1,
             start_pose: top.text("start_pose"),
             duration: top.number("duration", "s", POSITIVE),
             seed: if top.has("seed") { top.integer("seed", 0..=u64::MAX) } else { SEED },

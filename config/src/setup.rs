@@ -40,6 +40,9 @@ impl Setup {
         if let Some(control) = scene.joint_control {
             robot.drives.iter_mut().for_each(|drive| drive.set_control(control));
         }
+        if scene.plays_tables {
+            robot.play_tables().map_err(|text| ConfigError::of_file(&path, format!("points: {text}")))?;
+        }
         let gait =
             Gait::load_hashed(&root.join("gaits").join(&scene.gait).with_extension("toml"), &mut hash)?;
         let system = System::load_hashed(&root.join("system.toml"), &mut hash)?;
@@ -94,6 +97,20 @@ impl Setup {
             let text = format!("robot {robot} has no pose `{pose}`{near}; there is {}", listed(&names));
             note("start_pose".to_owned(), text);
         }
+        // Tables come from plans that need no correction.
+        if let Some(tables) = &self.robot.tables {
+            match &self.gait.pattern {
+                None => note(
+                    "points".to_owned(),
+                    format!("gait {} has no [pattern] to make tables of", scene.gait),
+                ),
+                Some(pattern) => {
+                    if let Some((key, text)) = tables.problem(pattern, scene.cycle) {
+                        note("points".to_owned(), format!("gait {}, pattern.{key} = {text}", scene.gait));
+                    }
+                }
+            }
+        }
         // Commands within the gait, and to parts that the robot and the scene have.
         for (i, (time, command)) in scene.commands.iter().enumerate() {
             if let Some(text) = self.beyond_gait(command) {
@@ -130,11 +147,14 @@ impl Setup {
             note("drives.homing".to_owned(), text);
         }
         // Names of joints and local controllers in plant mismatch and bus faults.
-        for (name, _) in &scene.plant_mismatch.joint_offset.own {
+        let mismatch = &scene.plant_mismatch;
+        let named =
+            [("joint_offset_rad", &mismatch.joint_offset), ("drive_clock_ppm", &mismatch.drive_clock)];
+        for (key, (name, _)) in named.iter().flat_map(|(key, of)| of.own.iter().map(move |own| (key, own))) {
             if !joints.contains(&name.as_str()) {
                 let near = nearest(name, &joints).unwrap_or("none");
                 let text = format!("robot {} has no joint `{name}`; the nearest is `{near}`", scene.robot);
-                note("plant_mismatch.joint_offset_rad".to_owned(), text);
+                note(format!("plant_mismatch.{key}"), text);
             }
         }
         let nodes: Vec<&str> = self.robot.layout.nodes.iter().map(String::as_str).collect();

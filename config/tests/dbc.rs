@@ -1,6 +1,7 @@
 //! Layouts from DBC files: the shipped ones carry everything, and a broken one says what is wrong with it.
 
 use codec::frames::{DriveCommand, decode_sensors, decode_targets, encode_sensors, encode_targets};
+use codec::interpreter::{BG, MP, PT, QP, SAMPLING, ST, Telegram, WS};
 use codec::layout::{Carries, FrameLayout};
 use config::database::Database;
 use config::{Robot, dbc};
@@ -159,6 +160,7 @@ fn a_frame_of_the_cycle_before_is_late() {
                     let command = DriveCommand {
                         targets: JointTargets { header: from.header, ..JointTargets::default() },
                         control: [15; messages::MAX_JOINTS],
+                        due: 0,
                     };
                     encode_targets(layout, &command, &mut to);
                     (from.header.tick, to.header.tick) = (tick, tick);
@@ -175,6 +177,86 @@ fn a_frame_of_the_cycle_before_is_late() {
                     robot.name
                 );
             }
+        }
+    }
+}
+
+/// Archie's drives that play tables: no targets, an interpreter in each, counts as in every cycle; room for 26 telegrams in 8 ms.
+#[test]
+fn frames_of_tables_have_interpreters_instead_of_targets() {
+    let mut robot = robots().remove(2);
+    let classic = robot.classic.clone().unwrap();
+    robot.play_tables().unwrap();
+    let layout = &robot.layout;
+    for j in 0..12 {
+        assert_eq!((layout.count(j), classic.interpreter(true, j)), (classic.count(j), None));
+        let id = |to_drives| layout.interpreter(to_drives, j).map(|m| (m.node, m.id));
+        assert_eq!((id(true), id(false)), (Some((j / 6, 0x301 + j as u32)), Some((j / 6, 0x281 + j as u32))));
+    }
+    let target =
+        |m: &codec::layout::BusMessage| m.signals.iter().any(|s| matches!(s.carries, Carries::Target(_)));
+    assert!(!layout.messages.iter().any(target));
+    // Six PDOs of 135 us, SYNC of 65 us; a controlword of 75 us; telegram and answer 270 us.
+    assert_eq!([0, 1].map(|line| codec::room::cyclic_bits(layout, line)), [875; 2]);
+    assert_eq!([0.008, 0.0032].map(|cycle| codec::room::telegrams_per_cycle(layout, cycle)), [26, 8]);
+    // 10 cycles of checking, 71 of loading, 10 to spare, 20 of announcing.
+    assert_eq!(robot.tables.as_ref().unwrap().lead(layout, 0.008, 300), 111);
+    let refused = robots().remove(0).play_tables().unwrap_err();
+    assert_eq!(refused, "robot lola has no [can.tables]: its drives take a point in every cycle");
+}
+
+#[test]
+fn what_is_wrong_with_frames_of_tables_is_said() {
+    let path = config::root(None).join("robots/archie/can/archie_tables.dbc");
+    let text = std::fs::read_to_string(path).unwrap();
+    let joints: Vec<String> = robots()[2].joints.iter().map(|joint| joint.name.clone()).collect();
+    let joints: Vec<&str> = joints.iter().map(String::as_str).collect();
+    let problems = |text: &str| -> Vec<String> {
+        let problems = dbc::read(text, &joints).err().unwrap_or_default();
+        problems.iter().map(|p| format!("{}: {}", p.key, p.text)).collect()
+    };
+    assert_eq!(problems(&text), Vec::<String>::new());
+    // The knee's interpreter in every cycle, and its controlword gone.
+    let cyclic = text.replace("BA_ \"GenMsgCycleTime\" BO_ 772 0;", "");
+    assert_eq!(
+        problems(&cyclic),
+        [
+            "right_knee_flexion: one message to its drive must hold _letters, _index, _query, _float and _value in 8 bytes, with a GenMsgCycleTime of 0"
+        ]
+    );
+    let renamed = text.replace("right_knee_flexion_control", "right_knee_flexion_error");
+    assert!(problems(&renamed).iter().any(|p| p.contains("nothing of that name goes this way")));
+    let without: String =
+        text.split("\n\n").filter(|part| !part.contains("_rpdo1: 2 PC")).collect::<Vec<_>>().join("\n\n");
+    assert!(problems(&without).contains(&"right_knee_flexion_control: is missing".to_owned()));
+}
+
+/// Both ways, by each drive's interpreter: what our codec writes is what other tools read by the file.
+#[test]
+fn telegrams_are_those_of_the_file_of_frames() {
+    let mut robot = robots().remove(2);
+    robot.play_tables().unwrap();
+    let path = config::root(None).join("robots/archie/can/archie_tables.dbc");
+    let database = Database::load(&path).unwrap();
+    let telegrams = [
+        (Telegram::set(QP, 1, -7644), "QP", [1.0, 0.0, 0.0, -7644.0]),
+        (Telegram::set(QP, 1024, i32::MIN), "QP", [1024.0, 0.0, 0.0, -2_147_483_648.0]),
+        (Telegram::ask(WS, SAMPLING), "WS", [28.0, 1.0, 0.0, 0.0]),
+        (Telegram::set(MP, 4, 250), "MP", [4.0, 0.0, 0.0, 250.0]),
+        (Telegram::set(PT, 0, 513), "PT", [0.0, 0.0, 0.0, 513.0]),
+        (Telegram::set(BG, 0, 255), "BG", [0.0, 0.0, 0.0, 255.0]),
+        (Telegram::set(ST, 0, 0), "ST", [0.0; 4]),
+    ];
+    for (j, to_drives) in (0..12).flat_map(|j| [(j, true), (j, false)]) {
+        let message = robot.layout.interpreter(to_drives, j).unwrap();
+        for (telegram, letters, numbers) in telegrams {
+            let frame = telegram.frame(message.node as u32, message.id);
+            let carried = database.message(frame.id).unwrap().carries(&frame.data[..8]).collect::<Vec<_>>();
+            let of = |part: &str| carried.iter().find(|c| c.name.ends_with(part)).unwrap();
+            assert_eq!(of("_letters").word, Some(letters));
+            let is = ["_index", "_query", "_float", "_value"].map(|part| of(part).value);
+            assert_eq!(is, numbers, "{}: {telegram}", message.name);
+            assert_eq!(Telegram::of(&frame), Some(telegram));
         }
     }
 }
@@ -215,15 +297,17 @@ fn words(carries: Carries) -> Vec<(u16, &'static str)> {
 #[test]
 fn shipped_files_name_modes_states_and_errors_and_say_what_messages_are_and_how_often_they_come() {
     for (robot, cycle) in robots().iter().zip([3.5e-3, 1.5e-3, 3.5e-3]) {
-        for (layout, file, cycle) in
-            [(robot.classic.as_ref().unwrap(), "", cycle), (&robot.layout, "_fd", 1e-3)]
-        {
+        let mut tables = robot.clone();
+        let tables = tables.play_tables().is_ok().then_some((&tables.layout, "_tables", 8e-3));
+        let layouts = [(robot.classic.as_ref().unwrap(), "", cycle), (&robot.layout, "_fd", 1e-3)];
+        for (layout, file, cycle) in layouts.into_iter().chain(tables) {
             let name = &robot.name;
             let path = config::root(None).join(format!("robots/{name}/can/{name}{file}.dbc"));
             let database = Database::load(&path).unwrap();
             for m in &layout.messages {
                 let described = database.message(m.id).unwrap();
-                assert_eq!(described.cycle, Some(cycle), "{name}{file}: {}", m.name);
+                let cycle = m.cyclic.then_some(cycle);
+                assert_eq!(described.cycle, cycle, "{name}{file}: {}", m.name);
                 assert!(!described.comment.is_empty(), "{name}{file}: {} has no comment", m.name);
                 for signal in &m.signals {
                     let fits = |value: &u16| u32::from(*value) < 1 << signal.bits.min(16);

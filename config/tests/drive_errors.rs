@@ -213,6 +213,51 @@ fn joint_control_that_cannot_be() {
 }
 
 #[test]
+fn clock_of_a_drive_that_cannot_be() {
+    let clock = |speed: &str, position: &str| {
+        format!("sampling = \"period\"\nspeed_period = {speed}\nposition_period = {position}")
+    };
+    refused(
+        "clock",
+        &[("sampling = \"continuous\"", &clock("0.00016", "0.00032"))],
+        &["joint_control.sampling: the law \"cascade\" takes \"continuous\" or \"cycle\""],
+    );
+    let pi = "law = \"cascade_pi\"\nspeed_integral = -1.0\nspeed_filter = nan\nfeed_forward = [1.0, 2.0]\noutput = \"amp\"";
+    let law = [("law = \"cascade\"", pi), ("feedback = \"motor\"\n", "")];
+    refused(
+        "integral",
+        &law,
+        &[
+            "joint_control.speed_integral: -1 is not allowed; it takes ",
+            "joint_control.speed_filter: NaN is not allowed; it takes ",
+            "joint_control.feed_forward[1]: 2 is not allowed; it takes ",
+            "joint_control.output: `amp` is not known; it takes one of ",
+            "joint_control.sampling: the law \"cascade_pi\" has a clock of its own; it takes \"period\"",
+        ],
+    );
+    let good = "law = \"cascade_pi\"\nspeed_integral = 75.0\nspeed_filter = 0.0\nfeed_forward = [1.0, 0.0]\noutput = \"current\"";
+    for (speed, position, text) in [
+        (
+            "0.00016",
+            "0.0004",
+            "position_period: 0.0004 is not allowed; it takes a whole multiple of speed_period",
+        ),
+        ("0.0", "0.00032", "speed_period: 0 is not allowed; it takes "),
+        ("0.00032", "0.00016", "position_period: 0.00016 is not allowed; it takes a whole multiple"),
+    ] {
+        refused(
+            "periods",
+            &[
+                ("law = \"cascade\"", good),
+                ("feedback = \"motor\"\n", ""),
+                ("sampling = \"continuous\"", &clock(speed, position)),
+            ],
+            &[&format!("joint_control.{text}")],
+        );
+    }
+}
+
+#[test]
 fn resolution_that_cannot_be() {
     let coarse = "sampling = \"continuous\"\ntable_points = 1\nencoder_counts = 1";
     refused(

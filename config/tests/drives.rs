@@ -1,6 +1,5 @@
 //! Drives of every shipped robot against its URDF, and Lola's against what her joints ask of them.
 
-#[allow(dead_code, reason = "the tests of each robot use the rest")]
 mod robot;
 
 use std::f64::consts::TAU;

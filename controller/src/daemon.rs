@@ -4,10 +4,12 @@ use crate::{Controller, verdict};
 use config::Timeline;
 use daemon::{Connect, Daemon};
 use ipc::Mode;
-use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, PARAMETERS_CONTROLLER, PLAN, PLANNER_TICK, SENSORS};
+use messages::topics::{
+    CONTROLLER_STATE, JOINT_TABLES, JOINT_TARGETS, PARAMETERS_CONTROLLER, PLAN, PLANNER_TICK, SENSORS,
+};
 use messages::{
-    Command, ControllerState, Detail, Event, EventCode, Header, JointTargets, Live, Parameters, Plan,
-    Process, Sensors,
+    Command, ControllerState, Detail, Event, EventCode, Header, JointTables, JointTargets, Live, Parameters,
+    Plan, Process, Sensors,
 };
 use std::error::Error;
 use std::path::Path;
@@ -22,6 +24,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut plan = d.space.reader::<Plan>(&PLAN)?;
     let mut planner_tick = d.space.reader::<Event>(&PLANNER_TICK)?;
     let mut targets = d.space.writer::<JointTargets>(&JOINT_TARGETS)?;
+    let mut joint_tables = d.space.writer::<JointTables>(&JOINT_TABLES)?;
     let mut state = d.space.writer::<ControllerState>(&CONTROLLER_STATE)?;
     let bell = d.bell(&JOINT_TARGETS)?;
     let waiter = d.space.waiter(Process::Controller)?;
@@ -70,11 +73,17 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         // What is read here is what the cycle can be replayed from.
         d.log.uses(0, &SENSORS, Some(measured));
         d.log.uses(1, &PLAN, plan);
-        let (new_targets, new_state) = controller.step(measured, plan);
-        state.write(new_state);
-        targets.write(new_targets);
-        d.log.keep(&CONTROLLER_STATE, new_state);
-        d.log.keep(&JOINT_TARGETS, new_targets);
+        let (targets_of_cycle, state_of_cycle) = controller.step(measured, plan);
+        let (new_targets, new_state) = (*targets_of_cycle, *state_of_cycle);
+        state.write(&new_state);
+        // Tables first: who finds the targets of a cycle finds its tables.
+        if let Some(tables) = controller.tables() {
+            joint_tables.write(tables);
+            d.log.keep(&JOINT_TABLES, tables);
+        }
+        targets.write(&new_targets);
+        d.log.keep(&CONTROLLER_STATE, &new_state);
+        d.log.keep(&JOINT_TARGETS, &new_targets);
         for (code, detail) in controller.events().drain() {
             d.report(header, code, detail);
         }

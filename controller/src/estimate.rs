@@ -32,6 +32,8 @@ pub(crate) struct TaskEstimate {
     pub com_velocity: Vector3<f64>,
     /// \[m, rad\] Sole frames: x, y, z, heading.
     pub feet: [[f64; 4]; 2],
+    /// \[m\] Pressure point of each foot on the ground, NaN without load.
+    pub pressure_points: [Vector2<f64>; 2],
     /// \[m\] Zero-moment point of the measured wrenches on the ground, NaN without load.
     pub zmp: Vector2<f64>,
     /// \[m\] Its distance to the edge of the support polygon, negative outside, NaN without load.
@@ -79,6 +81,7 @@ impl TaskEstimate {
                 let (p, r) = (torso + rotation * s.position, rotation * s.rotation);
                 [p.x, p.y, p.z, r[(1, 0)].atan2(r[(0, 0)])]
             }),
+            pressure_points: [Vector2::repeat(f64::NAN); 2],
             zmp: Vector2::repeat(f64::NAN),
             zmp_margin: f64::NAN,
         };
@@ -102,6 +105,7 @@ impl TaskEstimate {
             normal += f.z;
             // A sole that presses is part of the support polygon, all of it.
             if f.z > TOUCHING * robot.weight() {
+                self.pressure_points[foot] = Vector2::new(-t.y, t.x) / f.z;
                 let [back, front, right, left] = robot.feet[foot].support;
                 let [x, y, _, heading] = self.feet[foot];
                 let (s, c) = heading.sin_cos();
@@ -117,10 +121,26 @@ impl TaskEstimate {
         }
     }
 
+    /// Divergent component of motion, measured and, of a plan that leads the centre of gravity, against the desired one.
+    /// The pendulum is as high as the centre of gravity stands above the lower foot.
+    fn report_dcm(&self, desired: &Desired, state: &mut ControllerState) {
+        let height = self.com.z - self.feet[0][2].min(self.feet[1][2]);
+        let w = (multibody::GRAVITY_ACCELERATION / height).sqrt();
+        let body = &desired.body;
+        for i in 0..2 {
+            state.dcm[i] = self.com[i] + self.com_velocity[i] / w;
+            state.dcm_error[i] = body.position[i] + body.velocity[i] / w - state.dcm[i];
+        }
+    }
+
     /// Writes the measured part of the record.
     pub(crate) fn report(&self, desired: &Desired, state: &mut ControllerState) {
         state.com = self.com.into();
+        state.com_velocity = self.com_velocity.into();
+        self.report_dcm(desired, state);
+        state.torso = self.torso.into();
         state.feet = self.feet;
+        state.pressure_point = self.pressure_points.map(Into::into);
         state.zmp = self.zmp.into();
         state.zmp_margin = self.zmp_margin;
         for i in 0..2 {

@@ -12,6 +12,8 @@
 //! | inverse kinematics with null-space optimization | (5.34)-(5.39) | [`inverse_kinematics`] |
 //! | camera head | (4.55)-(4.59) | [`gaze`], [`saccade`] |
 //! | arm swing | 4.9 | [`arms`] |
+//! | in place of all of them, for a pattern: open loop | Daniali 2013, 5.4 | `open_loop` |
+//! | tables of it for drives that play them | 6.1.1 of Daniali | `plan_tables`, [`table_builder`] |
 //! | direct kinematics of the desired joints (feedback path 1) | (4.5)-(4.10) | [`task_space`] |
 
 mod approach;
@@ -23,9 +25,12 @@ pub mod estimate;
 pub mod force_control;
 pub mod gaze;
 pub mod inverse_kinematics;
+mod open_loop;
 pub mod plan_follower;
+mod plan_tables;
 pub mod saccade;
 mod stabilizer;
+pub mod table_builder;
 pub mod task_space;
 pub mod torso;
 mod watch;

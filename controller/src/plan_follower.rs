@@ -20,8 +20,8 @@ pub(crate) struct PlanFollower {
 /// Desired task space at one instant, in the planning frame of the active plan (thesis table 4.2).
 #[derive(Clone, Copy, Debug)]
 pub struct Desired {
-    /// \[m\] Centre of gravity.
-    pub com: Sample<3>,
+    /// \[m\] The point of the body that the plan leads: [`messages::BodyPoint`].
+    pub body: Sample<3>,
     /// \[rad\] phi_x, phi_y, alpha.
     pub torso: Sample<3>,
     /// \[m, rad\] Sole frames: x, y, z, heading; right, left.
@@ -52,6 +52,17 @@ impl PlanFollower {
         &self.active
     }
 
+    /// The plan to come, if there is one.
+    pub(crate) fn next(&self) -> Option<&Plan> {
+        Some(&self.next).filter(|next| next.id > self.active.id && next.start_tick != u64::MAX)
+    }
+
+    /// Refuses the plan to come; the active one goes on.
+    pub(crate) fn refuse_next(&mut self, events: &mut EventQueue) {
+        self.next.start_tick = u64::MAX;
+        events.push(EventCode::PlanRefused, Detail::Plan(self.next.id));
+    }
+
     /// Drops all plans, those made up to this tick that are still to come among them: without power nobody follows one.
     pub(crate) fn drop_all(&mut self, tick: u64) {
         // Ids go on rising: what was dropped is not looked at again.
@@ -69,8 +80,7 @@ impl PlanFollower {
                 self.next = *plan;
             } else {
                 self.next.id = plan.id; // looked at once
-                self.next.start_tick = u64::MAX;
-                events.push(EventCode::PlanRefused, Detail::Plan(plan.id));
+                self.refuse_next(events);
             }
         }
         if self.next.id > self.active.id && self.next.start_tick <= tick {
@@ -115,48 +125,19 @@ impl PlanFollower {
         let left = p.load_left.sample(t).position[0].clamp(0.0, 1.0);
         let mut load = [1.0 - left; 2];
         load[LEFT] = left;
-        let (com, zmp) = (p.com.sample(t), p.zmp.sample(t).0);
-        let fall = p.zmp_height.sample(t).0[0] / (com.acceleration[2] - multibody::GRAVITY.z);
-        let pitch = [p.pitch[0].sample(t), p.pitch[1].sample(t)];
+        let (body, zmp) = (p.body.sample(t), p.zmp.sample(t).0);
+        let fall = p.zmp_height.sample(t).0[0] / (body.acceleration[2] - multibody::GRAVITY.z);
+        let soles = [0, 1].map(|foot| p.sole(foot, t, self.edges[foot]));
         Desired {
-            com,
+            body,
             torso: p.torso.sample(t),
-            feet: [0, 1].map(|i| rolled(&p.feet[i].sample(t), &pitch[i], self.edges[i])),
-            pitch,
+            feet: soles.map(|(sole, _)| sole),
+            pitch: soles.map(|(_, pitch)| pitch),
             toes: [p.toes[0].sample(t), p.toes[1].sample(t)],
-            zmp: [0, 1].map(|d| zmp[d] - fall * com.acceleration[d]),
+            zmp: [0, 1].map(|d| zmp[d] - fall * body.acceleration[d]),
             load,
         }
     }
-}
-
-/// Sole frame of a foot whose footprint is at `flat` and whose sole is pitched about one of its edges \[m\]: toes down
-/// about the front one, toes up about the rear one. That edge stays in the footprint: the rolling condition (4.5).
-fn rolled(flat: &Sample<4>, pitch: &Sample<1>, [rear, front]: [f64; 2]) -> Sample<4> {
-    let (angle, rate, second) = (pitch.position[0], pitch.velocity[0], pitch.acceleration[0]);
-    if angle == 0.0 && rate == 0.0 && second == 0.0 {
-        return *flat;
-    }
-    let edge = if angle < 0.0 { rear } else { front };
-    // Way of the sole's origin while it turns about the edge, with both derivatives.
-    let (s, c) = angle.sin_cos();
-    // From the edge, forward and up: edge (1 - cos, sin).
-    let forward = [edge * (1.0 - c), edge * s * rate, edge * (c * rate * rate + s * second)];
-    let up = [edge * s, edge * c * rate, edge * (c * second - s * rate * rate)];
-    // The same along the axes of the planning frame, in which the foot's heading may turn meanwhile.
-    let (sin, cos) = flat.position[3].sin_cos();
-    let (turn, turning) = (flat.velocity[3], flat.acceleration[3]);
-    let mut sole = *flat;
-    for (d, axis, across) in [(0, cos, -sin), (1, sin, cos)] {
-        sole.position[d] += forward[0] * axis;
-        sole.velocity[d] += forward[1] * axis + forward[0] * turn * across;
-        sole.acceleration[d] += forward[2] * axis + (2.0 * forward[1] * turn + forward[0] * turning) * across
-            - forward[0] * turn * turn * axis;
-    }
-    sole.position[2] += up[0];
-    sole.velocity[2] += up[1];
-    sole.acceleration[2] += up[2];
-    sole
 }
 
 /// `true` if every number of a plan is finite.
@@ -235,51 +216,12 @@ mod tests {
     fn a_plan_with_a_nan_anywhere_is_refused() {
         let mut f = PlanFollower::new([[-0.1, 0.1]; 2]);
         let mut bad = plan(1, 10);
-        bad.com.coefficients[95][2][5] = f64::NAN;
+        bad.body.coefficients[95][2][5] = f64::NAN;
         assert_eq!(update(&mut f, 10, Some(&bad)), Some((EventCode::PlanRefused, Detail::Plan(1))));
     }
 
     #[test]
     fn nan_load_factors_never_reach_the_controller() {
         assert!(!f64::NAN.clamp(0.0, 1.0).is_finite(), "clamp lets NaN through: plans are checked before");
-    }
-
-    /// The edge stays where it is and the derivatives are those of the positions, on a foot that turns meanwhile.
-    #[test]
-    fn a_foot_rolls_over_its_edge_without_slipping() {
-        let edges = [-0.255, 0.035];
-        let flat = |t: f64| Sample {
-            position: [0.3, 0.1, 0.02, 0.4 + 0.5 * t + t * t],
-            velocity: [0.0, 0.0, 0.0, 0.5 + 2.0 * t],
-            acceleration: [0.0, 0.0, 0.0, 2.0],
-        };
-        for (sign, edge) in [(1.0, edges[1]), (-1.0, edges[0])] {
-            let pitch = |t: f64| Sample {
-                position: [sign * (0.1 + 0.8 * t - t * t)],
-                velocity: [sign * (0.8 - 2.0 * t)],
-                acceleration: [sign * -2.0],
-            };
-            let at = |t: f64| rolled(&flat(t), &pitch(t), edges);
-            let (t, h) = (0.1, 1e-4);
-            let [now, before, after] = [at(t), at(t - h), at(t + h)];
-            for d in 0..3 {
-                let rate = (after.position[d] - before.position[d]) / (2.0 * h);
-                let second = (after.velocity[d] - before.velocity[d]) / (2.0 * h);
-                assert!((now.velocity[d] - rate).abs() < 1e-7, "{d}: {} is {rate}", now.velocity[d]);
-                assert!((now.acceleration[d] - second).abs() < 1e-6, "{d}");
-            }
-            // The edge in the world: sole frame, heading, pitch.
-            let (angle, heading) = (pitch(t).position[0], flat(t).position[3]);
-            let forward = edge * angle.cos();
-            let p = now.position;
-            let touching =
-                [p[0] + forward * heading.cos(), p[1] + forward * heading.sin(), p[2] - edge * angle.sin()];
-            let footprint = [0.3 + edge * heading.cos(), 0.1 + edge * heading.sin(), 0.02];
-            for d in 0..3 {
-                assert!((touching[d] - footprint[d]).abs() < 1e-15);
-            }
-            assert!(p[2] > 0.02, "no part of the sole is under the ground");
-        }
-        assert_eq!(rolled(&flat(0.1), &Sample::rest([0.0]), edges), flat(0.1));
     }
 }

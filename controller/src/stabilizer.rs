@@ -12,15 +12,17 @@ use config::gait::StabilizerGains;
 use config::parameters::STABILIZER;
 use config::{Gait, Robot};
 use messages::{
-    Command, ControllerState, Detail, EventCode, EventQueue, JointTargets, MAX_JOINTS, Parameters, Plan,
-    Reason, Sensors, StartUp, Verdict,
+    Command, ControllerState, Detail, EventCode, EventQueue, Header, JointTables, JointTargets, MAX_JOINTS,
+    Parameters, Plan, Reason, Sensors, StartUp, Verdict,
 };
 use multibody::ModelError;
+use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;
 
 use crate::contact_force::FootWrench;
 use crate::estimate::TaskEstimate;
 use crate::force_control::{Modification, modify};
+use crate::open_loop::{OpenLoop, encoders_only};
 use crate::plan_follower::{Desired, PlanFollower};
 use crate::task_space::TaskSpace;
 use crate::watch::SafetyWatch;
@@ -57,6 +59,8 @@ pub struct Controller {
     modification: Modification,
     speeds: JointSpeeds,
     joints: JointState,
+    /// In place of the stabilizer, if the gait is a pattern.
+    open_loop: Option<OpenLoop>,
     telemetry: Telemetry,
 }
 
@@ -71,13 +75,14 @@ impl Controller {
             control: gait.control,
             clock: CycleClock::new(dt),
             plan: PlanFollower::new([0, 1].map(|i| [robot.feet[i].support[0], robot.feet[i].support[1]])),
-            watch: SafetyWatch::new(robot.weight()),
+            watch: SafetyWatch::new(robot.weight(), gait.pattern.is_some()),
             speeds: JointSpeeds::new(robot, &desired, gait.arm_swing)?,
             measured,
             desired,
             contacts: FootContacts::new(),
             modification: Modification::default(),
             joints: JointState::new(),
+            open_loop: gait.pattern.map(|pattern| OpenLoop::new(robot, &pattern, dt)),
             telemetry: Telemetry::default(),
         })
     }
@@ -106,7 +111,9 @@ impl Controller {
         let id = Detail::Message(command.address().1.into());
         if let Command::Parameter(change) = command {
             let parameter = STABILIZER.get(change.number as usize);
-            let set = parameter.is_some_and(|p| p.set(&mut self.control, change.value));
+            // The open loop has none of these gains.
+            let set =
+                self.open_loop.is_none() && parameter.is_some_and(|p| p.set(&mut self.control, change.value));
             let refused = (EventCode::CommandRefused, id);
             return Some(if set {
                 (EventCode::ParameterSet, Detail::Number(change.number.into()))
@@ -135,6 +142,8 @@ impl Controller {
         }
         // A plan that came in time is taken, if this process was stopped at its start.
         self.plan.update(oldest, newest, &mut self.telemetry.events);
+        let own = self.open_loop.as_ref().map(|_| encoders_only(sensors));
+        let sensors = own.as_ref().unwrap_or(sensors);
         let (sensors, failed) = self.watch.admit(sensors, self.robot.joints.len());
         if failed {
             self.telemetry.events.push(EventCode::SensorNotFinite, Detail::Nothing);
@@ -155,18 +164,45 @@ impl Controller {
             wrenches = self.follow(sensors, &lag, past).wrenches.or(wrenches);
         }
         let Followed { now, estimate, wrenches: new } = self.follow(sensors, &lag, tick);
+        self.fill_tables(&sensors.header);
+        let com = match &self.open_loop {
+            Some(_) => self.com_of_targets(&now),
+            None => now.body.position,
+        };
         let outcome = CycleOutcome {
             plan: &self.plan,
+            leads: self.leads(),
             watch: &self.watch,
             joints: &self.joints,
             modification: &self.modification,
             wrenches: new.or(wrenches),
             lag: &lag,
+            com,
             now: &now,
             estimate: &estimate,
         };
         self.telemetry.report(sensors, &self.clock, &outcome);
         (&self.telemetry.targets, &self.telemetry.state)
+    }
+
+    /// Tables for drives that play them, if they were completed in the last cycle: they are published before its targets.
+    pub fn tables(&self) -> Option<&JointTables> {
+        self.open_loop.as_ref().and_then(OpenLoop::tables)
+    }
+
+    /// Fills tables of the plan to come; one that the drives cannot play is refused.
+    fn fill_tables(&mut self, header: &Header) {
+        let Self { open_loop: Some(open_loop), plan, robot, joints, .. } = self else { return };
+        let follows = plan.id() > 0;
+        if !open_loop.fill_tables(robot, plan.next(), (header, follows), &joints.angle) {
+            plan.refuse_next(&mut self.telemetry.events);
+        }
+    }
+
+    /// True if joints are led to targets: by a plan, or to rest where the tables of the first one begin.
+    fn leads(&self) -> bool {
+        let awaits = self.open_loop.as_ref().is_some_and(OpenLoop::plays_tables);
+        self.plan.id() > 0 || awaits && self.plan.next().is_some()
     }
 
     /// Joint targets for the end of the cycle `tick`.
@@ -185,7 +221,11 @@ impl Controller {
                 self.telemetry.events.push(why, Detail::Nothing);
             }
         }
-        let wrenches = if powered && self.watch.stopped().is_none() {
+        let moves = powered && self.watch.stopped().is_none();
+        let wrenches = if moves && self.open_loop.is_some() {
+            self.play(t + dt);
+            None
+        } else if moves {
             let (wrenches, limits) = self.stabilize(sensors, lag, &now, &end, &estimate);
             self.telemetry.note_limits(&limits, &self.clock);
             Some(wrenches)
@@ -196,12 +236,34 @@ impl Controller {
         Followed { now, estimate, wrenches }
     }
 
+    /// Joint targets for plan time `t` \[s\] without any feedback.
+    fn play(&mut self, t: f64) {
+        let Some(open_loop) = &mut self.open_loop else { return };
+        match open_loop.targets(&self.robot, self.plan.plan(), &self.joints.angle, t) {
+            Ok((angle, speed)) => (self.joints.angle, self.joints.speed) = (angle, speed.into()),
+            Err((foot, _)) => {
+                // The planner lets no such plan go out; joints stay where they are.
+                self.joints.rest();
+                let joints = self.robot.legs.as_ref().map_or(0, |legs| legs[foot].joints.len() as u64);
+                let limits = MetLimits { damped: false, modification: false, joints };
+                self.telemetry.note_limits(&limits, &self.clock);
+            }
+        }
+    }
+
+    /// \[m\] Centre of gravity of the joint targets, the torso being where the plan wants it.
+    fn com_of_targets(&mut self, now: &Desired) -> [f64; 3] {
+        self.desired.update(&self.joints.angle);
+        (Vector3::from(now.body.position) + planned_torso(now) * self.desired.com()).into()
+    }
+
     /// Stands still where the joints are: while the supply is off the targets follow the measured angles.
     fn start_from(&mut self, sensors: &Sensors) {
         self.watch.reset();
         self.contacts.reset(measured_forces(&self.measured, sensors));
         self.modification.reset();
         self.speeds.reset();
+        self.open_loop.iter_mut().for_each(OpenLoop::reset);
         self.joints.reset(&sensors.joint_angle);
     }
 

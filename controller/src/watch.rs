@@ -21,6 +21,8 @@ const BAD_CYCLES: u32 = 20;
 pub(crate) struct SafetyWatch {
     /// \[N\] Weight of the robot.
     weight: f64,
+    /// Neither inclination nor load is known: nobody can tell a fall or being lifted.
+    blind: bool,
     /// The last sensor data without a NaN, and how many with one came since.
     good: Sensors,
     bad: u32,
@@ -31,9 +33,9 @@ pub(crate) struct SafetyWatch {
 }
 
 impl SafetyWatch {
-    /// Of a robot of `weight` \[N\].
-    pub(crate) fn new(weight: f64) -> Self {
-        Self { weight, good: Sensors::default(), bad: 0, unloaded: 0, why: None, contact: [false; 2] }
+    /// Of a robot of `weight` \[N\], which has encoders only if `blind`.
+    pub(crate) fn new(weight: f64, blind: bool) -> Self {
+        Self { weight, blind, good: Sensors::default(), bad: 0, unloaded: 0, why: None, contact: [false; 2] }
     }
 
     /// The sensor data if they are finite, otherwise the last ones that were; true where that begins.
@@ -81,7 +83,7 @@ impl SafetyWatch {
     ) -> Option<EventCode> {
         let tilt = (0..2).map(|i| (now.torso.position[i] - estimate.angles[i]).abs()).fold(0.0, f64::max);
         let load = sensors.foot_wrench[0].force[2].max(sensors.foot_wrench[1].force[2]);
-        self.unloaded = if load < LOADED * self.weight { self.unloaded + 1 } else { 0 };
+        self.unloaded = if load < LOADED * self.weight && !self.blind { self.unloaded + 1 } else { 0 };
         let why = if self.bad > BAD_CYCLES {
             Some(EventCode::SensorNotFinite)
         } else if !(tilt < FALLING) {
@@ -107,7 +109,7 @@ mod tests {
     fn contact_is_a_share_of_the_weight() {
         for name in ["lola", "johnnie", "archie"] {
             let robot = config::Robot::load(&config::root(None).join("robots").join(name)).unwrap();
-            let mut watch = SafetyWatch::new(robot.weight());
+            let mut watch = SafetyWatch::new(robot.weight(), false);
             let mut contact = |share: f64| {
                 let mut sensors = Sensors::default();
                 sensors.foot_wrench[0].force[2] = share * robot.weight();

@@ -61,8 +61,8 @@ impl Rig {
         let mut plan = Plan { id: 1, start_tick: self.sensors.header.tick + 1, ..Plan::default() };
         plan.state = GaitState::Standing as u64;
         let to = std::array::from_fn(|d| state.com[d] + shift[d]);
-        plan.com = Path::resting(0.0, state.com);
-        assert!(plan.com.push(&Sample::rest(state.com), &Sample::rest(to), 1.5));
+        plan.body = Path::resting(0.0, state.com);
+        assert!(plan.body.push(&Sample::rest(state.com), &Sample::rest(to), 1.5));
         plan.torso = Path::resting(0.0, [FRAC_PI_2, FRAC_PI_2, 0.0]);
         plan.feet = state.feet.map(|f| Path::resting(0.0, f));
         plan.toes = [Path::resting(0.0, [0.0]); 2];

@@ -1,4 +1,4 @@
-//! Nothing allocates after the controller is made, camera head and arms included.
+//! Nothing allocates after the controller is made, camera head, arms and tables for drives included.
 #![allow(
     unsafe_code,
     reason = "a counting allocator can only be written with GlobalAlloc, which is unsafe to implement"
@@ -52,8 +52,8 @@ fn a_cycle_works_in_the_memory_made_at_the_start() {
     let mut plan =
         Box::new(Plan { id: 1, start_tick: 2, state: GaitState::Standing as u64, ..Plan::default() });
     let to = std::array::from_fn(|d| state.com[d] + [0.02, 0.03, -0.06][d]);
-    plan.com = Path::resting(0.0, state.com);
-    assert!(plan.com.push(&Sample::rest(state.com), &Sample::rest(to), 1.5));
+    plan.body = Path::resting(0.0, state.com);
+    assert!(plan.body.push(&Sample::rest(state.com), &Sample::rest(to), 1.5));
     plan.torso = Path::resting(0.0, [std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2, 0.0]);
     plan.feet = state.feet.map(|f| Path::resting(0.0, f));
     plan.zmp.push(0.0, [state.com[0], state.com[1]]);
@@ -84,4 +84,39 @@ fn a_cycle_works_in_the_memory_made_at_the_start() {
 
     drop(Box::new(std::hint::black_box(1)));
     assert!(COUNT.get() > before, "the counter counts");
+}
+
+/// A pattern gait whose tables are filled, published and followed.
+#[test]
+fn tables_are_filled_in_the_memory_made_at_the_start() {
+    let setup = config::Setup::load(&root(None), "archie_tables").unwrap();
+    let mut controller = Controller::new(&setup.robot, &setup.gait, setup.scene.cycle).unwrap();
+    let mut sensors = Sensors { power: 1, ..Sensors::default() };
+    sensors.joint_angle[..12].copy_from_slice(&setup.robot.poses["stand"]);
+    let state = *controller.step(&sensors, None).1;
+    let mut plan =
+        Box::new(Plan { id: 1, start_tick: 400, state: GaitState::Standing as u64, ..Plan::default() });
+    let from: [f64; 3] = state.torso;
+    plan.body = Path::resting(0.0, from);
+    let to = [from[0], from[1], from[2] - 0.02];
+    assert!(plan.body.push(&Sample::rest(from), &Sample::rest(to), 30.0));
+    plan.torso = Path::resting(0.0, [std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2, 0.0]);
+    plan.feet = state.feet.map(|f| Path::resting(0.0, f));
+    plan.load_left = Path::resting(0.0, [0.5]);
+
+    let before = COUNT.get();
+    let (mut points, mut active) = (0, false);
+    for _ in 1..1000u64 {
+        sensors.header.tick += 1;
+        let targets = controller.step(&sensors, Some(&plan)).0;
+        (sensors.joint_angle, sensors.joint_speed) = (targets.angle, targets.speed);
+        points += controller.tables().map_or(0, |tables| tables.points);
+        active |= controller.events().drain().any(|(code, _)| code == EventCode::PlanActive);
+    }
+    let allocations = COUNT.get() - before;
+    assert_eq!(
+        (allocations, points, active),
+        (0, 377, true),
+        "30 s are 375 times 80 ms, and the last point stands twice"
+    );
 }

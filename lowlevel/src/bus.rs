@@ -43,6 +43,10 @@ pub(crate) fn open(d: &Daemon) -> Result<Box<dyn Fieldbus>, Box<dyn Error>> {
     match &d.bus {
         BusAddress::Shared => Ok(Box::new(SimulatedBus::new(&d.space)?)),
         BusAddress::Can { fd, interfaces } => Ok(Box::new(CanBus::new(settings, *fd, interfaces)?)),
+        BusAddress::Sercos(_) if d.setup.robot.tables.is_some() => {
+            let scene = &d.setup.scene.name;
+            Err(format!("scene {scene}: drives that play tables have no telegrams on Sercos; take CAN or shared memory").into())
+        }
         BusAddress::Sercos(place) => Ok(Box::new(SercosBus::new(settings, place)?)),
     }
 }

@@ -8,10 +8,11 @@ use daemon::{Commands, Connect, Daemon};
 use ipc::{Mode, Reader, Waiter, Writer};
 use messages::cycle_inputs::Used;
 use messages::topics::{
-    BUS_TX, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, LOG_TICK, POWER, SENSORS, WATCHDOG_RESET,
+    BUS_TX, FRAMES_IN, FRAMES_OUT, JOINT_TABLES, JOINT_TARGETS, LOG_TICK, POWER, SENSORS, WATCHDOG_RESET,
 };
 use messages::{
-    BusFrames, Detail, Event, EventCode, Header, JointTargets, Live, Power, Process, Sensors, WatchdogReset,
+    BusFrames, Detail, Event, EventCode, Header, JointTables, JointTargets, Live, Power, Process, Sensors,
+    WatchdogReset,
 };
 use realtime::{CycleVerdict, Period, clock};
 use std::error::Error;
@@ -35,6 +36,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         received: 0,
         reset: d.space.writer(&WATCHDOG_RESET)?,
         targets: d.space.reader(&JOINT_TARGETS)?,
+        tables: d.space.reader(&JOINT_TABLES)?,
         power: d.space.reader(&POWER)?,
         logged: d.space.reader(&LOG_TICK)?,
         bell_sensors: d.bell(&SENSORS)?,
@@ -75,6 +77,7 @@ struct LowlevelPorts {
     received: u64,
     reset: Writer<WatchdogReset>,
     targets: Reader<JointTargets>,
+    tables: Reader<JointTables>,
     power: Reader<Power>,
     logged: Reader<Event>,
     bell_sensors: usize,
@@ -83,6 +86,16 @@ struct LowlevelPorts {
     waiter: Waiter,
     timeline: Timeline,
     commands: Commands,
+}
+
+/// Tables that the drives are to play, if there are new ones: the controller writes them before its targets.
+fn take_tables(d: &mut Daemon, p: &mut LowlevelPorts, joints: &mut JointLoop) {
+    if p.tables.refresh()
+        && let Some(tables) = p.tables.held()
+    {
+        joints.take_tables(tables);
+    }
+    d.log.uses(2, &JOINT_TABLES, p.tables.held());
 }
 
 /// Commands of this cycle: the scene's that are due, then live ones.
@@ -143,6 +156,7 @@ fn lockstep(
         if !d.wait(&p.waiter, "controller", || targets.latest().is_some_and(|t| t.header.tick == tick))? {
             break;
         }
+        take_tables(d, p, joints);
         take_commands(d, p, joints, header);
         let off = joints.state() == LoopState::Off;
         d.log.uses(0, &JOINT_TARGETS, p.targets.held());
@@ -192,6 +206,7 @@ fn real_time(d: &mut Daemon, p: &mut LowlevelPorts, joints: &mut JointLoop, last
         d.begin(period.planned());
         header = receive(d, p, joints, tick, clock::now());
         wait_for_targets(p, tick, period.planned() + answer_ns);
+        take_tables(d, p, joints);
         take_commands(d, p, joints, header);
         let off = joints.state() == LoopState::Off;
         cause = cause.filter(|_| !off); // a stop is latched until the supply was off

@@ -7,11 +7,12 @@
 
 mod explored;
 
-use codec::frames::{DriveCommand, Received, decode_sensors, encode_targets};
+use codec::frames::{DriveCommand, Received, decode_sensors, encode_command};
+use codec::layout::Carries;
 use config::{Robot, System};
 use messages::{
-    BusCounters, BusFrames, Command, Detail, EventCode, EventQueue, Header, JointMode, JointTargets, Sensors,
-    StartUp, Verdict, WatchdogReset,
+    BusCounters, BusFrames, Command, Detail, EventCode, EventQueue, Header, JointMode, JointTables,
+    JointTargets, Sensors, StartUp, TableFault, Verdict, WatchdogReset,
 };
 
 use crate::limits::following_limit;
@@ -19,6 +20,7 @@ use crate::line_guard::LineGuard;
 use crate::reports::{Reports, drive_fault};
 use crate::setpoints::Setpoints;
 use crate::start_up::{StartUpSequence, is_enabled, knows_angle};
+use crate::table_master::{TableCycle, TableMaster, TableState};
 use crate::target_age::TargetAge;
 use drives::cia402::{Wanted, controlword};
 
@@ -45,10 +47,14 @@ pub struct JointLoop {
     age: TargetAge,
     setpoints: Setpoints,
     guard: LineGuard,
+    /// Drives that play tables; none: they are sent a point in every cycle.
+    tables: Option<TableMaster>,
     start_up: StartUpSequence,
     reports: Reports,
     sensors: Sensors,
     received: Received,
+    /// Plan of tables that were refused because the drives play none.
+    refused_plan: u64,
     output: LoopOutput,
 }
 
@@ -71,10 +77,12 @@ impl JointLoop {
             age: TargetAge::new(system.targets_missed),
             setpoints: Setpoints::new(),
             guard: LineGuard::new(robot, system, dt),
-            start_up: StartUpSequence::new(robot.joints.len(), robot.weight()),
+            tables: TableMaster::new(robot, dt),
+            start_up: StartUpSequence::new(robot.joints.len(), robot.weight(), feels(robot)),
             reports: Reports::new(),
             sensors: Sensors::default(),
             received: Received::default(),
+            refused_plan: 0,
             output: LoopOutput::default(),
         }
     }
@@ -91,8 +99,11 @@ impl JointLoop {
 
     /// Events that were not taken yet.
     pub fn events(&mut self) -> &mut EventQueue {
-        let Self { reports, guard, start_up, .. } = self;
+        let Self { reports, guard, start_up, tables, .. } = self;
         reports.events().append(guard.events());
+        if let Some(tables) = tables {
+            reports.events().append(tables.events());
+        }
         reports.events().append(start_up.events());
         reports.events()
     }
@@ -103,6 +114,26 @@ impl JointLoop {
     /// Why it is refused.
     pub fn command(&mut self, command: &Command) -> Verdict {
         self.start_up.command(command, &self.sensors)
+    }
+
+    /// Takes tables for the drives, between [`JointLoop::receive`] and [`JointLoop::send`]: those of a new plan are checked,
+    /// loaded and begun in the cycle that they name, older ones are known already.
+    pub fn take_tables(&mut self, tables: &JointTables) {
+        match &mut self.tables {
+            Some(master) => master.take(tables),
+            None if tables.plan > self.refused_plan => {
+                self.refused_plan = tables.plan;
+                let fault = TableFault::NoTables;
+                let detail = Detail::Table { joint: 0, point: 0, fault };
+                self.reports.events().push(EventCode::TablesRefused, detail);
+            }
+            None => {}
+        }
+    }
+
+    /// Where tables that were taken are; none if the drives play none.
+    pub fn table_state(&self) -> Option<TableState> {
+        self.tables.as_ref().map(TableMaster::state)
     }
 
     /// Faults of the bus so far.
@@ -125,6 +156,9 @@ impl JointLoop {
         self.guard.expect(&mut self.sensors);
         if let Some(frames) = frames {
             self.received = decode_sensors(&self.robot.layout, frames, &mut self.sensors);
+        }
+        if let Some(tables) = &mut self.tables {
+            tables.receive(frames);
         }
         // What cannot be goes back to what was expected, before anybody uses it.
         self.guard.judge(frames, &self.received, skipped, &mut self.sensors);
@@ -164,6 +198,7 @@ impl JointLoop {
         self.check_following();
         let stands = self.start_up.state() == StartUp::Standing;
         self.reports.drive_faults(&self.robot, &self.sensors, |j| stands && self.guard.spares(j));
+        self.step_tables();
         self.write_frames();
         (&self.output.frames, &self.output.reset)
     }
@@ -196,6 +231,8 @@ impl JointLoop {
             Hold => Hold,
             Track if cause.is_some() => self.stop(cause.unwrap_or(EventCode::SafeStop), Detail::Nothing),
             Track if off.is_some() => self.stop(EventCode::DriveNotEnabled, Detail::Joint(off.unwrap_or(0))),
+            // Targets go on as planned, the drives do not.
+            Track if self.tables.as_ref().is_some_and(TableMaster::refused) => Stop(EventCode::TablesRefused),
             Track if late => self.stop(EventCode::TargetsStale, Detail::Cycles(self.age.cycles().into())),
             Track if mode == JointMode::Stop => self.stop(EventCode::SafeStop, Detail::Nothing),
             Track if mode == JointMode::Track => Track,
@@ -296,6 +333,18 @@ impl JointLoop {
         }
     }
 
+    /// Drives play tables while the joints are led, and no longer.
+    fn step_tables(&mut self) {
+        let Some(tables) = &mut self.tables else { return };
+        let setpoints = &self.setpoints;
+        tables.step(&TableCycle {
+            tick: self.sensors.header.tick,
+            powered: self.sensors.power == 1,
+            led: self.state == LoopState::Track && self.output.reset.trip == 0,
+            setpoint: &|j| (setpoints.of(j).angle, setpoints.of(j).speed),
+        });
+    }
+
     fn write_frames(&mut self) {
         let LoopOutput { command, frames, reset } = &mut self.output;
         let header = Header { epoch: 0, ..self.sensors.header };
@@ -318,6 +367,17 @@ impl JointLoop {
             };
             command.control[j] = controlword(self.sensors.drive_status[j] as u16, wanted).into();
         }
-        encode_targets(&self.robot.layout, command, frames);
+        let mut telegrams: &[messages::Frame] = &[];
+        if let Some(tables) = &mut self.tables {
+            command.due = tables.due(header.tick, &command.control, command.targets.mode);
+            telegrams = tables.telegrams();
+        }
+        encode_command(&self.robot.layout, command, telegrams, frames);
     }
+}
+
+/// True if the robot's drives bring forces of its feet.
+fn feels(robot: &Robot) -> bool {
+    let mut signals = robot.layout.sent(false).flat_map(|m| &m.signals);
+    signals.any(|signal| matches!(signal.carries, Carries::Force(..)))
 }

@@ -8,6 +8,7 @@
 //! | finite? in range? slow enough? | `setpoints.rs`, [`limits`] |
 //! | targets that come again after a pause | `rejoin.rs` |
 //! | controlled stop when targets stay away | [`braking`] |
+//! | tables that the drives play by themselves: admitted, loaded, begun | [`table_master`], `table_admission.rs`, `telegram_exchange.rs` |
 //! | following? lines? | [`JointLoop::send`] |
 //! | events | `reports.rs` |
 //! | targets → frames of the bus; watchdog reset | [`JointLoop::send`] |
@@ -31,7 +32,10 @@ mod sercos_bus;
 mod setpoints;
 mod simulated_bus;
 pub mod start_up;
+mod table_admission;
+pub mod table_master;
 mod target_age;
+mod telegram_exchange;
 
 pub use fieldbus::{BusSettings, Fieldbus, RunControl};
 pub use joint_loop::JointLoop;

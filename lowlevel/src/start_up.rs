@@ -58,6 +58,8 @@ pub(crate) struct StartUpSequence {
     state: StartUp,
     timing: StartUpTiming,
     joints: usize,
+    /// Forces of the feet are measured; a robot without stands as soon as its drives hold it.
+    feels: bool,
     /// \[N\]
     weight: f64,
     /// \[N\] Most that both feet carried since the supply is on.
@@ -73,12 +75,13 @@ pub(crate) struct StartUpSequence {
 }
 
 impl StartUpSequence {
-    /// The start-up of a robot of this weight \[N\].
-    pub(crate) fn new(joints: usize, weight: f64) -> Self {
+    /// The start-up of a robot of this weight \[N\] that feels the ground, or not.
+    pub(crate) fn new(joints: usize, weight: f64, feels: bool) -> Self {
         Self {
             state: StartUp::Off,
             timing: StartUpTiming::default(),
             joints,
+            feels,
             weight,
             most_load: 0.0,
             zero: ForceZero::default(),
@@ -177,6 +180,7 @@ impl StartUpSequence {
             StartUp::Standing if off.is_none() => StartUp::Standing,
             _ if unknown.is_some() => StartUp::NotHomed,
             _ if off.is_some() => StartUp::Enabling,
+            _ if !self.feels => StartUp::Standing,
             StartUp::Hanging => StartUp::Hanging,
             StartUp::Zeroed if self.landed >= self.timing.landed => StartUp::Standing,
             StartUp::Zeroed => StartUp::Zeroed,

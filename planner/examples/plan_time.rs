@@ -63,7 +63,7 @@ fn whole_plan(kmh: f64, spacing: f64) {
     let plan = r.plans.last().expect("made");
     let error = checks::zmp_error(plan, &gait) * 1e3;
     let [median, p99] = spread(times);
-    let points = plan.com.pieces + 2;
+    let points = plan.body.pieces + 2;
     println!(
         "{kmh} km/h   {spacing:.2} s   {points:3}     {error:8.3} mm                       {median:6.1} us   {p99:6.1} us"
     );

@@ -100,8 +100,8 @@ impl Balance {
         let given = GivenMotion { feet, height: &heights.walking, ground };
         let [spacing, tail_spacing] = knot_spacing(model, horizon);
         let mut balanced = Balanced { verdict: PlanVerdict::Sound, margin: f64::INFINITY, divergent: false };
-        com.restart(0.0, from.com.position);
-        let mut now = PlanarState::of(&self.com.body(&from.com, feet, 0.0));
+        com.restart(0.0, from.body.position);
+        let mut now = PlanarState::of(&self.com.body(&from.body, feet, 0.0));
         let mut p = from.zmp;
 
         // Head: into the periodic solution of the steps that are wanted.
@@ -141,7 +141,7 @@ impl Balance {
             velocity: [s.velocity[2]],
             acceleration: [s.acceleration[2]],
         };
-        let first = axis(self.com.body(&from.com, feet, 0.0));
+        let first = axis(self.com.body(&from.body, feet, 0.0));
         let mean = 0.5 * (from.heights[0] + from.heights[1]);
         let standing = Sample::rest([0.0, 0.0, model.model.com_height + mean]);
         let standing = self.com.body(&standing, feet, 0.0).position[2] - mean;

@@ -63,7 +63,8 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut commands = connect(&d.space)?;
     let mut lease = WalkLease::default();
     let mut timeline = Timeline::new(&d.setup.scene, Process::Planner);
-    let mut planner = Planner::of(&d.setup.gait, &d.setup.robot);
+    let mut planner =
+        Planner::of(&d.setup.gait, &d.setup.robot).map_err(|fault| fault.of_gait(&d.setup.scene.gait))?;
     planner.see(KnownObstacles::new(d.setup.known_obstacles()?));
     let mut made = Box::new(Plan::default());
     if plan.epoch() > 1 {

@@ -99,7 +99,7 @@ impl Footsteps {
         loop {
             let n = sequence.count;
             let (stance, nu, sole) = (last.stance, nu(last.stance), &model.soles[last.stance]);
-            let closing = closes(demand, n, &last.parameters, step.first_length);
+            let closing = closes(demand, n, &last.parameters, model);
             let (parameters, width, landing) = if closing {
                 // The swing foot is put beside the stance foot.
                 let parameters = StepParameters::on_the_spot(last.parameters.duration);
@@ -194,13 +194,19 @@ impl Footsteps {
     }
 }
 
-/// Does step `n` close the feet? `previous` are the parameters of the step before, `first` \[m\] is the longest step into
-/// standing.
-fn closes(demand: &StepDemand<'_>, n: usize, previous: &StepParameters, first: f64) -> bool {
-    let last_but_one = if demand.state == GaitState::Stopping { n > 0 } else { n > 2 };
+/// Does step `n` close the feet? `previous` are the parameters of the step before.
+fn closes(demand: &StepDemand<'_>, n: usize, previous: &StepParameters, model: &WalkingModel) -> bool {
+    let stops = demand.state == GaitState::Stopping;
+    let short = previous.length.abs() <= model.step.first_length;
+    let may = match (model.closes_at_once, stops) {
+        (true, true) => true,
+        (true, false) => n > 1,
+        (false, true) => n > 0 && short,
+        (false, false) => n > 2 && short,
+    };
     let closing = match demand.script.length(n) {
         Some(_) => false,
-        None => demand.script.closes(n) || (last_but_one && previous.length.abs() <= first),
+        None => demand.script.closes(n) || may,
     };
     closing || n + 1 == MAX_STEPS
 }

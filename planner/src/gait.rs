@@ -5,13 +5,15 @@ use crate::foot_rollover::FootRollover;
 use crate::footsteps::StepDemand;
 use crate::obstacles::KnownObstacles;
 use crate::origin::PlanOrigin;
-use crate::planned_walk::{LEAD, PlannedWalk};
+use crate::pattern::PatternTrajectories;
+use crate::pattern_check::{self, PatternFault};
+use crate::planned_walk::{LEAD, Margins, PlannedWalk};
 use crate::skills::{Skill, SkillTask, Tasks};
 use crate::sole::Sole;
 use crate::steps::StepParameters;
 use crate::touchdown::{Touchdown, at_boundary, at_contact, is_early, touched};
 use crate::verdict::PlanVerdict;
-use crate::walk::Builder;
+use crate::walk::{Builder, Trajectories};
 use config::{Gait, Robot};
 use messages::{
     Command, ControllerState, Detail, EventCode, EventQueue, GaitState, LEFT, Plan, RIGHT, Reason,
@@ -43,7 +45,7 @@ enum Move {
 /// The planner: walking commands to plans.
 #[derive(Clone)]
 pub struct Planner {
-    gait: Gait,
+    pub(crate) gait: Gait,
     pub(crate) builder: Builder,
     intent: Intent,
     parameters: StepParameters,
@@ -53,6 +55,8 @@ pub struct Planner {
     /// The plan that was published and has not been confirmed yet; its id is 0 if there is none.
     next: PlannedWalk,
     last_id: u64,
+    /// Cycles from publication to start, and rest after a plan.
+    margins: Margins,
     /// Start of the step for which no plan could be walked.
     given_up: u64,
     /// Plan and step whose early contact was looked at.
@@ -74,6 +78,7 @@ impl Planner {
             active: PlannedWalk::new(),
             next: PlannedWalk::new(),
             last_id: 0,
+            margins: Margins::default(),
             given_up: 0,
             tried: (0, 0),
             events: EventQueue::default(),
@@ -82,14 +87,25 @@ impl Planner {
     }
 
     /// A planner for this robot.
-    pub fn of(gait: &Gait, robot: &Robot) -> Self {
+    ///
+    /// # Errors
+    /// The gait is a pattern that this robot cannot walk.
+    pub fn of(gait: &Gait, robot: &Robot) -> Result<Self, PatternFault> {
         let toe = |i: usize| robot.feet[i].toe.map(|joint| robot.joints[joint].range);
-        Self::new(gait, [0, 1].map(|i| robot.feet[i].support)).with_toes([0, 1].map(toe))
+        let mut planner = Self::new(gait, [0, 1].map(|i| robot.feet[i].support)).with_toes([0, 1].map(toe));
+        if let Some(pattern) = &gait.pattern {
+            let trajectories = PatternTrajectories::new(pattern, robot);
+            planner.builder = planner.builder.with_pattern(trajectories);
+            pattern_check::check(&mut planner.builder, pattern, robot)?;
+        }
+        Ok(planner)
     }
 
     /// The same with toe joints of these ranges \[rad\]: right, left.
     pub fn with_toes(mut self, ranges: [Option<[f64; 2]>; 2]) -> Self {
-        self.builder.feet.rollover = FootRollover::new(&self.gait, ranges);
+        if let Trajectories::Balanced(parts) = &mut self.builder.trajectories {
+            parts.feet.rollover = FootRollover::new(&self.gait, ranges);
+        }
         self
     }
 
@@ -108,6 +124,7 @@ impl Planner {
     ) -> PlannerOutput<'_> {
         self.answers.clear();
         self.builder.model.cycle_s = cycle_s;
+        self.margins = self.builder.margins();
         // The controller is the one that knows which plan is executed.
         if let Some(state) = state {
             if state.not_standing == 1 || state.plan_id == 0 && self.active.plan.id > 0 {
@@ -188,7 +205,7 @@ impl Planner {
     /// The transition table.
     fn due(&self, tick: u64, gait: GaitState) -> Move {
         use GaitState::{Idle, Standing, Starting, Stopping, Walking};
-        let at_rest = tick + LEAD >= self.active.plan.start_tick + self.active.end_cycle;
+        let at_rest = tick + self.margins.lead >= self.rest();
         match (gait, self.intent) {
             _ if self.next.plan.id != 0 => Move::Nothing,
             (Idle, Intent::Stand) => Move::Stand,
@@ -289,14 +306,14 @@ impl Planner {
     fn make_stand(&mut self, tick: u64, gait: GaitState, state: &ControllerState) -> bool {
         // From the measured joints, or from where the last plan has left the robot.
         let from = if gait == GaitState::Idle {
-            PlanOrigin::measured(state)
+            PlanOrigin::measured(state, self.builder.body_point())
         } else {
             let from = self.at_rest(RIGHT);
             Some((from, from.heights))
         };
         let Some((from, heights)) = from else { return false };
         self.builder.stand(&from, heights, &mut self.next);
-        self.publish(tick + LEAD, tick)
+        self.publish(tick + self.margins.lead, tick)
     }
 
     /// Walks out of standing.
@@ -313,8 +330,7 @@ impl Planner {
             self.events.push(EventCode::PlanKept, Detail::Plan(self.active.plan.id));
             return false;
         }
-        let rest = self.active.plan.start_tick + self.active.end_cycle;
-        self.publish((tick + LEAD).max(rest), tick)
+        self.publish((tick + self.margins.lead).max(self.rest()), tick)
     }
 
     /// Goes on from a step of the active plan: from an early contact of its foot, or from its end.
@@ -329,7 +345,7 @@ impl Planner {
         // By the clock: a plan from the next step boundary, as late as it can be made.
         let Some(k) = self.boundary(tick) else { return false };
         let start = self.active.plan.start_tick + self.active.strides[k].end_cycle;
-        if start > tick + LEAD || start == self.given_up {
+        if start > tick + self.margins.lead || start == self.given_up {
             return false;
         }
         let from = at_boundary(&self.active, k, touched.filter(|t| t.step == k), state);
@@ -349,7 +365,8 @@ impl Planner {
     /// The next step boundary of the active plan at which another step follows.
     fn boundary(&self, tick: u64) -> Option<usize> {
         let steps = self.active.steps();
-        let k = steps.iter().position(|s| self.active.plan.start_tick + s.end_cycle >= tick + LEAD_MIN)?;
+        let least = self.margins.lead - LEAD + LEAD_MIN;
+        let k = steps.iter().position(|s| self.active.plan.start_tick + s.end_cycle >= tick + least)?;
         // A stopping plan goes on to its end once nothing but closing is left.
         (k + 1 < steps.len()).then_some(k)
     }
@@ -368,12 +385,19 @@ impl Planner {
         if ends {
             self.intent = Intent::Rest;
         }
+        let mut used = 1.0;
         for share in [1.0, 0.5, 0.25, 0.0] {
+            used = share;
             let demand = StepDemand { from, state, wish, share, skill: self.tasks.active, script };
             self.builder.walk(&demand, &mut self.next);
             if self.next.verdict == PlanVerdict::Sound || state == GaitState::Stopping {
                 break;
             }
+        }
+        let asked = [wish.length, wish.side, wish.turn]
+            != [from.previous.length, from.previous.side, from.previous.turn];
+        if used == 0.0 && asked && self.next.verdict == PlanVerdict::Sound {
+            self.events.push(EventCode::StepsUnchanged, Detail::Plan(self.last_id + 1));
         }
         // An obstacle in the way ends the walk, and is reported to who wanted it.
         let Some((code, detail)) = self.next.blocked else { return self.next.verdict == PlanVerdict::Sound };
@@ -408,6 +432,11 @@ impl Planner {
         }
         let from = at_contact(&self.active, touchdown, state, tick, self.builder.model.cycle_s);
         from.is_some_and(|from| self.walk(&from, to))
+    }
+
+    /// First cycle in which nothing of the active plan is played any more.
+    fn rest(&self) -> u64 {
+        self.active.plan.start_tick + self.active.end_cycle + self.margins.tail
     }
 
     /// Standing on the feet of the active plan.

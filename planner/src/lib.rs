@@ -14,6 +14,7 @@
 //! | centre-of-gravity trajectory | 4.6.3, 4.6.5, (4.31)-(4.54) | 2.6-2.9 | `balance`, [`com`], [`boundary`], `cog_method`: [`collocation`] or [`closed_form`] |
 //! | contact force distribution | 4.8, (4.62) | gap 15 | [`load`] |
 //! | all of them, in this order | | | [`walk`] |
+//! | instead of the last five: a pattern with fixed parameters | Daniali 2013, 4.2 | its errata 2.6, 2.7 | `pattern` |
 //!
 //! [`Planner::step`] is pure: no clock, no input or output, no allocation after construction.
 
@@ -36,6 +37,8 @@ mod marks;
 pub mod obstacles;
 pub mod origin;
 mod parameters;
+mod pattern;
+pub mod pattern_check;
 pub mod planned_walk;
 pub mod pose;
 mod reactive;
@@ -45,6 +48,7 @@ pub mod sole;
 pub mod steps;
 pub mod torso;
 mod touchdown;
+mod two_quartics;
 pub mod verdict;
 pub mod walk;
 pub mod walking_model;

@@ -4,7 +4,7 @@ use crate::planned_walk::PlannedWalk;
 use crate::pose::{PlanarPose, rotate};
 use crate::steps::StepParameters;
 use curves::Sample;
-use messages::{ControllerState, LEFT, RIGHT};
+use messages::{BodyPoint, ControllerState, LEFT, RIGHT};
 use std::f64::consts::FRAC_PI_2;
 
 /// Motion at the begin of a plan, in its own planning frame.
@@ -20,8 +20,8 @@ pub struct PlanOrigin {
     pub feet: [PlanarPose; 2],
     /// \[m\] Heights of the soles, right, left: that of the stance foot is zero.
     pub heights: [f64; 2],
-    /// Centre of gravity.
-    pub com: Sample<3>,
+    /// The point of the body that plans lead: [`messages::BodyPoint`].
+    pub body: Sample<3>,
     /// Zero-moment point.
     pub zmp: [f64; 2],
     /// Upper body: inclinations and heading.
@@ -57,13 +57,13 @@ impl PlanOrigin {
         let (frame, ground) = (feet[stance], soles[stance][2]);
         let feet = feet.map(|f| frame.relative(&f));
         // The motion goes on without a jump: position, velocity and acceleration, in the new frame.
-        let mut com = plan.com.sample(t);
-        let at = frame.local([com.position[0], com.position[1]]);
-        let v = rotate(-frame.heading, [com.velocity[0], com.velocity[1]]);
-        let a = rotate(-frame.heading, [com.acceleration[0], com.acceleration[1]]);
-        com.position = [at[0], at[1], com.position[2] - ground];
-        com.velocity[..2].copy_from_slice(&v);
-        com.acceleration[..2].copy_from_slice(&a);
+        let mut body = plan.body.sample(t);
+        let at = frame.local([body.position[0], body.position[1]]);
+        let v = rotate(-frame.heading, [body.velocity[0], body.velocity[1]]);
+        let a = rotate(-frame.heading, [body.acceleration[0], body.acceleration[1]]);
+        body.position = [at[0], at[1], body.position[2] - ground];
+        body.velocity[..2].copy_from_slice(&v);
+        body.acceleration[..2].copy_from_slice(&a);
         // So does the upper body, whose heading counts from that of the stance foot.
         let mut torso = plan.torso.sample(t);
         torso.position[2] -= frame.heading;
@@ -74,7 +74,7 @@ impl PlanOrigin {
             stance,
             feet,
             heights: soles.map(|p| p[2] - ground),
-            com,
+            body,
             zmp: frame.local(plan.zmp.sample(t).0),
             torso,
             pitch: [0, 1].map(|i| plan.pitch[i].sample(t)),
@@ -94,9 +94,13 @@ impl PlanOrigin {
     }
 
     /// The robot before its first plan, and the heights of its soles over their mean; `None` if the
-    /// measurement is not finite.
-    pub(crate) fn measured(state: &ControllerState) -> Option<(Self, [f64; 2])> {
-        let all = state.feet.iter().flatten().chain(&state.com).chain(&state.origin);
+    /// measurement is not finite. `point` is what its plans lead.
+    pub(crate) fn measured(state: &ControllerState, point: BodyPoint) -> Option<(Self, [f64; 2])> {
+        let body = match point {
+            BodyPoint::CentreOfGravity => state.com,
+            BodyPoint::Torso => state.torso,
+        };
+        let all = state.feet.iter().flatten().chain(&body).chain(&state.origin);
         if !all.into_iter().all(|x| x.is_finite()) {
             return None;
         }
@@ -105,7 +109,7 @@ impl PlanOrigin {
         // The planning frame lies below the right foot, on the mean height of both soles.
         let frame = feet[RIGHT];
         let [x, y, heading] = state.origin;
-        let at = frame.local([state.com[0], state.com[1]]);
+        let at = frame.local([body[0], body[1]]);
         let feet = feet.map(|f| frame.relative(&f));
         let mean = 0.5 * (feet[0].heading + feet[1].heading);
         // At rest, both feet flat: whatever else is measured is noise.
@@ -115,7 +119,7 @@ impl PlanOrigin {
             stance: RIGHT,
             feet,
             heights: [0.0; 2],
-            com: Sample::rest([at[0], at[1], state.com[2] - ground]),
+            body: Sample::rest([at[0], at[1], body[2] - ground]),
             zmp: at,
             torso: Sample::rest([FRAC_PI_2, FRAC_PI_2, mean]),
             pitch: [Sample::rest([0.0]); 2],

@@ -7,7 +7,13 @@ use messages::{Detail, EventCode, Parameters, Reason};
 
 impl Planner {
     /// Another value for a parameter, from the next step that is planned.
+    ///
+    /// # Errors
+    /// No such parameter, a value out of its range, or a gait with a pattern, which is checked as a whole when it is loaded.
     pub(crate) fn set(&mut self, change: &ParameterCommand) -> Result<(), Reason> {
+        if self.gait.pattern.is_some() {
+            return Err(Reason::NotNow);
+        }
         let Some(parameter) = PLANNER.get(change.number as usize) else {
             return Err(Reason::Limit { field: 0, low: 0.0, high: PLANNER.len() as f64 - 1.0 });
         };

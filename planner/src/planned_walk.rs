@@ -7,6 +7,21 @@ use messages::{Plan, Record};
 /// Cycles between the publication of a plan and its start.
 pub const LEAD: u64 = 10;
 
+/// Cycles that plans need besides their own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Margins {
+    /// From publication to start: [`LEAD`], after the time that tables for drives take.
+    pub(crate) lead: u64,
+    /// From the end of a plan to the end of its tables.
+    pub(crate) tail: u64,
+}
+
+impl Default for Margins {
+    fn default() -> Self {
+        Self { lead: LEAD, tail: 0 }
+    }
+}
+
 /// A plan, and what the planner remembers of it.
 #[derive(Clone)]
 pub struct PlannedWalk {

@@ -24,6 +24,8 @@ pub enum PlanVerdict {
     NoSupport,
     /// Phases do not follow one another: no length, wrong order, or too long for the distance of the knots.
     Degenerate,
+    /// A leg cannot take its pose.
+    OutOfReach,
     /// More phases or knots than there is room for.
     TooLong,
     /// Sweeps ran out before the optimum.

@@ -7,7 +7,8 @@ use crate::foot_rollover::FootRollover;
 use crate::footsteps::{Footsteps, StepDemand};
 use crate::load;
 use crate::origin::PlanOrigin;
-use crate::planned_walk::PlannedWalk;
+use crate::pattern::PatternTrajectories;
+use crate::planned_walk::{Margins, PlannedWalk};
 use crate::segment::Horizon;
 use crate::sole::Sole;
 use crate::steps::Stride;
@@ -16,7 +17,7 @@ use crate::verdict::PlanVerdict;
 use crate::walking_model::WalkingModel;
 use config::Gait;
 use curves::Sample;
-use messages::{GaitState, Plan, Step};
+use messages::{BodyPoint, GaitState, Plan, Step};
 use multibody::GRAVITY_ACCELERATION as GRAVITY;
 use std::f64::consts::FRAC_PI_2;
 
@@ -28,6 +29,21 @@ const STAND_TIME: f64 = 2.0;
 pub struct Builder {
     pub(crate) model: WalkingModel,
     pub(crate) footsteps: Footsteps,
+    pub(crate) trajectories: Trajectories,
+}
+
+/// Courses of feet and body over a sequence of steps.
+#[derive(Clone)]
+pub(crate) enum Trajectories {
+    /// The centre of gravity over a zero-moment point that stays in its support (thesis 4.6).
+    Balanced(Box<BalancedTrajectories>),
+    /// Fixed parameters.
+    Pattern(Box<PatternTrajectories>),
+}
+
+/// Parts of a balanced walk.
+#[derive(Clone)]
+pub(crate) struct BalancedTrajectories {
     pub(crate) feet: FootTrajectories,
     balance: Balance,
 }
@@ -38,17 +54,44 @@ impl Builder {
         let model = WalkingModel::new(gait, soles);
         Self {
             footsteps: Footsteps::new(gait),
-            feet: FootTrajectories { rollover: FootRollover::new(gait, [None; 2]) },
-            balance: Balance::new(&model),
+            trajectories: Trajectories::Balanced(Box::new(BalancedTrajectories {
+                feet: FootTrajectories { rollover: FootRollover::new(gait, [None; 2]) },
+                balance: Balance::new(&model),
+            })),
             model,
+        }
+    }
+
+    /// The same with a pattern, whose torso stands over the middle of the soles.
+    pub(crate) fn with_pattern(mut self, pattern: PatternTrajectories) -> Self {
+        self.model.model.com_forward = self.model.soles[0].center[0];
+        self.model.closes_at_once = true;
+        self.trajectories = Trajectories::Pattern(Box::new(pattern));
+        self
+    }
+
+    /// Point of the body that the plans lead.
+    pub(crate) fn body_point(&self) -> BodyPoint {
+        match self.trajectories {
+            Trajectories::Balanced(_) => BodyPoint::CentreOfGravity,
+            Trajectories::Pattern(_) => BodyPoint::Torso,
+        }
+    }
+
+    /// What plans need besides their own cycles.
+    pub(crate) fn margins(&self) -> Margins {
+        match &self.trajectories {
+            Trajectories::Balanced(_) => Margins::default(),
+            Trajectories::Pattern(pattern) => pattern.margins(self.model.cycle_s),
         }
     }
 
     /// Steps as demanded and, after the second one, to rest.
     pub fn walk(&mut self, demand: &StepDemand<'_>, out: &mut PlannedWalk) {
+        let leads = self.body_point();
         let (model, from, state) = (&self.model, demand.from, demand.state);
         let plan = &mut *out.plan;
-        begin(plan, from, state);
+        begin(plan, from, state, leads);
 
         // Step sequence; a head is followed by a tail of at least one step.
         let sequence = self.footsteps.plan(model, demand);
@@ -63,20 +106,30 @@ impl Builder {
             *to = record(s);
         }
 
-        // Feet and upper body, and the ground under the zero-moment point.
-        self.feet.lay(model, from, strides, plan);
-        torso::follow(&mut plan.torso, &from.torso, strides, end);
         lay_ground(from, strides, end, &mut plan.zmp_height);
-
-        // Zero-moment point and centre of gravity.
         let horizon = Horizon { from, state, strides, head, end };
-        let given = (&plan.feet, &plan.zmp_height);
-        let balanced = self.balance.lay(model, &horizon, given, (&mut plan.com, &mut plan.zmp));
-        (out.margin, out.verdict, out.divergent) = (balanced.margin, balanced.verdict, balanced.divergent);
-
-        // Contact forces: what each foot carries.
-        if load::lay(&model.soles, &horizon, &plan.zmp, &mut plan.load_left) < -1e-9 {
-            out.verdict = out.verdict.and(PlanVerdict::OverloadsSole);
+        match &mut self.trajectories {
+            Trajectories::Pattern(pattern) => {
+                pattern.lay(model, &horizon, plan);
+                let unsound = state == GaitState::Starting && !pattern.is_in_reach(plan);
+                out.verdict = if unsound { PlanVerdict::OutOfReach } else { PlanVerdict::Sound };
+                (out.margin, out.divergent) = (0.0, false);
+            }
+            Trajectories::Balanced(parts) => {
+                // Feet and upper body.
+                let BalancedTrajectories { feet, balance } = &mut **parts;
+                feet.lay(model, from, strides, plan);
+                torso::follow(&mut plan.torso, &from.torso, strides, end);
+                // Zero-moment point and centre of gravity.
+                let given = (&plan.feet, &plan.zmp_height);
+                let balanced = balance.lay(model, &horizon, given, (&mut plan.body, &mut plan.zmp));
+                (out.margin, out.verdict, out.divergent) =
+                    (balanced.margin, balanced.verdict, balanced.divergent);
+                // Contact forces: what each foot carries.
+                if load::lay(&model.soles, &horizon, &plan.zmp, &mut plan.load_left) < -1e-9 {
+                    out.verdict = out.verdict.and(PlanVerdict::OverloadsSole);
+                }
+            }
         }
     }
 
@@ -86,11 +139,11 @@ impl Builder {
         let end_cycle = model.cycles(STAND_TIME);
         let end = end_cycle as f64 * model.cycle_s;
         let plan = &mut *out.plan;
-        begin(plan, from, GaitState::Standing);
+        begin(plan, from, GaitState::Standing, self.body_point());
         let target = model.standing_point(&from.feet);
         let last = Sample::rest([target[0], target[1], model.model.com_height]);
-        plan.com.restart(0.0, from.com.position);
-        plan.com.push(&from.com, &last, end);
+        plan.body.restart(0.0, from.body.position);
+        plan.body.push(&from.body, &last, end);
         // Soles that hang at different heights come to stand beside one another.
         for (i, z) in heights.into_iter().enumerate() {
             let p = from.feet[i];
@@ -107,7 +160,7 @@ impl Builder {
         const POINTS: usize = 24;
         for k in 0..=POINTS {
             let t = end * k as f64 / POINTS as f64;
-            let c = plan.com.sample(t);
+            let c = plan.body.sample(t);
             let over = c.position[2] / (c.acceleration[2] + GRAVITY);
             plan.zmp.push(t, [0, 1].map(|d| c.position[d] - over * c.acceleration[d]));
         }
@@ -129,13 +182,14 @@ fn lay_ground(from: &PlanOrigin, strides: &[Stride], end: f64, path: &mut Ground
     path.push(end, [0.5 * (last.foothold + last.landing)]);
 }
 
-fn begin(plan: &mut Plan, from: &PlanOrigin, state: GaitState) {
+fn begin(plan: &mut Plan, from: &PlanOrigin, state: GaitState, leads: BodyPoint) {
     plan.state = state as u64;
     plan.origin = from.frame.array();
     plan.step_count = 0;
     plan.zmp.clear();
     plan.zmp_height.clear();
     plan.height = from.height;
+    (plan.leads, plan.pitch_height) = (leads as u64, 0.0);
     for foot in 0..2 {
         plan.toes[foot].restart(0.0, from.toes[foot].position);
         plan.pitch[foot].restart(0.0, from.pitch[foot].position);

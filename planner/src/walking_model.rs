@@ -13,6 +13,8 @@ pub(crate) struct WalkingModel {
     pub model: gait::GaitModel,
     /// Support rectangles: right, left.
     pub soles: [Sole; 2],
+    /// Feet may be closed after a step of any length: nothing falls that moves slowly enough.
+    pub closes_at_once: bool,
     /// \[s\] Length of a cycle; phases end on whole cycles.
     pub cycle_s: f64,
 }
@@ -20,7 +22,7 @@ pub(crate) struct WalkingModel {
 impl WalkingModel {
     /// For feet with these support rectangles, with a cycle of 1 ms until it is set.
     pub(crate) fn new(gait: &Gait, soles: [Sole; 2]) -> Self {
-        Self { step: gait.step.clone(), model: gait.model, soles, cycle_s: 1e-3 }
+        Self { step: gait.step.clone(), model: gait.model, soles, closes_at_once: false, cycle_s: 1e-3 }
     }
 
     /// Whole cycles nearest to `t` \[s\], at least one.
@@ -28,7 +30,7 @@ impl WalkingModel {
         (t / self.cycle_s).round().max(1.0) as u64
     }
 
-    /// \[m\] Point at which the centre of gravity rests between two feet.
+    /// \[m\] Point over which the body rests between two feet.
     pub(crate) fn standing_point(&self, feet: &[PlanarPose; 2]) -> [f64; 2] {
         let heading = 0.5 * (feet[0].heading + feet[1].heading);
         let ahead = rotate(heading, [self.model.com_forward, 0.0]);

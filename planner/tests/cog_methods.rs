@@ -40,7 +40,7 @@ fn both_methods_plan_the_same_walks() {
             assert_eq!((p.start_tick, p.step_count), (q.start_tick, q.step_count));
             for k in 0..200 {
                 let t = p.end() * f64::from(k) / 200.0;
-                let [r, s] = [p, q].map(|plan| plan.com.sample(t).position);
+                let [r, s] = [p, q].map(|plan| plan.body.sample(t).position);
                 worst = (0..3).map(|d| (r[d] - s[d]).abs()).fold(worst, f64::max);
             }
         }

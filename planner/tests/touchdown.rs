@@ -71,7 +71,7 @@ fn contact_in_the_middle_of_a_swing_is_no_landing() {
 
 /// Largest difference of the centre of gravity and its velocity \[m, m/s\] at a switch at time `t` of plan `a`.
 fn com_jump(a: &Plan, b: &Plan, t: f64) -> f64 {
-    let (ca, cb) = (a.com.sample(t), b.com.sample(0.0));
+    let (ca, cb) = (a.body.sample(t), b.body.sample(0.0));
     let heading = b.origin[2] - a.origin[2];
     let (s, c) = heading.sin_cos();
     let turned = |v: &[f64; 3]| [c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]];

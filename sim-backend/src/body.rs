@@ -97,6 +97,7 @@ impl SimulatedBody {
         let h = self.cycle / f64::from(self.substeps);
         for i in 1..=self.substeps {
             before.copy_from_slice(state);
+            plant.tick((i - 1, h), state, references, inputs);
             stepper.step(plant, f64::from(i - 1) * h, h, state, references, inputs);
             // Whoever holds a robot in its start pose is stiffer than any explicit step bears, and lets go.
             if inputs.switches.held == 0 {

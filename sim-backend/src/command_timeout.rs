@@ -40,9 +40,9 @@ impl CommandTimeout {
     /// Of a robot with this layout.
     pub(crate) fn new(layout: &FrameLayout) -> Self {
         let mut node_of = [0; MAX_JOINTS];
-        for message in layout.sent(true) {
+        for message in layout.messages.iter().filter(|m| m.to_drives) {
             for signal in &message.signals {
-                if let Carries::Target(j) = signal.carries {
+                if let Carries::Target(j) | Carries::Interpreter(j) = signal.carries {
                     node_of[j] = message.node;
                 }
             }
@@ -72,6 +72,11 @@ impl CommandTimeout {
         }
     }
 
+    /// True if the local controller of a joint has received everything in this cycle.
+    pub(crate) fn hears(&self, joint: usize) -> bool {
+        self.silent[self.node_of[joint]] == 0
+    }
+
     /// True if the local controller of a joint has received nothing for too long.
     pub(crate) fn is_timed_out(&self, joint: usize) -> bool {
         self.silent[self.node_of[joint]] > TIMEOUT_CYCLES
@@ -95,6 +100,7 @@ mod tests {
             len: 8,
             node,
             to_drives: true,
+            cyclic: true,
             signals: vec![BusSignal {
                 name: "target".into(),
                 start: 0,

@@ -6,11 +6,14 @@
 
 use config::robot::Joint;
 
-/// Motion of one joint during one bus cycle, as a cubic in the time since the cycle began.
+/// Motion of one joint during one bus cycle, as a cubic in the time since the cycle began; or as two, one after the other,
+/// where a drive passes a point of its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointCubic {
     /// Coefficients of the angle \[rad, rad/s, ...\], constant term first.
     c: [f64; 4],
+    /// Time of the second one \[s\], and its coefficients in the time since then.
+    second: Option<(f64, [f64; 4])>,
 }
 
 /// Angle, speed and acceleration of a joint.
@@ -27,15 +30,28 @@ pub struct JointMotion {
 impl JointCubic {
     /// At rest at `angle` \[rad\].
     pub fn resting(angle: f64) -> Self {
-        Self { c: [angle, 0.0, 0.0, 0.0] }
+        Self::of([angle, 0.0, 0.0, 0.0])
+    }
+
+    /// With these coefficients of the angle \[rad, rad/s, ...\], constant term first.
+    pub(crate) fn of(c: [f64; 4]) -> Self {
+        Self { c, second: None }
+    }
+
+    /// The same until `time` \[s\], then another one in the time since then.
+    pub(crate) fn then(self, time: f64, c: [f64; 4]) -> Self {
+        Self { second: Some((time, c)), ..self }
     }
 
     /// Begins a cycle of `dt` \[s\] from `from` that ends in `angle`, `speed`: the cubic Hermite through both.
     pub fn follow(from: JointMotion, angle: f64, speed: f64, dt: f64) -> Self {
         let (dp, v0, v1) = (angle - from.angle, from.speed, speed);
-        Self {
-            c: [from.angle, v0, (3.0 * dp / dt - 2.0 * v0 - v1) / dt, (v0 + v1 - 2.0 * dp / dt) / (dt * dt)],
-        }
+        Self::of([
+            from.angle,
+            v0,
+            (3.0 * dp / dt - 2.0 * v0 - v1) / dt,
+            (v0 + v1 - 2.0 * dp / dt) / (dt * dt),
+        ])
     }
 
     /// Begins a cycle of `dt` \[s\] in which the joint is brought to rest.
@@ -47,7 +63,10 @@ impl JointCubic {
 
     /// Motion `tau` \[s\] after the beginning of the cycle.
     pub fn at(&self, tau: f64) -> JointMotion {
-        let c = &self.c;
+        let (c, tau) = match &self.second {
+            Some((begin, c)) if tau > *begin => (c, tau - begin),
+            _ => (&self.c, tau),
+        };
         JointMotion {
             angle: c[0] + tau * (c[1] + tau * (c[2] + tau * c[3])),
             speed: c[1] + tau * (2.0 * c[2] + tau * 3.0 * c[3]),

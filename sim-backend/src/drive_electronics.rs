@@ -37,6 +37,8 @@ pub(crate) struct ReceivedCommand<'a> {
     pub mode: u64,
     /// Nodes that received them.
     pub timeout: &'a CommandTimeout,
+    /// Joints (bits) whose tables ended in motion.
+    pub exhausted: u32,
 }
 
 /// A joint without absolute encoder.
@@ -120,7 +122,8 @@ impl DriveElectronics {
                 permit: home || self.knows(j),
                 fault: self
                     .fault(j, &drive, dt, goals[j], now[j], current)
-                    .or(silent.then_some(DriveFault::Heartbeat)),
+                    .or(silent.then_some(DriveFault::Heartbeat))
+                    .or((command.exhausted >> j & 1 == 1).then_some(DriveFault::QueueEmpty)),
                 still: goals[j].speed.abs() < REST,
             };
             self.drives[j].step(&inputs);
@@ -265,7 +268,8 @@ mod tests {
             let received = Received::default();
             self.timeout.step(self.receives.then_some(&received));
             let control = &[u32::from(self.word); MAX_JOINTS];
-            let command = ReceivedCommand { control, mode: self.mode as u64, timeout: &self.timeout };
+            let command =
+                ReceivedCommand { control, mode: self.mode as u64, timeout: &self.timeout, exhausted: 0 };
             let (goals, now, current) = (&self.goals, &self.now, Some(&self.current[..]));
             self.stopped = self.electronics.step(&command, self.supply, DT, goals, now, current);
         }

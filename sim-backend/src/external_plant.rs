@@ -161,7 +161,7 @@ impl ExternalPlant {
         (self.state.time, self.state.push) = (self.cycles as f64 * self.cycle, push);
         encode_sensors(&self.robot.layout, &self.readings, &mut self.frames);
         let pose = [&self.state.position[..], &self.state.orientation[..]].concat();
-        if self.fall.begins(&pose) {
+        if self.fall.begins(&pose, self.cycle) {
             self.events.push(EventCode::Fallen, Detail::Nothing);
         }
         self.state.fallen = u64::from(self.fall.has_fallen());

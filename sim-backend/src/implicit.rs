@@ -223,20 +223,22 @@ fn motor_line(h: f64, shaft: &Shaft, controller: &MotorController, state: Option
         TorqueLine { t: constant * a * current + per * voltage, b: per * constant, link: 0.0 }
     };
     let voltage = controller.voltage(shaft, current);
-    let ControlLaw::Cascade(cascade) = shaft.drive.control.law else { return at_voltage(voltage) };
+    let law = shaft.drive.control.law;
+    let Some(bandwidth) = law.current_bandwidth() else { return at_voltage(voltage) };
     // At its limit the voltage no longer answers to the current, and the loops are open.
     if voltage.abs() >= shaft.drive.voltage_limit {
         return at_voltage(voltage);
     }
     // The current loop closes within the step: the current goes from what it was to what is asked for.
-    let closing = 1.0 / (1.0 + h * (cascade.current_bandwidth + 1.0 / motor.time_constant()));
+    let closing = 1.0 / (1.0 + h * (bandwidth + 1.0 / motor.time_constant()));
     let a = if state.is_some() { closing } else { 0.0 };
     let held = controller.output() != ControllerOutput::Continuous;
+    let open = held || (controller.speed_gain * controller.lag).abs() >= shaft.drive.current_limit;
     // Held by the sampler, or at its limit: what is asked for does not depend on the speed.
-    if held || (controller.speed_gain * controller.lag).abs() >= shaft.drive.current_limit {
+    let (ControlLaw::Cascade(cascade), false) = (law, open) else {
         let t = constant * (a * current + (1.0 - a) * controller.wanted_current(shaft));
         return TorqueLine { t, ..TorqueLine::default() };
-    }
+    };
     // Else speed and position loop close within the step, too.
     let share = constant * (1.0 - a) * controller.speed_gain;
     let [link, b] = lost_lag(h, shaft, &cascade).map(|seen| share * seen);

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use codec::frames::encode_sensors;
+use codec::frames::encode_answers;
 use config::{Robot, Scene};
 use messages::{
     BusFrames, ContactPoint, Detail, EventCode, EventQueue, Header, Imu, Sensors, SimState, Wrench,
@@ -82,8 +82,9 @@ impl Instruments {
     }
 
     /// Writes the readings on the bus.
-    pub(crate) fn encode(&mut self, robot: &Robot) {
-        encode_sensors(&robot.layout, &self.readings, &mut self.frames);
+    pub(crate) fn encode(&mut self, robot: &Robot, joints: &mut SimulatedJoints) {
+        let (telegrams, emergencies) = joints.telegrams(&self.readings.drive_error);
+        encode_answers(&robot.layout, &self.readings, emergencies, telegrams, &mut self.frames);
     }
 
     /// Writes readings and truth at `time` \[s\]; false if a reading is NaN and none may go on the bus.

@@ -9,12 +9,15 @@ use crate::command_timeout::{CommandTimeout, Follows};
 use crate::drive::{JointCubic, JointMotion};
 use crate::drive_electronics::{Action, DriveElectronics, ReceivedCommand};
 use crate::inputs::DriveSwitches;
+use crate::table_drives::SimulatedTables;
 
 /// Joints of one robot, from the frames of the bus to references.
 #[derive(Clone)]
 pub(crate) struct SimulatedJoints {
     electronics: DriveElectronics,
     timeout: CommandTimeout,
+    /// Tables of the drives, where they play them.
+    tables: Option<SimulatedTables>,
     command: DriveCommand,
     /// Tick of the newest targets followed.
     followed: u64,
@@ -37,6 +40,7 @@ impl SimulatedJoints {
         Self {
             electronics: DriveElectronics::new(robot, scene, pose),
             timeout: CommandTimeout::new(&robot.layout),
+            tables: SimulatedTables::new(robot, scene),
             command: DriveCommand::default(),
             followed: 0,
             offset: robot.joints.iter().map(offset).collect(),
@@ -68,6 +72,17 @@ impl SimulatedJoints {
         &self.electronics
     }
 
+    /// Telegrams of the drives' interpreters in this cycle, and the drives (bits) that tell an error code.
+    pub(crate) fn telegrams(&mut self, errors: &[u32]) -> (&[messages::Frame], u32) {
+        match &mut self.tables {
+            Some(tables) => {
+                let emergencies = tables.emergencies(errors);
+                (tables.answers(), emergencies)
+            }
+            None => (&[], 0),
+        }
+    }
+
     /// \[rad\] Excess of the readings of joint `j`, by its offset and by where its encoder began to count.
     pub(crate) fn reading_error(&self, j: usize) -> f64 {
         self.offset[j] - self.electronics.origin(j)
@@ -91,17 +106,34 @@ impl SimulatedJoints {
             self.followed = self.command.targets.header.tick;
         }
         // States of the drives; the current that a winding is warmed by is what its own sensor says.
-        let DriveCommand { control, targets } = &self.command;
-        let command = ReceivedCommand { control, mode: targets.mode, timeout: &self.timeout };
+        let DriveCommand { control, targets, .. } = &self.command;
+        let tables = self.tables.as_ref();
+        let exhausted = |j: &usize| tables.is_some_and(|tables| tables.is_exhausted(*j));
+        let exhausted = (0..robot.joints.len()).filter(exhausted).fold(0, |bits, j| bits | 1 << j);
+        let command = ReceivedCommand { control, mode: targets.mode, timeout: &self.timeout, exhausted };
         let current = (model == JointModel::Motors).then_some(&sensors.motor_current[..]);
         let stopped = self.electronics.step(&command, powered, dt, &self.goals, &self.motions, current);
         let stopped = stopped.map(|joint| self.timeout.node_of(joint));
+        if let Some(tables) = &mut self.tables {
+            tables.receive(new, |j| self.electronics.action(j) == Action::Follow);
+        }
         // References by action.
         let mut switches = DriveSwitches { powered, ..DriveSwitches::default() };
         for (j, joint) in robot.joints.iter().enumerate() {
             let (from, action) = (self.goals[j], self.electronics.action(j));
+            let zero = self.electronics.origin(j) - self.offset[j];
             let angle = targets.angle[j] - self.offset[j] + self.electronics.origin(j);
             let follows = self.timeout.follows(j, angle - from.angle, joint.speed_limit * dt);
+            // What plays tables is told where to go by SYNC alone; without a table it comes to rest, and stays.
+            let played = self.tables.as_mut().and_then(|tables| {
+                if !matches!(action, Action::Follow) {
+                    tables.stop(j);
+                    return None;
+                }
+                let sync = self.timeout.hears(j).then_some(self.followed as u8);
+                let played = tables.reference(j, from, zero, sync);
+                Some(played.unwrap_or_else(|| JointCubic::brake(joint, from, dt)))
+            });
             self.references[j] = match (action, follows) {
                 // A limp joint with a motor moves as it will; one that only follows comes to rest and stays.
                 (Action::Off, _) if model == JointModel::Motors => JointCubic::resting(self.motions[j].angle),
@@ -116,10 +148,15 @@ impl SimulatedJoints {
                     JointCubic::follow(from, from.angle + from.speed * dt, from.speed, dt)
                 }
             };
+            if let Some(played) = played {
+                self.references[j] = played;
+            }
             // Brakes close some time after the torque has gone, and are open until a drive has had torque once.
             switches.off |= u64::from(action == Action::Off) << j;
             let (brake, off_for) = (robot.drives.get(j).and_then(|d| d.brake), self.electronics.off_for(j));
-            switches.braked |= u64::from(brake.is_some_and(|brake| off_for > brake.delay)) << j;
+            // Infinity, not `is_some_and`: a comparison with what stands in an absent brake may be with a subnormal number.
+            let delay = brake.map_or(f64::INFINITY, |brake| brake.delay);
+            switches.braked |= u64::from(off_for > delay) << j;
             switches.held |= u64::from(off_for == f64::INFINITY) << j;
         }
         (switches, stopped)

@@ -9,7 +9,7 @@
 //! | commands of each joint → references; who has torque | `joints.rs` |
 //! | nodes without commands | [`command_timeout`]; faults of the bus: [`fieldbus::injector`] |
 //! | states of the drives, their references and protection | `drive_electronics.rs` |
-//! | joint references | [`drive`] |
+//! | joint references | [`drive`]; of drives that play tables `table_drives.rs` |
 //! | pushes, and the crane that holds the robot at the start | `loads.rs`, `crane.rs` |
 //! | equations of motion, their state and time steps in a cycle | `body.rs` |
 //! | equations of motion | [`plant`]; components, types 1 to 5 of the thesis: [`config::components`] |
@@ -18,6 +18,7 @@
 //! | their drives: shafts, controllers | [`train`], [`shaft`], `local_control.rs` |
 //! | the drives in an implicit step, one and all | `implicit.rs`, `train_step.rs` |
 //! | counts and look-up tables of these controllers | `resolution.rs` |
+//! | controllers with a clock of their own; steps and cycles that miss it | `servo.rs`, `sample_grid.rs` |
 //! | their contact, and what they stand on | `ground.rs`, [`feet`], [`terrain`] |
 //! | time steps; the adaptive ones; the longest stable ones | [`integrate`], [`stiff`] with `sparse_lu.rs`, [`step_limit`] |
 //! | steps that are too long; fall | `chatter.rs`, `fall.rs` |
@@ -50,13 +51,16 @@ pub mod plant;
 pub mod power;
 mod resolution;
 mod robot;
+mod sample_grid;
 pub mod sensors;
 mod sercos_end;
+mod servo;
 pub mod shaft;
 mod shared_end;
 mod sparse_lu;
 pub mod step_limit;
 pub mod stiff;
+mod table_drives;
 pub mod terrain;
 pub mod train;
 mod train_step;

@@ -5,11 +5,13 @@
 //! voltage   U = C c (q_d - q) + D (w_d - w) + k_M w_d,   w_d = c q'_d                                  (5.40)
 //! ```
 //!
+//! The third, `cascade_pi`, with its integral and its own clock: `servo.rs`.
+//!
 //! Between two cycles of the bus the references are the cubic through the targets of both, angle and speed
 //! ([`crate::drive::JointCubic`]). Controllers that count and look up instead of measuring and computing: `resolution.rs`.
 //!
 //! a, b: sides of an elastic gear that are measured; behind a rigid one both are the same. A law is computed at every
-//! instant, or once per bus cycle with the references of that instant, and then held.
+//! instant, or with the references of an instant and then held: once per bus cycle, or by the drive's own clock.
 //!
 //! | symbol | name | unit |
 //! |---|---|---|
@@ -22,14 +24,15 @@ use config::robot::{Drive as DriveData, Joint};
 use drives::{ControlLaw, GearSide, JointControl, OutOfDomain, Sampled, Sampling};
 
 use crate::resolution::{Angles, Coarse};
+use crate::servo::Servo;
 use crate::shaft::{Shaft, TrainInputs};
 
 /// Readings of a shaft in units of its motor, on the link's side and on the motor's.
-struct ShaftReadings {
+pub(crate) struct ShaftReadings {
     /// c q'_d \[rad/s\].
-    wanted: f64,
+    pub(crate) wanted: f64,
     /// c (q_d - q) \[rad\].
-    error: [f64; 2],
+    pub(crate) error: [f64; 2],
     /// \[rad/s\]
     speed: [f64; 2],
 }
@@ -63,8 +66,10 @@ pub(crate) struct MotorController {
     /// Speed that the position loop of a cascade asks for, and its distance from the speed seen \[rad/s\].
     pub(crate) wanted: f64,
     pub(crate) lag: f64,
-    /// Memory of a sampled law.
+    /// Memory of a law that is sampled once per cycle, and what any sampled one holds.
     sampler: Sampler,
+    /// Memory of a law with a clock of its own.
+    servo: Option<Servo>,
     /// Counts and tables, if it has them.
     coarse: Option<Coarse>,
 }
@@ -74,8 +79,8 @@ impl Sampler {
     fn new(control: &JointControl) -> Self {
         let output = match (control.sampling, control.law) {
             (Sampling::Continuous, _) => ControllerOutput::Continuous,
-            (Sampling::Cycle(_), ControlLaw::Cascade(_)) => ControllerOutput::Current(0.0),
-            (Sampling::Cycle(_), ControlLaw::Voltage(_)) => ControllerOutput::Voltage(0.0),
+            (_, law) if law.current_bandwidth().is_some() => ControllerOutput::Current(0.0),
+            _ => ControllerOutput::Voltage(0.0),
         };
         Self { output, next: output, last: None }
     }
@@ -88,7 +93,8 @@ impl MotorController {
     /// Its linkage has no look-up table where it needs one.
     pub(crate) fn new(drive: &DriveData, joints: &[Joint]) -> Result<Self, String> {
         let coarse = Coarse::new(drive, joints)?;
-        Ok(Self { speed_gain: 0.0, wanted: 0.0, lag: 0.0, sampler: Sampler::new(&drive.control), coarse })
+        let sampler = Sampler::new(&drive.control);
+        Ok(Self { speed_gain: 0.0, wanted: 0.0, lag: 0.0, sampler, servo: Servo::new(drive, joints), coarse })
     }
 
     /// Output that is held now; [`ControllerOutput::Continuous`]: none is held.
@@ -102,6 +108,11 @@ impl MotorController {
     /// The second result is an error where a joint is to be, or is, where the drive has no numbers for it; it goes on with
     /// those it had.
     pub(crate) fn load(&mut self, shaft: &Shaft, inputs: &TrainInputs<'_>) -> (f64, Result<(), OutOfDomain>) {
+        if self.servo.is_some() {
+            // It looks when its clock ticks.
+            let speed = |i: usize| shaft.gear.ratio[i] * shaft.at(GearSide::Motor, i, inputs).1;
+            return ((0..shaft.coupled).map(speed).sum(), Ok(()));
+        }
         let looked = self.look(shaft, inputs);
         let seen = self.read(shaft, inputs);
         if let ControlLaw::Cascade(cascade) = shaft.drive.control.law {
@@ -126,6 +137,32 @@ impl MotorController {
         coarse.look(&shaft.drive.transmission, &at)
     }
 
+    /// Clock of the drive itself: measures and computes if the beginning of the `step`-th integration step of `h` \[s\] in a
+    /// cycle is one of its instants, at the state of [`MotorController::load`].
+    ///
+    /// The result is an error as there.
+    pub(crate) fn tick(
+        &mut self,
+        shaft: &Shaft,
+        (step, h): (u32, f64),
+        inputs: &TrainInputs<'_>,
+    ) -> Result<(), OutOfDomain> {
+        if !self.is_due(step, h) {
+            return Ok(());
+        }
+        let looked = self.look(shaft, inputs);
+        let seen = self.read(shaft, inputs);
+        if let Some(servo) = &mut self.servo {
+            self.sampler.output = servo.sample(shaft, self.speed_gain, (step, h), &seen, inputs);
+        }
+        if inputs.switches.powered { looked } else { Ok(()) }
+    }
+
+    /// True if the beginning of a step is an instant of the drive's own clock.
+    pub(crate) fn is_due(&self, step: u32, h: f64) -> bool {
+        self.servo.as_ref().is_some_and(|servo| servo.is_due(step, h))
+    }
+
     /// Measures and computes once, at the state of [`MotorController::load`]; `cycle` \[s\] since the last time.
     pub(crate) fn sample(&mut self, shaft: &Shaft, cycle: f64, inputs: &TrainInputs<'_>) {
         let Sampling::Cycle(sampled) = shaft.drive.control.sampling else { return };
@@ -137,6 +174,8 @@ impl MotorController {
                 let wanted = cascade.speed_wanted(seen.error[feedback.position() as usize], seen.wanted);
                 ControllerOutput::Current(self.speed_gain * (wanted - seen.speed[feedback.speed() as usize]))
             }
+            // Never: it has a clock of its own.
+            ControlLaw::CascadePi(_) => return,
             ControlLaw::Voltage(law) => {
                 let motor_seen = (seen.error[motor], seen.speed[motor]);
                 ControllerOutput::Voltage(law.voltage(
@@ -213,8 +252,8 @@ impl MotorController {
     /// Current \[A\] of a motor whose inductance is neglected: what the speed loop asks for, as far as the voltage reaches.
     pub(crate) fn steady_current(&self, shaft: &Shaft) -> f64 {
         let motor = &shaft.drive.motor;
-        let voltage = match (self.sampler.output, shaft.drive.control.law) {
-            (ControllerOutput::Voltage(held), _) => held,
+        let voltage = match self.sampler.output {
+            ControllerOutput::Voltage(held) => held,
             _ => motor.voltage(self.wanted_current(shaft), shaft.speed),
         };
         let limit = shaft.drive.voltage_limit;
@@ -223,13 +262,14 @@ impl MotorController {
 
     /// Voltage that the controller sets \[V\].
     pub(crate) fn voltage(&self, shaft: &Shaft, current: f64) -> f64 {
-        let voltage = match (self.sampler.output, shaft.drive.control.law) {
+        let motor = &shaft.drive.motor;
+        let voltage = match (self.sampler.output, shaft.drive.control.law.current_bandwidth()) {
             (ControllerOutput::Voltage(held), _) => held,
-            (_, ControlLaw::Cascade(c)) => {
-                c.voltage(&shaft.drive.motor, self.wanted_current(shaft), current, shaft.speed)
+            (_, Some(bandwidth)) => {
+                motor.loop_voltage(bandwidth, self.wanted_current(shaft), current, shaft.speed)
             }
-            // Never: a voltage law is sampled, its output a voltage.
-            (_, ControlLaw::Voltage(_)) => 0.0,
+            // Never: a law without a current loop is sampled, its output a voltage.
+            (_, None) => 0.0,
         };
         voltage.clamp(-shaft.drive.voltage_limit, shaft.drive.voltage_limit)
     }

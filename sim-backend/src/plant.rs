@@ -178,6 +178,20 @@ impl Plant {
         }
     }
 
+    /// The controllers with a clock of their own measure and compute, if the beginning of the `step`-th step of `h` \[s\] in
+    /// a cycle is one of their instants. Steps are whole fractions of their periods, and cycles whole multiples.
+    pub fn tick(&mut self, (step, h): (u32, f64), x: &[f64], drives: &[JointCubic], inputs: &PlantInputs) {
+        let Joints::Driven(train) = &self.joints else { return };
+        if train.is_due(step, h) {
+            self.load(f64::from(step) * h, x, drives);
+            let switches = self.switches(inputs);
+            let Self { data, layout, scratch, joints: Joints::Driven(train), .. } = self else { return };
+            let given = train_inputs(layout, x, &scratch.reference, switches);
+            train.load(&given, data);
+            train.tick(step, h, &given);
+        }
+    }
+
     /// The derivative of `x` with the references of `drives`, `tau` \[s\] into the cycle.
     pub fn rate(&mut self, tau: f64, x: &[f64], drives: &[JointCubic], inputs: &PlantInputs, dx: &mut [f64]) {
         let l = self.layout;

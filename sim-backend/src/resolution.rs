@@ -12,7 +12,7 @@
 use std::f64::consts::TAU;
 
 use config::robot::{Drive, Joint};
-use drives::{ControlLaw, FixedTable, GearSide, OutOfDomain, Resolution, Transmission};
+use drives::{FixedTable, GearSide, OutOfDomain, Resolution, Transmission};
 
 /// \[rad\] How far a table goes beyond the ranges of the joints: targets end there, and what follows them may overshoot.
 const MARGIN: f64 = 0.02;
@@ -53,10 +53,7 @@ impl Coarse {
         }
         let linkage = !matches!(drive.transmission, Transmission::Harmonic { .. });
         let table = resolution.table_points.filter(|_| linkage).map(|n| table(drive, joints, n as usize));
-        let link = match drive.control.law {
-            ControlLaw::Cascade(cascade) => cascade.feedback.position() == GearSide::Link,
-            ControlLaw::Voltage(_) => false,
-        };
+        let link = drive.control.law.position_side() == GearSide::Link;
         Ok(Some(Self {
             table: table.transpose()?,
             count: resolution.encoder_counts.map_or(0.0, |counts| TAU / f64::from(counts)),

@@ -23,7 +23,7 @@ use crate::joints::SimulatedJoints;
 use crate::loads::Loads;
 use crate::plant::{Plant, PlantInputs};
 use crate::power::PowerLine;
-use crate::{step_limit, stiff};
+use crate::{sample_grid, step_limit, stiff};
 
 /// Cycles without their frames that are made good for at most: by then every drive has come to rest by itself.
 const MOST_OVERWRITTEN: u64 = 100;
@@ -60,6 +60,7 @@ impl SimBackend {
             );
         }
         step_limit::check(robot, scene)?;
+        sample_grid::check(robot, scene)?;
         stiff::check(scene)?;
         // The body first: the crane hooks in where its centre of gravity is, and the sensors know what hangs on them.
         let mut body = SimulatedBody::new(robot, scene)?;
@@ -222,7 +223,7 @@ impl SimBackend {
             self.instruments.stamp(frames.header);
         }
         if self.measure(dt, &inputs, powered) {
-            self.instruments.encode(&self.robot);
+            self.instruments.encode(&self.robot, &mut self.joints);
         }
         if had_fallen {
             // Sensors out of range and contacts that are not found say nothing new of a robot on its way down.
@@ -282,7 +283,7 @@ impl SimBackend {
             self.events.push(EventCode::ForceImplausible, Detail::Newtons(load as u64));
             self.come_to_rest();
         }
-        if self.fall.begins(self.body.state()) {
+        if self.fall.begins(self.body.state(), dt) {
             self.events.push(EventCode::Fallen, Detail::Nothing);
         }
         if self.fall.lands(self.body.state()) {

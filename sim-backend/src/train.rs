@@ -17,7 +17,7 @@ use std::error::Error;
 use config::Robot;
 use config::robot::Drive as DriveData;
 use config::scene::FRICTION_RAMP;
-use drives::{ControlLaw, NoLoadTorque, OutOfDomain, Sampling};
+use drives::{NoLoadTorque, OutOfDomain, Sampling};
 use multibody::{Damper, Data, Model, Rotor};
 
 use crate::implicit::ShaftStep;
@@ -109,9 +109,25 @@ impl Train {
         }
     }
 
-    /// True if a controller is sampled.
+    /// The controllers with a clock of their own measure and compute, those whose instant is the beginning of the
+    /// `step`-th step of `h` \[s\] in a cycle, at the state of [`Train::load`].
+    pub fn tick(&mut self, step: u32, h: f64, inputs: &TrainInputs<'_>) {
+        let Self { drives, fault, .. } = self;
+        for (drive, DriveTrain { shaft, controller, .. }) in drives.iter_mut().enumerate() {
+            if let Err(why) = controller.tick(shaft, (step, h), inputs) {
+                _ = fault.get_or_insert(TrainFault { drive, why: FaultCause::Linkage(why) });
+            }
+        }
+    }
+
+    /// True if a controller is sampled once per cycle.
     pub(crate) fn is_sampled(&self) -> bool {
-        self.drives.iter().any(|d| d.shaft.drive.control.sampling != Sampling::Continuous)
+        self.drives.iter().any(|d| matches!(d.shaft.drive.control.sampling, Sampling::Cycle(_)))
+    }
+
+    /// True if the beginning of a step is an instant of a controller's own clock.
+    pub(crate) fn is_due(&self, step: u32, h: f64) -> bool {
+        self.drives.iter().any(|d| d.controller.is_due(step, h))
     }
 
     /// Gains K_v of the speed loops, one per motor; 0 without one \[A s/rad\].
@@ -282,9 +298,9 @@ fn tune(drives: &mut [DriveTrain], model: &Model, hanging: &[f64]) {
         if shaft.elastic.is_some() {
             shaft.inertia += shaft.drive.rotor_inertia; // not in the mass matrix
         }
-        if let ControlLaw::Cascade(cascade) = shaft.drive.control.law {
-            controller.speed_gain =
-                cascade.speed_bandwidth * shaft.inertia / shaft.drive.motor.torque_constant;
+        // Inertia of link and rotor: K_r I_m K_r is in the mass matrix, or added above (errata 3, (5-4)).
+        if let Some(bandwidth) = shaft.drive.control.law.speed_bandwidth() {
+            controller.speed_gain = bandwidth * shaft.inertia / shaft.drive.motor.torque_constant;
         }
     }
 }

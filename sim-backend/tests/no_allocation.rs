@@ -83,7 +83,11 @@ fn cycles_of_the_simulated_robot() {
                     targets.header.tick = tick;
                     encode_targets(
                         &setup.robot.layout,
-                        &DriveCommand { targets, control: [if tick == 1 { 0x06 } else { 0x0F }; MAX_JOINTS] },
+                        &DriveCommand {
+                            targets,
+                            control: [if tick == 1 { 0x06 } else { 0x0F }; MAX_JOINTS],
+                            due: 0,
+                        },
                         &mut frames,
                     );
                     sim.step(

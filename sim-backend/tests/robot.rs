@@ -24,7 +24,11 @@ fn hold(sim: &mut SimBackend, setup: &Setup, cycles: u64, until: u64) -> (SimSta
     let (mut frames, mut sensors) = (BusFrames::default(), Sensors::default());
     for tick in 1..=cycles {
         targets.header.tick = tick;
-        encode_targets(&setup.robot.layout, &DriveCommand { targets, control: enabling(tick) }, &mut frames);
+        encode_targets(
+            &setup.robot.layout,
+            &DriveCommand { targets, control: enabling(tick), due: 0 },
+            &mut frames,
+        );
         let power = Power { toggle: tick.min(until), on: 1, arming: 1, ..Power::default() };
         let (answer, _) = sim.step(Some(&frames), Some(&power));
         assert_eq!(decode_sensors(&setup.robot.layout, answer, &mut sensors).missed(), 0);

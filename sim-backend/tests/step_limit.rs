@@ -25,7 +25,7 @@ fn explicit_steps_have_a_limit_on_every_robot_and_depth() {
                 let limit = limit(&setup(scene, depth, integrator)).expect("explicit");
                 println!("{scene}, type {depth}, {integrator:?}: {:.3e} s, {}", limit.step, limit.regime);
                 let swings = integrator == Integrator::Euler && (depth == 3 || depth == 5);
-                let useful = if depth == 1 { 5e-3..2e-2 } else { 5e-5..1e-3 };
+                let useful = if depth == 1 { 3e-3..2e-2 } else { 5e-5..1e-3 };
                 assert!(if swings { limit.step < 1e-4 } else { useful.contains(&limit.step) }, "{limit:?}");
             }
         }

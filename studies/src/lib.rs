@@ -7,24 +7,31 @@
 //! that implements [`Study`], and a row in [`SimulatedStudy`]; what it finds is a [`Sheet`].
 
 pub mod accuracy;
+pub mod archie;
 pub mod arm_swing;
 pub mod bus;
 pub mod bus_faults;
+pub mod commands;
 pub mod components;
 pub mod cycles;
 pub mod figures_of_thesis;
+mod joint_bench;
 pub mod limits;
 pub mod lines;
+pub mod points;
 pub mod push;
+mod random;
 pub mod scorecard;
 mod search;
 pub mod second;
+pub mod servo;
 pub mod sheet;
 pub mod simulation_speed;
 pub mod speed;
 pub mod stability;
 pub mod stalls;
 pub mod tables;
+pub mod tune;
 
 use std::path::Path;
 
@@ -72,6 +79,8 @@ macro_rules! studies {
 studies! {
     /// Which impulse the walking robot survives.
     Push: push::Push,
+    /// How many random timelines of commands the robot walks to their ends.
+    Commands: commands::RandomCommands,
     /// Which disturbances and errors a gait survives: pushes, wrong sensors, wrong ground, delay.
     Viability: stability::viability::Viability,
     /// How fast a gait forgets a small disturbance: eigenvalues of its Poincaré map.
@@ -82,10 +91,16 @@ studies! {
     Components: components::ComponentsStudy,
     /// How fast simulation, planner and stabilizer are, and how accurate at that speed.
     Speed: speed::Speed,
+    /// Sampling time, integral and integration step of drives with a clock of their own: speed and error of a walk.
+    Servo: servo::Servo,
+    /// What makes Archie fall in his own walk, predicted beside measured, and what the stabilizer cures.
+    Archie: archie::Archie,
     /// Where methods fail: predicted and measured limits, and how each failure is reported.
     Limits: limits::LimitsStudy,
     /// Look-up tables of the local controllers: error over size, time, and what a walk loses by them.
     Tables: tables::Tables,
+    /// Tables that drives play: error of the cubics over the points of a stride, and time of their upload.
+    Points: points::Points,
     /// Figures of the thesis that compare two walks: 5.2, 4.17, 9.1.
     Thesis: figures_of_thesis::Thesis,
     /// Vertical moments of the soles and how far they turn, with arms that swing and with arms that do not.

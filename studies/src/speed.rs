@@ -8,8 +8,9 @@ use std::hint::black_box;
 
 use config::{Gait, Setup, Timeline};
 use controller::Controller;
-use messages::{Command, ControllerState, GaitState, JointTargets, Plan, Process, Sensors};
+use messages::{Command, ControllerState, GaitState, JointTargets, MAX_JOINTS, Plan, Process, Sensors};
 use planner::Planner;
+use planner::pattern_check::walk_of;
 use realtime::clock::processor_time;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -40,6 +41,17 @@ const PLANS: &[Column] = &[
 /// A scene with everything in the loop.
 const CHAIN: &[Column] =
     &[plain("/scene", "whole chain in one process"), fixed("/real_time_factor", "real time [1]", 0)];
+
+/// A walk that is a pattern (Daniali 2013).
+const PATTERN: &[Column] = &[
+    plain("/walk", "a pattern"),
+    fixed("/plan_us", "cycle with a new plan: median, p99, max [us]", 2),
+    fixed("/stride_us", "legs at all points of a stride [us]", 1),
+    plain("/legs", "leg solutions"),
+];
+
+/// \[s\] Of a walk as slow as Archie's: two of its steps.
+const SLOW_WALK: f64 = 40.0;
 
 /// Plans of a walk with knots at most `spacing` apart.
 #[derive(Clone, Debug, Serialize)]
@@ -76,16 +88,23 @@ impl Study for Speed {
         for setup in [fast, all?] {
             cycles.push(cycle_times(&setup, &Recording::new(&setup)?)?);
         }
+        let mut slow = Setup::load(given.config, "archie_static")?;
+        slow.scene.duration = SLOW_WALK;
+        slow.scene.commands.retain(|(time, _)| *time < SLOW_WALK);
+        let slow_recording = Recording::new(&slow)?;
+        cycles.push(cycle_times(&slow, &slow_recording)?);
         let mut sheet = Sheet::titled(
             "Models alone, 1 s with recorded joint targets, sensors every cycle; errors against fine Runge-Kutta steps",
         );
         sheet.rows("simulation", simulation_speed::COLUMNS, &simulation);
         sheet.line("");
-        sheet.rows("chain", CHAIN, &[whole_chain(&stand)?, whole_chain(&walk)?]);
+        sheet.rows("chain", CHAIN, &[whole_chain(&stand)?, whole_chain(&walk)?, whole_chain(&slow)?]);
         sheet.line("");
         sheet.rows("cycles", CYCLES, &cycles);
         sheet.line("");
         sheet.rows("plans", PLANS, &plans);
+        sheet.line("");
+        sheet.rows("pattern", PATTERN, &[pattern_times(&slow, &slow_recording)?]);
         Ok(sheet)
     }
 }
@@ -136,7 +155,7 @@ impl Recording {
         gait: &Gait,
         mut seen: impl FnMut(usize, &mut dyn FnMut(&mut Plan) -> bool),
     ) {
-        let mut planner = Planner::of(gait, &setup.robot);
+        let mut planner = Planner::of(gait, &setup.robot).expect("a gait that was walked");
         let mut timeline = Timeline::new(&setup.scene, Process::Planner);
         let mut due: Vec<Command> = Vec::with_capacity(16);
         for i in 0..self.sensors.len() {
@@ -206,13 +225,49 @@ pub(crate) fn plan_times(setup: &Setup, recording: &Recording, spacing: f64) -> 
             if made && GaitState::from(plan.state) == GaitState::Walking {
                 times.push(took);
                 if repeat == 0 {
-                    points = points.max(plan.com.pieces + 2); // two problems, each with a point more than pieces
+                    points = points.max(plan.body.pieces + 2); // two problems, each with a point more than pieces
                     error = error.max(zmp_error(&plan, &gait));
                 }
             }
         });
     }
     Plans { spacing_s: spacing, points, time_us: spread(times), zmp_error_m: error }
+}
+
+/// Plans of a pattern, and the legs in closed form at the points of its stride.
+fn pattern_times(setup: &Setup, recording: &Recording) -> Result<Value, Error> {
+    let (mut plan, mut planning, mut strides) = (Box::new(Plan::default()), Vec::new(), Vec::new());
+    for _ in 0..10 * REPEATS {
+        recording.replay(setup, &setup.gait, |_, planner| {
+            let begun = processor_time();
+            let made = planner(&mut plan);
+            let took = processor_time() - begun;
+            if made && !GaitState::from(plan.state).rests() {
+                planning.push(took);
+            }
+        });
+    }
+    // The last plan closes the feet; the two before it are a stride that repeats.
+    let points = setup.gait.pattern.map_or(0, |p| p.points);
+    let plans = walk_of(&setup.gait, &setup.robot).map_err(|fault| fault.to_string())?;
+    let stride = plans.len().checked_sub(3).and_then(|k| plans.get(k..k + 2)).unwrap_or_default();
+    let mut angles = [0.0; MAX_JOINTS];
+    for _ in 0..100 * REPEATS {
+        let begun = processor_time();
+        for walked in stride {
+            for k in 0..points / 2 {
+                let t = walked.end * k as f64 / (points / 2) as f64;
+                setup
+                    .robot
+                    .angles_of_plan(&walked.plan, t, &mut angles)
+                    .map_err(|(_, why)| why.to_string())?;
+                black_box(&angles);
+            }
+        }
+        strides.push(processor_time() - begun);
+    }
+    let name = &setup.scene.name;
+    Ok(json!({ "walk": name, "plan_us": spread(planning), "stride_us": spread(strides), "legs": 2 * points }))
 }
 
 /// Largest distance of the planned zero-moment point to that of three masses that move as planned (4.35)-(4.39).
@@ -222,7 +277,7 @@ fn zmp_error(plan: &Plan, gait: &Gait) -> f64 {
     let body = 1.0 - 2.0 * leg;
     let g = multibody::GRAVITY_ACCELERATION;
     let at = |t: f64| {
-        let com = plan.com.sample(t);
+        let com = plan.body.sample(t);
         let feet = [plan.feet[0].sample(t), plan.feet[1].sample(t)];
         let mut trunk = (com.position, com.acceleration);
         for foot in &feet {
@@ -246,5 +301,5 @@ fn zmp_error(plan: &Plan, gait: &Gait) -> f64 {
         });
         miss[0].hypot(miss[1])
     };
-    (0..(plan.com.end() / INSTANT) as usize).map(|k| at(k as f64 * INSTANT)).fold(0.0, f64::max)
+    (0..(plan.body.end() / INSTANT) as usize).map(|k| at(k as f64 * INSTANT)).fold(0.0, f64::max)
 }

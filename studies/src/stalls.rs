@@ -12,6 +12,7 @@ use chain::Chain;
 use chain::parallel;
 use serde_json::json;
 
+use crate::random::Random;
 use crate::sheet::{Column, fixed, plain};
 use crate::{Error, Given, Sheet, Study};
 
@@ -134,11 +135,11 @@ pub fn run(
 
     // One walk passes all instants in their order; a trial goes on from a copy.
     let mut cases: Vec<(u64, Process, u64)> = Vec::new();
-    let mut random = seed;
+    let mut random = Random(seed);
     for process in PROCESSES {
         for &ms in millis {
             for _ in 0..instants {
-                let at = (unit(&mut random) * INSTANTS / dt) as u64;
+                let at = (random.unit() * INSTANTS / dt) as u64;
                 cases.push((at, process, (ms * 1e-3 / dt).round().max(1.0) as u64));
             }
         }
@@ -164,15 +165,6 @@ pub fn run(
     let place = |t: &StallTrial| (PROCESSES.iter().position(|p| p.name() == t.process), t.cycles);
     trials.sort_by_key(place);
     Ok(trials)
-}
-
-/// A number out of \[0, 1) (Steele and others, SplitMix64).
-fn unit(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
 fn advance(chain: &mut Chain, to: f64) {

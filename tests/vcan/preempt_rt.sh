@@ -25,10 +25,11 @@ granted() {
         pid=$(cat "$work/rt/run/$process.lock" 2>/dev/null) ||
             because "$process is not there: $(tail -n 20 "$work/rt/said")" || return 1
         wanted=$(awk -v row="[process.$process]" '$0 == row { on = 1 } on && /^priority/ { print $3; exit }' "$work/config/system.toml")
+        [ -d "/proc/$pid" ] || because "$process has ended: $(tail -n 20 "$work/rt/said")" || return 1
         has=$(chrt -p "$pid" | sed -n 's/.*priority: //p')
         locked=$(awk '/^VmLck/ { print $2 }' "/proc/$pid/status")
         echo "        $process: SCHED_FIFO $has, $locked kB locked"
-        [ "$has" = "$wanted" ] && [ "$locked" -gt 1000 ] || because "$process is to have $wanted" || return 1
+        [ "$has" = "$wanted" ] && [ "${locked:-0}" -gt 1000 ] || because "$process is to have $wanted" || return 1
     done
 }
 
@@ -38,7 +39,7 @@ real_time() {
     walk rt demo --rt required --no-log &
     within 400 grep -qE '^ *[0-9.]+ s  ' "$work/rt/said" || because "no start: $(tail -n 5 "$work/rt/said")" || return 1
     granted || return 1
-    "$GANGWERK" estop --dir "$work/rt/run" >"$work/estop" 2>&1 || because "$(cat "$work/estop")" || return 1
+    "$GANGWERK" estop --dir "$work/rt/run" >"$work/estop" 2>&1 || because "$(cat "$work/estop"): $(tail -n 20 "$work/rt/said")" || return 1
     sed 's/^/        /' "$work/estop"
     pkill -INT -f -- '--rt required'
     sleep 1

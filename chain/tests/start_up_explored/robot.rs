@@ -26,7 +26,7 @@ fn message(id: u32, node: usize, to_drives: bool, numbers: &[(Carries, u32, f64)
         signal
     });
     let signals: Vec<BusSignal> = signals.collect();
-    BusMessage { name: String::new(), id, len: start.div_ceil(8), node, to_drives, signals }
+    BusMessage { name: String::new(), id, len: start.div_ceil(8), node, to_drives, cyclic: true, signals }
 }
 
 fn layout() -> FrameLayout {

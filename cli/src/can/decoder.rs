@@ -4,6 +4,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
+use codec::interpreter::Telegram;
 use codec::layout::{BusMessage, Carries, FrameLayout};
 use config::Robot;
 use fieldbus::capture::{Captured, FrameType};
@@ -14,6 +15,8 @@ use super::Only;
 /// The layouts of a robot, and which node is behind which interface.
 pub(super) struct FrameDecoder {
     pub(super) robot: Robot,
+    /// The same with drives that play tables, until a frame of theirs was seen.
+    tables: Option<Box<Robot>>,
     /// Whether a frame of CAN FD was seen: then the layout is that of CAN FD, also for frames of up to 8 bytes.
     fd: bool,
     pub(super) owners: Owners,
@@ -29,12 +32,22 @@ impl FrameDecoder {
     pub(super) fn load(config: &Path, name: &str) -> Result<Self, Box<dyn Error>> {
         let place = config.join("robots").join(name);
         let robot = Robot::load(&place)?;
-        Ok(Self { robot, fd: false, owners: Owners::default() })
+        let mut tables = Box::new(robot.clone());
+        let tables = tables.play_tables().is_ok().then_some(tables);
+        Ok(Self { robot, tables, fd: false, owners: Owners::default() })
     }
 
     /// Learns from frames: all of a recording before it is looked at, or each as it comes.
     pub(super) fn learn(&mut self, frame: &Captured) {
         self.fd |= matches!(frame.form, FrameType::Fd { .. });
+        let has = |layout: &FrameLayout| {
+            layout.messages.iter().any(|m| m.id == frame.id && m.len == u32::from(frame.len))
+        };
+        if !has(self.layout())
+            && let Some(tables) = self.tables.take_if(|tables| has(&tables.layout))
+        {
+            self.robot = *tables;
+        }
         self.owners.learn(layout(&self.robot, self.fd), frame);
     }
 
@@ -78,13 +91,19 @@ pub(super) fn unit(carries: Carries) -> &'static str {
         | Carries::Supply
         | Carries::Status(_)
         | Carries::Error(_)
-        | Carries::Orientation(_) => "",
+        | Carries::Orientation(_)
+        | Carries::Interpreter(_) => "",
     }
 }
 
 /// One line for each signal: name, value, unit; words of bits in hex digits.
 pub(super) fn signals(message: &BusMessage, frame: &Captured) -> String {
     let mut text = String::new();
+    let joint = |name: &str| name.rsplit_once('_').map_or(name, |(joint, _)| joint).to_owned();
+    // A telegram of an interpreter, as it is written at the drive's terminal.
+    if let (Some(_), Some(telegram)) = (message.interpreter(), Telegram::read(frame.payload())) {
+        return format!("    {}: {telegram}\n", joint(&message.signals[0].name));
+    }
     for signal in &message.signals {
         let raw = signal.get(&frame.data);
         let value = match signal.carries {

@@ -7,12 +7,12 @@ use controller::Controller;
 
 use lowlevel::JointLoop;
 use messages::topics::{
-    CONTROLLER_STATE, FRAMES_IN, FRAMES_OUT, JOINT_TARGETS, PARAMETERS_CONTROLLER, PARAMETERS_PLANNER, PLAN,
-    POWER, SENSORS, WATCHDOG_RESET,
+    CONTROLLER_STATE, FRAMES_IN, FRAMES_OUT, JOINT_TABLES, JOINT_TARGETS, PARAMETERS_CONTROLLER,
+    PARAMETERS_PLANNER, PLAN, POWER, SENSORS, WATCHDOG_RESET,
 };
 use messages::{
-    BusFrames, Command, CommandTaken, ControllerState, CycleInputs, EventCode, JointTargets, Parameters,
-    Plan, Process, Sensors, WatchdogReset,
+    BusFrames, Command, CommandTaken, ControllerState, CycleInputs, EventCode, JointTables, JointTargets,
+    Parameters, Plan, Process, Sensors, WatchdogReset,
 };
 use planner::Planner;
 use planner::obstacles::KnownObstacles;
@@ -43,7 +43,7 @@ pub(super) fn of(process: Process, setup: &Setup, bus: &BusAddress) -> Result<Bo
     // Each part is built as its daemon builds it, from the configuration in the log.
     Ok(match process {
         Process::Planner => {
-            let mut planner = Planner::of(gait, robot);
+            let mut planner = Planner::of(gait, robot).map_err(|fault| fault.of_gait(&scene.gait))?;
             planner.see(KnownObstacles::new(setup.known_obstacles()?));
             Box::new(Planning {
                 planner,
@@ -64,6 +64,7 @@ pub(super) fn of(process: Process, setup: &Setup, bus: &BusAddress) -> Result<Bo
             real_bus: *bus != BusAddress::Shared,
             targets: None,
             frames: None,
+            tables: None,
         }),
         Process::Watchdog => Box::new(Guarding {
             watchdog: Watchdog::new(system.watchdog_missed, system.toggle_missed),
@@ -164,6 +165,9 @@ impl Part for Stabilizing {
         let (targets, state) = self.controller.step(measured, self.plan.as_deref());
         tape.compare(&CONTROLLER_STATE, state)?;
         tape.compare(&JOINT_TARGETS, targets)?;
+        if let Some(tables) = self.controller.tables() {
+            tape.compare(&JOINT_TABLES, tables)?;
+        }
         for (code, detail) in self.controller.events().drain() {
             tape.event(header, code, detail)?;
         }
@@ -176,6 +180,7 @@ struct Driving {
     real_bus: bool,
     targets: Option<Box<JointTargets>>,
     frames: Option<Box<BusFrames>>,
+    tables: Option<Box<JointTables>>,
 }
 
 impl Part for Driving {
@@ -195,8 +200,12 @@ impl Part for Driving {
         let header = inputs.header;
         tape.fetch(&JOINT_TARGETS, inputs.used[0], &mut self.targets)?;
         tape.fetch(&FRAMES_IN, inputs.used[1], &mut self.frames)?;
+        tape.fetch(&JOINT_TABLES, inputs.used[2], &mut self.tables)?;
         let sensors = self.joints.receive(header.tick, header.stamp_ns, self.frames.as_deref());
         tape.compare(&SENSORS, sensors)?;
+        if let Some(tables) = &self.tables {
+            self.joints.take_tables(tables);
+        }
         for taken in commands {
             // Answers are not compared: what follows from them is in the records.
             let _ = self.joints.command(&command(taken)?);

@@ -25,8 +25,8 @@ pub(super) fn force_targets(cycle: &ControlCycle<'_>, footing: &Footing) -> Foot
     // Stabilizing force and moment, from the errors of inclination and height.
     let error = Vector2::from_fn(|i, _| now.torso.position[i] - estimate.angles[i]);
     let rate = Vector2::from_fn(|i, _| now.torso.velocity[i] - estimate.rates[i]);
-    let height = now.com.position[2] - estimate.com.z;
-    let height_rate = now.com.velocity[2] - estimate.com_velocity.z;
+    let height = now.body.position[2] - estimate.com.z;
+    let height_rate = now.body.velocity[2] - estimate.com_velocity.z;
     let stabilizing = stabilize(control, error, rate, height, height_rate);
 
     // A foot that finds no ground has no load: the targets are those of the feet that are felt.
@@ -64,8 +64,8 @@ fn foot_forces(
     stabilizing: (Vector3<f64>, f64),
 ) -> [FootWrench; 2] {
     let mass = cycle.kinematics.mass();
-    let com = Vector3::from(at.com.position);
-    let force = (Vector3::from(at.com.acceleration) - multibody::GRAVITY) * mass;
+    let com = Vector3::from(at.body.position);
+    let force = (Vector3::from(at.body.acceleration) - multibody::GRAVITY) * mass;
     let supports: [Support; 2] = std::array::from_fn(|i| support(cycle, at, load[i], i));
     let wrenches = distribute(
         cycle.control,

@@ -53,8 +53,8 @@ pub(super) fn task_velocity(
     let (end, torso) = (cycle.end, &cycle.torso);
     let back = torso.transpose();
     let omega = back * torso_omega(torso, end);
-    let com = Vector3::from(end.com.position);
-    let com_velocity = Vector3::from(end.com.velocity);
+    let com = Vector3::from(end.body.position);
+    let com_velocity = Vector3::from(end.body.velocity);
     let mut x = TaskVector::zeros();
     for foot in 0..2 {
         let s = &end.feet[foot];

@@ -1,8 +1,8 @@
 //! Records and events that the controller publishes: all of them are written here.
 
 use messages::{
-    ControlLimit, ControllerState, Detail, EventCode, EventQueue, GaitState, JointMode, JointTargets,
-    Parameters, Plan, Sensors, StartUp,
+    BodyPoint, ControlLimit, ControllerState, Detail, EventCode, EventQueue, GaitState, JointMode,
+    JointTargets, Parameters, Plan, Sensors, StartUp,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -43,6 +43,8 @@ pub(super) struct MetLimits {
 /// Outcome of a cycle that is to be published.
 pub(super) struct CycleOutcome<'a> {
     pub(super) plan: &'a PlanFollower,
+    /// Joints are led to targets.
+    pub(super) leads: bool,
     pub(super) watch: &'a SafetyWatch,
     pub(super) joints: &'a JointState,
     pub(super) modification: &'a Modification,
@@ -50,6 +52,8 @@ pub(super) struct CycleOutcome<'a> {
     pub(super) wrenches: Option<[FootWrench; 2]>,
     /// \[rad\] q_d - q
     pub(super) lag: &'a [f64],
+    /// \[m\] Desired centre of gravity.
+    pub(super) com: [f64; 3],
     pub(super) now: &'a Desired,
     pub(super) estimate: &'a TaskEstimate,
 }
@@ -75,9 +79,9 @@ impl Telemetry {
         let CycleOutcome { plan, watch, joints, now, estimate, .. } = *outcome;
         let t = plan.time(sensors.header.tick, clock.dt);
         self.targets.header = sensors.header;
-        self.targets.mode = match (plan.id(), watch.stopped()) {
+        self.targets.mode = match (outcome.leads, watch.stopped()) {
             (_, Some(_)) => JointMode::Stop,
-            (0, _) => JointMode::Hold,
+            (false, _) => JointMode::Hold,
             _ => JointMode::Track,
         } as u64;
         self.targets.angle = joints.angle;
@@ -101,12 +105,15 @@ impl Telemetry {
         // Desired task space, and the measured one beside it.
         let Plan { origin, .. } = plan.plan();
         s.origin = *origin;
-        s.com_desired = now.com.position;
+        s.com_desired = outcome.com;
         s.feet_desired = now.feet.map(|f| f.position);
         s.zmp_desired = now.zmp;
         s.load_left = now.load[1];
         s.tracking_error.copy_from_slice(outcome.lag);
         estimate.report(now, s);
+        if plan.id() == 0 || plan.plan().leads != BodyPoint::CentreOfGravity as u64 {
+            s.dcm_error = [f64::NAN; 2];
+        }
         for foot in 0..2 {
             let m = outcome.modification.value.fixed_rows::<3>(3 * foot);
             s.modification[foot] = [m[0], -m[1], m[2]]; // z, s1, s0: s1 is minus roll, s0 is pitch (errata 2.4)

@@ -10,6 +10,8 @@ pub struct DriveCommand {
     pub targets: JointTargets,
     /// \[1\] Controlwords of CiA 402.
     pub control: [u32; MAX_JOINTS],
+    /// Joints (bits) whose controlword is sent in this cycle, where it is not sent in every one.
+    pub due: u32,
 }
 
 /// Outcome of the frames of one cycle.
@@ -43,9 +45,21 @@ impl Received {
 
 /// Every message to the drives.
 pub fn encode_targets(layout: &FrameLayout, command: &DriveCommand, frames: &mut BusFrames) {
+    encode_command(layout, command, &[], frames);
+}
+
+/// The same, with telegrams to the drives' interpreters; they go out on each line before it is synchronized.
+pub fn encode_command(
+    layout: &FrameLayout,
+    command: &DriveCommand,
+    telegrams: &[Frame],
+    frames: &mut BusFrames,
+) {
     let t = &command.targets;
     frames.header = t.header;
-    encode(layout, true, t.header.tick, frames, |carries| match carries {
+    frames.count = 0;
+    let due = |carries: Carries| matches!(carries, Carries::Control(j) if command.due >> j & 1 == 1);
+    encode(layout, true, t.header.tick, (telegrams, &due), frames, |carries| match carries {
         Carries::Mode => t.mode as f64,
         Carries::Target(j) => t.angle[j],
         Carries::Feed(j) => t.speed[j],
@@ -69,9 +83,24 @@ pub fn decode_targets(layout: &FrameLayout, frames: &BusFrames, command: &mut Dr
 
 /// Every message from the drives.
 pub fn encode_sensors(layout: &FrameLayout, sensors: &Sensors, frames: &mut BusFrames) {
+    encode_answers(layout, sensors, 0, &[], frames);
+}
+
+/// The same, with emergency frames of these drives (bits) and telegrams of their interpreters, which come first: who has all
+/// messages of the cycle has these, too.
+pub fn encode_answers(
+    layout: &FrameLayout,
+    sensors: &Sensors,
+    emergencies: u32,
+    telegrams: &[Frame],
+    frames: &mut BusFrames,
+) {
     let s = sensors;
     frames.header = s.header;
-    encode(layout, false, s.header.tick, frames, |carries| match carries {
+    frames.count = 0;
+    telegrams.iter().for_each(|frame| _ = frames.push(frame));
+    let due = |carries: Carries| matches!(carries, Carries::Error(j) if emergencies >> j & 1 == 1);
+    encode(layout, false, s.header.tick, (&[], &due), frames, |carries| match carries {
         Carries::Supply => s.power as f64,
         Carries::Angle(j) => s.joint_angle[j],
         Carries::Speed(j) => s.joint_speed[j],
@@ -152,16 +181,24 @@ fn is_current(message: &BusMessage, frame: &Frame, tick: u64) -> bool {
     counter.is_none_or(|s| s.get(&frame.data) as u64 == tick & ((1 << s.bits) - 1))
 }
 
-/// Every message of one direction, in the order of the layout.
+/// Appends every message of one direction, in the order of the layout: those of every cycle, and those with something that is
+/// due; before a line is synchronized, its telegrams.
 fn encode(
     layout: &FrameLayout,
     to_drives: bool,
     tick: u64,
+    (telegrams, due): (&[Frame], &dyn Fn(Carries) -> bool),
     frames: &mut BusFrames,
     value: impl Fn(Carries) -> f64,
 ) {
-    frames.count = 0;
-    for message in layout.sent(to_drives) {
+    for message in layout.messages.iter().filter(|m| m.to_drives == to_drives) {
+        if !message.cyclic && !message.signals.iter().any(|s| due(s.carries)) {
+            continue;
+        }
+        if !telegrams.is_empty() && message.is_sync() {
+            let of_line = telegrams.iter().filter(|frame| frame.line as usize == message.node);
+            of_line.for_each(|frame| _ = frames.push(frame));
+        }
         let Some(frame) = frames.append() else { return }; // `config` refuses a layout with more
         (frame.line, frame.id, frame.len) = (message.node as u32, message.id, message.len);
         frame.data = [0; 64];
@@ -206,12 +243,14 @@ fn decode(
             received.stale += 1;
             continue;
         }
-        if seen[i / 64] >> (i % 64) & 1 == 1 {
-            received.repeated += 1;
-            continue;
+        if message.cyclic {
+            if seen[i / 64] >> (i % 64) & 1 == 1 {
+                received.repeated += 1;
+                continue;
+            }
+            seen[i / 64] |= 1 << (i % 64);
+            received.missing[message.node] -= 1;
         }
-        seen[i / 64] |= 1 << (i % 64);
-        received.missing[message.node] -= 1;
         for signal in message.signals.iter().filter(|s| s.carries != Carries::Counter) {
             take(signal.carries, signal.value(signal.get(&frame.data)));
         }

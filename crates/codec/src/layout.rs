@@ -53,6 +53,8 @@ pub enum Carries {
     Rate(usize),
     /// \[m/s^2\] Axis of the torso.
     Acceleration(usize),
+    /// \[1\] Part of a telegram of the interpreter in a joint's drive ([`crate::interpreter`]), either way.
+    Interpreter(usize),
 }
 
 /// One number of a message.
@@ -74,7 +76,7 @@ pub struct BusSignal {
     pub carries: Carries,
 }
 
-/// One frame of every cycle.
+/// One frame: of every cycle, or when there is something to say.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BusMessage {
     /// Its name in the DBC file.
@@ -87,6 +89,8 @@ pub struct BusMessage {
     pub node: usize,
     /// Whether lowlevel sends it.
     pub to_drives: bool,
+    /// Whether it is sent in every cycle, and missed if it does not come.
+    pub cyclic: bool,
     /// Its numbers.
     pub signals: Vec<BusSignal>,
 }
@@ -102,6 +106,8 @@ pub struct FrameLayout {
     index: Vec<u16>,
     /// Whether some message brings a motor side of the joint.
     pub(crate) motor_side: [bool; MAX_JOINTS],
+    /// Messages of each joint's interpreter: from its drive, to its drive.
+    interpreter: [[u16; MAX_JOINTS]; 2],
 }
 
 impl BusSignal {
@@ -162,7 +168,15 @@ impl BusMessage {
 
     /// Whether it ends the cycle: what was sent before it takes effect, sensors are read.
     pub fn is_sync(&self) -> bool {
-        self.to_drives && self.signals.iter().all(|s| s.carries == Carries::Counter)
+        self.to_drives && self.cyclic && self.signals.iter().all(|s| s.carries == Carries::Counter)
+    }
+
+    /// Joint whose drive's interpreter it is for or from.
+    pub fn interpreter(&self) -> Option<usize> {
+        self.signals.iter().find_map(|s| match s.carries {
+            Carries::Interpreter(j) => Some(j),
+            _ => None,
+        })
     }
 }
 
@@ -171,15 +185,19 @@ impl FrameLayout {
     pub fn new(nodes: Vec<String>, messages: Vec<BusMessage>) -> Self {
         let mut index = vec![NOBODY; nodes.len() * IDS];
         let mut motor_side = [false; MAX_JOINTS];
+        let mut interpreter = [[NOBODY; MAX_JOINTS]; 2];
         for (i, message) in messages.iter().enumerate() {
             index[message.node * IDS + message.id as usize % IDS] = i as u16;
+            if let Some(j) = message.interpreter() {
+                interpreter[usize::from(message.to_drives)][j] = i as u16;
+            }
             for signal in &message.signals {
                 if let Carries::Motor(j) = signal.carries {
                     motor_side[j] = true;
                 }
             }
         }
-        Self { nodes, messages, index, motor_side }
+        Self { nodes, messages, index, motor_side, interpreter }
     }
 
     /// Whether all messages fit into frames of classic CAN.
@@ -201,9 +219,25 @@ impl FrameLayout {
         lines.next().filter(|_| lines.next().is_none())
     }
 
-    /// Messages of one direction.
+    /// Messages of every cycle in one direction.
     pub fn sent(&self, to_drives: bool) -> impl Iterator<Item = &BusMessage> {
-        self.messages.iter().filter(move |m| m.to_drives == to_drives)
+        self.messages.iter().filter(move |m| m.to_drives == to_drives && m.cyclic)
+    }
+
+    /// Message to or from the interpreter in the drive of joint `j`, if it has one.
+    pub fn interpreter(&self, to_drives: bool, j: usize) -> Option<&BusMessage> {
+        self.messages.get(usize::from(*self.interpreter[usize::from(to_drives)].get(j)?))
+    }
+
+    /// Whether drives play tables: then they have interpreters, and no targets come in every cycle.
+    pub fn plays_tables(&self) -> bool {
+        self.interpreter(true, 0).is_some()
+    }
+
+    /// \[rad\] One count of joint `j`'s motor, as its angle is read; none if nobody reads it.
+    pub fn count(&self, j: usize) -> Option<f64> {
+        let mut signals = self.messages.iter().filter(|m| !m.to_drives).flat_map(|m| &m.signals);
+        signals.find(|s| s.carries == Carries::Angle(j)).map(|s| s.scale)
     }
 }
 

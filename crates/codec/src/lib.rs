@@ -3,6 +3,10 @@
 //! - [`layout`]: position, scale and meaning of each number in the frames. It is data: `config` makes it from a robot's DBC
 //!   files.
 //! - [`frames`]: encoding and decoding by such a layout, and what became of the frames of a cycle.
+//! - [`interpreter`]: telegrams to and from the interpreters of drives that play tables; [`room`]: how many of them a cycle
+//!   has room for.
 
 pub mod frames;
+pub mod interpreter;
 pub mod layout;
+pub mod room;

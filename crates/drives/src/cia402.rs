@@ -85,12 +85,14 @@ pub enum DriveFault {
     Heartbeat = 0x8130,
     /// The joint does not follow.
     FollowingError = 0x8611,
+    /// A table of points was at its end before the motion was: the queue is empty (0xFF00: of the maker, 0x34 his number).
+    QueueEmpty = 0xFF34,
 }
 
 impl DriveFault {
     /// All of them.
-    pub const ALL: [Self; 4] =
-        [Self::OverCurrent, Self::OverTemperature, Self::Heartbeat, Self::FollowingError];
+    pub const ALL: [Self; 5] =
+        [Self::OverCurrent, Self::OverTemperature, Self::Heartbeat, Self::FollowingError, Self::QueueEmpty];
 
     /// The fault of an error code.
     pub fn from_code(code: u16) -> Option<Self> {
@@ -109,6 +111,7 @@ impl DriveFault {
             Self::OverTemperature => "winding too hot",
             Self::Heartbeat => "no frames on the bus",
             Self::FollowingError => "following error",
+            Self::QueueEmpty => "table ended in motion",
         }
     }
 }

@@ -11,7 +11,7 @@
 //! A cascade of position and speed is PD control of the torque with K_d = w_v J and K_p = K_x K_d, J the inertia that its
 //! speed loop is tuned for. What it feeds back makes it (5.43), (5.45) or (5.49).
 
-use crate::Motor;
+use crate::{CascadeOutput, CascadePi, Motor};
 
 /// Control of one drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +39,8 @@ pub struct Resolution {
 pub enum ControlLaw {
     /// Position, speed and current, one inside of the other: Lola's servo drives (thesis 5.5.2).
     Cascade(Cascade),
+    /// The same with an integral in the speed loop, sampled: Archie's servo drives (Daniali 2013, 5.3).
+    CascadePi(CascadePi),
     /// Angle of the motor to voltage: Johnnie, who has no current sensors (thesis 5.5.1).
     Voltage(VoltageLaw),
 }
@@ -86,12 +88,23 @@ pub struct VoltageLaw {
 }
 
 /// When a law is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sampling {
     /// So often that nobody sees the steps: the drive's own processor.
     Continuous,
     /// Once per bus cycle, and held until the next.
     Cycle(Sampled),
+    /// By a clock of the drive's own, and held until its next tick.
+    Period(SamplePeriods),
+}
+
+/// Periods of a law with a clock of its own. Bus cycles are whole multiples of the position loop's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SamplePeriods {
+    /// \[s\] Of the speed loop.
+    pub speed: f64,
+    /// Samples of the speed loop in one of the position loop.
+    pub position_every: u32,
 }
 
 /// A law computed once per cycle.
@@ -125,10 +138,33 @@ impl Cascade {
     pub fn speed_wanted(&self, error: f64, wanted: f64) -> f64 {
         wanted + self.position_gain * error
     }
+}
 
-    /// \[V\] Voltage that the current loop sets: R I_d + k_M w + L w_c (I_d - I).
-    pub fn voltage(&self, motor: &Motor, wanted: f64, current: f64, speed: f64) -> f64 {
-        motor.voltage(wanted, speed) + motor.inductance * self.current_bandwidth * (wanted - current)
+impl ControlLaw {
+    /// \[rad/s\] Bandwidth of the current loop; none: the law puts out a voltage.
+    pub fn current_bandwidth(&self) -> Option<f64> {
+        match self {
+            Self::Cascade(cascade) => Some(cascade.current_bandwidth),
+            Self::CascadePi(CascadePi { output: CascadeOutput::Current(bandwidth), .. }) => Some(*bandwidth),
+            Self::CascadePi(_) | Self::Voltage(_) => None,
+        }
+    }
+
+    /// \[rad/s\] Bandwidth of the speed loop, which is tuned to an inertia; none without one.
+    pub fn speed_bandwidth(&self) -> Option<f64> {
+        match self {
+            Self::Cascade(cascade) => Some(cascade.speed_bandwidth),
+            Self::CascadePi(cascade) => Some(cascade.speed_bandwidth),
+            Self::Voltage(_) => None,
+        }
+    }
+
+    /// Side of the gear whose angle the law controls.
+    pub fn position_side(&self) -> GearSide {
+        match self {
+            Self::Cascade(cascade) => cascade.feedback.position(),
+            Self::CascadePi(_) | Self::Voltage(_) => GearSide::Motor,
+        }
     }
 }
 

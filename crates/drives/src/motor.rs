@@ -39,6 +39,12 @@ impl Motor {
         self.resistance * current + self.torque_constant * speed
     }
 
+    /// \[V\] Voltage by which a current loop of `bandwidth` \[rad/s\] leads to the `wanted` current: R I_d + k_M w + L w_c
+    /// (I_d - I).
+    pub fn loop_voltage(&self, bandwidth: f64, wanted: f64, current: f64, speed: f64) -> f64 {
+        self.voltage(wanted, speed) + self.inductance * bandwidth * (wanted - current)
+    }
+
     /// \[s\] L/R.
     pub fn time_constant(&self) -> f64 {
         self.inductance / self.resistance

@@ -1,13 +1,12 @@
 //! Load of a line: bits of all frames of a cycle, in the worst case of stuffing.
 //!
-//! Classic frames with identifiers of 11 bits: 44 + 8n bits, up to one stuff bit after each 4 of the first 34 + 8n, and 3 bits
-//! until the next frame. CAN FD (ISO 11898-1:2015): arbitration phase of 30 bits, stuffed the same way, at the nominal rate;
+//! Classic frames: [`codec::room`]. CAN FD (ISO 11898-1:2015): arbitration phase of 30 bits, stuffed the same way, at the nominal rate;
 //! data phase of control, data, fixed stuff bits and CRC of 17 or 21 bits at the data rate.
 
 use codec::layout::{BusMessage, FrameLayout};
+pub use codec::room::BIT_RATE;
+pub(crate) use codec::room::classic_bits;
 
-/// \[bit/s\] Of arbitration, and of all of classic CAN, on the lines of these robots.
-pub const BIT_RATE: f64 = 1e6;
 /// \[bit/s\] Of the data of CAN FD there.
 pub const DATA_BIT_RATE: f64 = 5e6;
 
@@ -37,26 +36,15 @@ pub(crate) fn frame_time(n: u32, rates: Rates) -> f64 {
     }
 }
 
-/// Most bits of a classic frame with `n` bytes, until the next frame may begin.
-pub(crate) fn classic_bits(n: u32) -> u32 {
-    44 + 8 * n + (34 + 8 * n - 1) / 4 + 3
-}
-
 /// Longest time \[s\] that all frames of one cycle take on each line.
 pub fn cycle_time(layout: &FrameLayout, rates: Rates) -> Vec<f64> {
-    let on = |node: usize| layout.messages.iter().filter(move |m: &&BusMessage| m.node == node);
+    let on = |node: usize| layout.messages.iter().filter(move |m: &&BusMessage| m.node == node && m.cyclic);
     (0..layout.nodes.len()).map(|node| on(node).map(|m| frame_time(m.len, rates)).sum()).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Worst case of a classic frame with 8 bytes: 135 bits (Davis et al. 2007, equation 1, with 11 bits of identifier).
-    #[test]
-    fn published_lengths_of_classic_frames() {
-        assert_eq!([0, 1, 8].map(classic_bits), [55, 65, 135]);
-    }
 
     #[test]
     fn a_frame_at_a_higher_data_rate_is_shorter() {

@@ -30,6 +30,7 @@ fn layout() -> FrameLayout {
         len: 8,
         node: node as usize,
         to_drives,
+        cyclic: true,
         signals: vec![counter.clone()],
     };
     let each = |to_drives| (0..LINES).flat_map(move |n| (0..FRAMES).map(move |k| (n, k, to_drives)));

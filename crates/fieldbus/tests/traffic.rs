@@ -27,7 +27,7 @@ fn message(
     };
     let mut signals = vec![signal(0, COUNTER, Carries::Counter)];
     signals.extend(number.map(|carries| signal(8, 16, carries)));
-    BusMessage { name: name.into(), id, len, node, to_drives, signals }
+    BusMessage { name: name.into(), id, len, node, to_drives, cyclic: true, signals }
 }
 
 /// Two nodes with targets and angles of their own and one SYNC, 0x80, for both.

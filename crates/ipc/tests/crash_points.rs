@@ -52,7 +52,7 @@ impl Pattern for Plan {
     const TOPIC: &'static Topic = &PLAN;
     const WRITER: Process = Process::Planner;
     fn numbers(&mut self) -> impl Iterator<Item = &mut f64> {
-        self.com.coefficients.iter_mut().flatten().flatten().chain(&mut self.origin)
+        self.body.coefficients.iter_mut().flatten().flatten().chain(&mut self.origin)
     }
 }
 

@@ -74,7 +74,7 @@ impl Sealed for Plan {
     const WRITER: Process = Process::Planner;
     fn fill(&mut self, n: u64) {
         self.id = n;
-        for (k, x) in self.com.coefficients.iter_mut().flatten().flatten().enumerate() {
+        for (k, x) in self.body.coefficients.iter_mut().flatten().flatten().enumerate() {
             *x = (n + k as u64) as f64;
         }
         self.steps[7].end = n as f64;

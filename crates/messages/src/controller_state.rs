@@ -28,6 +28,15 @@ record! {
         com_desired: [f64; 3],
         /// \[m\] Measured centre of gravity.
         com: [f64; 3],
+        /// \[m/s\] Its velocity, the foot it is anchored at being at rest.
+        com_velocity: [f64; 3],
+        /// \[m\] Measured divergent component of its motion: `c + c'/w`, `w` that of a linear pendulum of its height. @invalid NaN
+        /// where it is not above the feet
+        dcm: [f64; 2],
+        /// \[m\] Desired minus measured one. @invalid NaN without a plan for the centre of gravity
+        dcm_error: [f64; 2],
+        /// \[m\] Measured origin of the torso.
+        torso: [f64; 3],
         /// \[m, rad\] Measured sole frames: x, y, z, heading.
         feet: [[f64; 4]; 2],
         /// \[m, rad\] Desired sole frames: x, y, z, heading.
@@ -40,6 +49,8 @@ record! {
         zmp_desired: [f64; 2],
         /// \[m\] Zero-moment point of the measured foot wrenches. @invalid NaN while no foot carries load
         zmp: [f64; 2],
+        /// \[m\] Pressure point of each foot on the ground. @invalid NaN while it carries no load
+        pressure_point: [[f64; 2]; 2],
         /// \[m\] Distance of the measured zero-moment point to the edge of the support polygon of the loaded feet;
         /// negative outside. @invalid NaN while no foot carries load
         zmp_margin: f64,

@@ -5,7 +5,7 @@ use crate::command::Domain;
 use crate::{Command, Header, Live, Process, Reason, Stamp, Verdict, record};
 
 /// Most topics that one step reads.
-pub const MAX_USED: usize = 2;
+pub const MAX_USED: usize = 3;
 
 record! {
     /// Which record of a topic was used.
@@ -43,7 +43,7 @@ pub const fn inputs_of(process: Process) -> &'static [&'static str] {
     match process {
         Process::Planner => &["controller_state"],
         Process::Controller => &["sensors", "plan"],
-        Process::Lowlevel => &["joint_targets", "frames_in"],
+        Process::Lowlevel => &["joint_targets", "frames_in", "joint_tables"],
         Process::Watchdog => &["watchdog_reset"],
         _ => &[],
     }

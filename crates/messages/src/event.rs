@@ -221,6 +221,18 @@ events! {
     /// The ground pushes with more than a hundred weights of the simulated robot: its numbers say nothing from here on.
     ForceImplausible = 68, Newtons, "the ground pushes with more than a hundred weights of the robot; the simulation has lost its way",
         "{n} N", "more substeps, or another integrator in the scene";
+    /// Tables of points were refused, or not taken by the drives: nothing of them is played; detail: which joint, from which
+    /// point on, why.
+    TablesRefused = 69, Table, "tables of points are not played", "{table}",
+        "the log has them as `joint_tables`";
+    /// All drives have their tables, checked answer by answer; detail: cycles that it took.
+    TablesLoaded = 70, Cycles, "the drives have their tables", "after {n} cycles", "";
+    /// The drives began to play tables; detail: the plan's number.
+    TablesBegun = 71, Plan, "the drives play their tables", "plan {n}", "";
+    /// No change towards what was commanded can be walked from the next step on: the steps stay as they were, out of standing
+    /// on the spot. Detail: the plan's id.
+    StepsUnchanged = 72, Plan, "no change towards what was commanded can be walked; the steps stay as they were", "plan {n}",
+        "command less, or a little at a time";
 }
 
 impl EventCode {

@@ -46,6 +46,15 @@ pub enum Detail {
         /// Error code (CiA 402).
         error: u16,
     },
+    /// Joint index, point of its table from 1 or 0, and what is wrong there.
+    Table {
+        /// Index in the robot's joint table.
+        joint: usize,
+        /// Number of the point, from 1; 0: the table as a whole.
+        point: usize,
+        /// What is wrong.
+        fault: TableFault,
+    },
     /// \[mm\]
     Millimetres(u64),
     /// \[N\]
@@ -72,9 +81,45 @@ pub(crate) enum DetailKind {
     Frame,
     Stations,
     Drive,
+    Table,
     Millimetres,
     Newtons,
     Microseconds,
+}
+
+/// Reason why tables of points are not played, in the detail of [`EventCode::TablesRefused`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableFault {
+    /// Not 2 to 1024 points, not 1 to 256 samples apart, or less than a bus cycle.
+    Shape = 1,
+    /// Other joints, or other counts.
+    Robot = 2,
+    /// A point, or the cubic to the next one, leaves the joint's range.
+    Range = 3,
+    /// Too fast.
+    Speed = 4,
+    /// More acceleration than the drive has.
+    Acceleration = 5,
+    /// The joint is elsewhere when it begins.
+    Begin = 6,
+    /// It begins between two points of the running table.
+    BetweenPoints = 7,
+    /// It ends in motion.
+    End = 8,
+    /// No room beside the running table.
+    Room = 9,
+    /// Not loaded in time, or begun while joints are not led.
+    Late = 10,
+    /// The drive samples with another period.
+    Sampling = 11,
+    /// The drive answered something else.
+    WrongAnswer = 12,
+    /// The drive did not answer.
+    NoAnswer = 13,
+    /// The drive did not say that it is ready to begin.
+    NotArmed = 14,
+    /// The drives of this robot, or in this scene, play no tables.
+    NoTables = 15,
 }
 
 /// Limit of the stabilizer, in the detail of [`EventCode::ControlLimited`].
@@ -121,6 +166,52 @@ impl ControlLimit {
     }
 }
 
+impl TableFault {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 15] = [
+        Self::Shape,
+        Self::Robot,
+        Self::Range,
+        Self::Speed,
+        Self::Acceleration,
+        Self::Begin,
+        Self::BetweenPoints,
+        Self::End,
+        Self::Room,
+        Self::Late,
+        Self::Sampling,
+        Self::WrongAnswer,
+        Self::NoAnswer,
+        Self::NotArmed,
+        Self::NoTables,
+    ];
+
+    fn from_number(n: u64) -> Option<Self> {
+        Self::ALL.into_iter().find(|fault| *fault as u64 == n)
+    }
+
+    /// The same in words.
+    pub(crate) const fn text(self) -> &'static str {
+        match self {
+            Self::Shape => "it takes 2 to 1024 points, 1 to 256 samples and at least a bus cycle apart",
+            Self::Robot => "it is of another robot",
+            Self::Range => "leaves the range of the joint",
+            Self::Speed => "is too fast",
+            Self::Acceleration => "takes more acceleration than the drive has",
+            Self::Begin => "the joint is elsewhere when it begins",
+            Self::BetweenPoints => "begins between two points of the running table",
+            Self::End => "ends in motion",
+            Self::Room => "has no room beside the running table",
+            Self::Late => "was not loaded in time, or the joints are not led",
+            Self::Sampling => "the drive samples with another period than the robot's file says",
+            Self::WrongAnswer => "the drive answered something else",
+            Self::NoAnswer => "the drive did not answer",
+            Self::NotArmed => "the drive did not say that it is ready to begin",
+            Self::NoTables => "its drives play no tables here",
+        }
+    }
+}
+
 impl RefusedFrame {
     fn from_number(n: u64) -> Option<Self> {
         use RefusedFrame::{Jump, Late, Length, Twice, Unknown};
@@ -163,6 +254,7 @@ impl Detail {
             Self::Frame(why) => why as u64,
             Self::Stations(before, behind) => (before as u64) << 16 | behind as u64,
             Self::Drive { joint, error } => joint as u64 | (error as u64) << 16,
+            Self::Table { joint, point, fault } => joint as u64 | (point as u64) << 8 | (fault as u64) << 24,
         }
     }
 
@@ -184,6 +276,9 @@ impl Detail {
             DetailKind::Frame => RefusedFrame::from_number(n).map_or(Self::Number(n), Self::Frame),
             DetailKind::Stations => Self::Stations((n >> 16) as u16, n as u16),
             DetailKind::Drive => Self::Drive { joint: (n & 0xFFFF) as usize, error: (n >> 16) as u16 },
+            DetailKind::Table => TableFault::from_number(n >> 24).map_or(Self::Number(n), |fault| {
+                Self::Table { joint: (n & 0xFF) as usize, point: (n >> 8 & 0xFFFF) as usize, fault }
+            }),
             DetailKind::Millimetres => Self::Millimetres(n),
             DetailKind::Newtons => Self::Newtons(n),
             DetailKind::Microseconds => Self::Microseconds(n),

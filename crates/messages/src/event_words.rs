@@ -67,6 +67,10 @@ impl Words {
                 let text = self.fault.map_or("", |fault| fault(error));
                 format!("{}: error {error:#06x} {text}", joint(j)).trim_end().to_owned()
             }
+            Detail::Table { joint: j, point: 0, fault } => format!("{}: {}", joint(j), fault.text()),
+            Detail::Table { joint: j, point, fault } => {
+                format!("{}, from point {point} on: {}", joint(j), fault.text())
+            }
             // A number that its kind does not have: of a later version.
             Detail::Number(n) if !says.contains("{n}") => {
                 format!("for reason {n}, which this version does not know")

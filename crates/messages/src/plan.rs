@@ -47,6 +47,16 @@ impl From<u64> for GaitState {
     }
 }
 
+/// Point of the body that a plan leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u64)]
+pub enum BodyPoint {
+    /// Centre of gravity: balanced gaits.
+    CentreOfGravity = 0,
+    /// Origin of the torso's frame: patterns, which know of no masses.
+    Torso = 1,
+}
+
 /// Gait phase of a foot (the inner states, thesis figure 4.4): five phases of stance, three of swing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
@@ -121,14 +131,19 @@ record! {
         step_count: u64,
         /// The steps of the plan, the running one first.
         steps: [Step; 8],
-        /// \[m\] Centre of gravity of the robot (x, y, z).
-        com: Path<3, 96>,
+        /// \[1\] A [`BodyPoint`]: what `body` leads.
+        leads: u64,
+        /// \[m\] That point of the body (x, y, z).
+        body: Path<3, 96>,
         /// \[rad\] Upper body: inclinations phi_x, phi_y (pi/2 is upright) and heading alpha (4.11)-(4.13).
         torso: Path<3, 16>,
         /// \[m, rad\] Footprint of each foot, the sole frame of a flat foot: x, y, z and heading.
         feet: [Path<4, 32>; 2],
-        /// \[rad\] Pitch of each sole about an edge of its footprint: positive is toe down, about the front edge,
-        /// negative is toe up, about the rear edge. It passes zero at rest.
+        /// \[m\] Height over the sole of the point about which a swinging foot pitches; 0: it pitches about its edges.
+        pitch_height: f64,
+        /// \[rad\] Pitch of each sole. On the ground about an edge of its footprint: positive is toe down, about the front
+        /// edge, negative is toe up, about the rear edge; about these it passes zero at rest. In the swing about the
+        /// point at `pitch_height`, where that is not 0: the footprint then lies that far under the point.
         pitch: [Path<1, 24>; 2],
         /// \[rad\] Toe joints.
         toes: [Path<1, 16>; 2],
@@ -166,9 +181,15 @@ impl Plan {
         s.begin > 0.0 || self.state != GaitState::Starting as u64
     }
 
+    /// True if `foot` swings at plan time `t` \[s\], by the clock.
+    pub fn swings(&self, foot: usize, t: f64) -> bool {
+        let steps = &self.steps[..(self.step_count as usize).min(self.steps.len())];
+        steps.iter().any(|s| s.stance != foot as u64 && t >= s.lift && t < s.end)
+    }
+
     /// Length of the plan \[s\]: from here on the robot rests.
     pub fn end(&self) -> f64 {
         let steps = self.steps[..self.step_count as usize].last().map_or(0.0, |s| s.end);
-        self.com.end().max(self.torso.end()).max(steps)
+        self.body.end().max(self.torso.end()).max(steps)
     }
 }

@@ -44,6 +44,10 @@ pub trait Read {
     fn u64(&mut self) -> u64;
     /// A scalar `uint32`.
     fn u32(&mut self) -> u32;
+    /// A scalar `int32`.
+    fn i32(&mut self) -> i32 {
+        self.u32() as i32
+    }
     /// A scalar `uint8`.
     fn u8(&mut self) -> u8;
 }
@@ -56,6 +60,10 @@ pub trait Visit {
     fn u64(&mut self, value: u64);
     /// A scalar `uint32`.
     fn u32(&mut self, value: u32);
+    /// A scalar `int32`.
+    fn i32(&mut self, value: i32) {
+        self.u32(value as u32);
+    }
     /// A scalar `uint8`.
     fn u8(&mut self, value: u8);
     /// What stands in the documentation of the part that begins next: its unit in brackets first.
@@ -82,7 +90,7 @@ macro_rules! scalar {
         }
     )*};
 }
-scalar!(f64 "float64" u64 "uint64" u32 "uint32" u8 "uint8");
+scalar!(f64 "float64" u64 "uint64" u32 "uint32" i32 "int32" u8 "uint8");
 
 impl<T: Field, const N: usize> Field for [T; N] {
     /// Arrays of arrays are flattened, as the ROS 2 interface language wants it.
@@ -170,7 +178,7 @@ pub trait Zero {
     const ZERO: Self;
 }
 macro_rules! zero { ($($t:ty = $z:expr),*) => {$(impl Zero for $t { const ZERO: Self = $z; })*}; }
-zero!(f64 = 0.0, u64 = 0, u32 = 0, u8 = 0);
+zero!(f64 = 0.0, u64 = 0, u32 = 0, i32 = 0, u8 = 0);
 impl<T: Zero, const N: usize> Zero for [T; N] {
     const ZERO: Self = [T::ZERO; N];
 }

@@ -3,8 +3,8 @@
 use crate::command::Domain;
 use crate::record::Record;
 use crate::{
-    BusFrames, CommandTaken, ControllerState, CycleInputs, CycleStats, Event, JointTargets, Parameters, Plan,
-    Power, Sensors, SimState, WatchdogReset,
+    BusFrames, CommandTaken, ControllerState, CycleInputs, CycleStats, Event, JointTables, JointTargets,
+    Parameters, Plan, Power, Sensors, SimState, WatchdogReset,
 };
 
 /// The processes of a running robot, in the order they are started.
@@ -133,6 +133,9 @@ topics! {
     /// Targets of the joints.
     JOINT_TARGETS: JointTargets = "joint_targets", Controller -> [Lowlevel], wakes [Lowlevel],
         1000 Hz, stale 5, depth 256, logged true;
+    /// Points that drives play by themselves.
+    JOINT_TABLES: JointTables = "joint_tables", Controller -> [Lowlevel], wakes [],
+        0 Hz, stale 0, depth 4, logged true;
     /// State and internal variables of the stabilizer.
     CONTROLLER_STATE: ControllerState = "controller_state", Controller -> [Planner], wakes [],
         1000 Hz, stale 100, depth 256, logged true;

@@ -4,6 +4,7 @@
     reason = "a counting allocator can only be written with GlobalAlloc, which is unsafe to implement"
 )]
 
+mod legs;
 mod tree;
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -58,6 +59,9 @@ fn every_function_works_in_the_memory_made_at_the_start() {
 
     let limbs = model.limbs(&[frame]);
 
+    let leg = legs::leg(1.0);
+    let (stance, high) = (legs::posture(1.0, [0.1; 6]), Vector3::repeat(1e3));
+
     let before = COUNT.get();
     model.integrate(&q, &v, 1e-3, &mut next);
     model.configuration_rate(&q, &v, &mut rate);
@@ -85,8 +89,10 @@ fn every_function_works_in_the_memory_made_at_the_start() {
     model.inverse_dynamics_here(&mut d, &v, &a, &mut out);
     let carried = model.carried_wrench(&d, &frame);
     let base = model.base_dynamics(&mut d, &q, &v, &a[6..]);
+    let (rotation, position) = leg.pose(&stance);
+    let legs = (leg.angles(&rotation, &position), leg.angles(&rotation, &high));
     let allocations = COUNT.get() - before;
-    std::hint::black_box((seen, whole, base, next, rate, spin, carried));
+    let _ = std::hint::black_box((seen, legs, whole, base, next, rate, spin, carried));
     assert_eq!(allocations, 0);
 
     drop(Box::new(std::hint::black_box(1)));

@@ -50,6 +50,9 @@ impl Visit for Scalars {
     fn u32(&mut self, value: u32) {
         let _ = write!(self.0, " {value}");
     }
+    fn i32(&mut self, value: i32) {
+        let _ = write!(self.0, " {value}");
+    }
     fn u8(&mut self, value: u8) {
         let _ = write!(self.0, " {value}");
     }

@@ -7,7 +7,7 @@ use messages::Record;
 pub(crate) const PACKAGE: &str = "gangwerk_msgs";
 
 const SEPARATOR: &str = "================================================================================\n";
-const SCALARS: [&str; 4] = ["float64", "uint64", "uint32", "uint8"];
+const SCALARS: [&str; 5] = ["float64", "uint64", "uint32", "int32", "uint8"];
 
 /// Name of the ROS 2 interface of a record type, e.g. `gangwerk_msgs/msg/Sensors`.
 pub fn interface<T: Record>() -> String {

@@ -146,7 +146,7 @@ mod tests {
             (true, 2) => vec![signal(Carries::Counter)],
             _ => vec![signal(Carries::Counter), signal(Carries::Mode)],
         };
-        BusMessage { name: String::new(), id, len, node, to_drives, signals }
+        BusMessage { name: String::new(), id, len, node, to_drives, cyclic: true, signals }
     }
 
     fn layout() -> FrameLayout {

@@ -81,7 +81,7 @@ pub fn instants(plan: &Plan, spacing: f64) -> impl Iterator<Item = f64> {
 pub fn implied_zmp(plan: &Plan, gait: &Gait, t: f64) -> [f64; 2] {
     let m_l = gait.model.leg_mass;
     let m_b = 1.0 - 2.0 * m_l;
-    let com = plan.com.sample(t);
+    let com = plan.body.sample(t);
     let legs = [0, 1].map(|i| plan.feet[i].sample(t));
     let [ground] = plan.zmp_height.sample(t).0;
     let (mut force, mut moment) = (0.0, [0.0; 2]);
@@ -185,7 +185,7 @@ pub fn seam_of(before: &Plan, after: &Plan, cycle: f64) -> f64 {
     let planar = |frame: [f64; 3], p: &[f64], v: &[f64], a: &[f64]| {
         [outer(frame, [p[0], p[1]]), turned(frame, [v[0], v[1]]), turned(frame, [a[0], a[1]])]
     };
-    let (c0, c1) = (before.com.sample(t), after.com.sample(0.0));
+    let (c0, c1) = (before.body.sample(t), after.body.sample(0.0));
     let a = planar(before.origin, &c0.position, &c0.velocity, &c0.acceleration);
     let b = planar(after.origin, &c1.position, &c1.velocity, &c1.acceleration);
     for k in 0..3 {
@@ -241,7 +241,7 @@ pub fn seam_of(before: &Plan, after: &Plan, cycle: f64) -> f64 {
 /// feet from standing side by side.
 pub fn unrest(plan: &Plan, gait: &Gait) -> f64 {
     let end = plan.end();
-    let c = plan.com.sample(end - 1e-12);
+    let c = plan.body.sample(end - 1e-12);
     let mut worst = c.velocity.iter().chain(&c.acceleration).map(|x| x.abs()).fold(0.0, f64::max);
     let (r, l) = (foot(plan, RIGHT, end), foot(plan, LEFT, end));
     let (s, co) = (0.5 * (r[2] + l[2])).sin_cos();

@@ -54,10 +54,10 @@ impl Worst {
 
     /// Forces on the robot's mass, at knots and between them.
     fn ground(&mut self, plan: &Plan) {
-        let mut begin = plan.com.start;
-        for &end in &plan.com.ends[..plan.com.pieces as usize] {
+        let mut begin = plan.body.start;
+        for &end in &plan.body.ends[..plan.body.pieces as usize] {
             for k in 0..4 {
-                let a = plan.com.sample(begin + 0.25 * f64::from(k) * (end - begin)).acceleration;
+                let a = plan.body.sample(begin + 0.25 * f64::from(k) * (end - begin)).acceleration;
                 self.friction = self.friction.max(a[0].hypot(a[1]) / (a[2] + G));
                 self.force = self.force.min(a[2] / G + 1.0);
             }
@@ -114,7 +114,7 @@ fn pressure(plan: &Plan, t: f64) -> [f64; 2] {
 
 /// Largest jump at a knot of any path of a plan.
 fn jumps(plan: &Plan) -> f64 {
-    let mut worst = jump(&plan.com).max(jump(&plan.torso)).max(jump(&plan.load_left));
+    let mut worst = jump(&plan.body).max(jump(&plan.torso)).max(jump(&plan.load_left));
     for i in 0..2 {
         worst = worst.max(jump(&plan.feet[i])).max(jump(&plan.pitch[i])).max(jump(&plan.toes[i]));
     }

@@ -20,6 +20,7 @@ pub const TOES: [Option<[f64; 2]>; 2] = [Some([-0.7767, 0.1623]), Some([-0.1885,
 pub fn gait() -> Gait {
     Gait {
         arm_swing: None,
+        pattern: None,
         step: StepSettings {
             width: 0.21,
             width_min: 0.16,
@@ -182,7 +183,7 @@ impl Robot {
         self.state.plan_time = t;
         self.state.gait = self.active.state;
         self.state.origin = self.active.origin;
-        self.state.com = self.active.com.sample(t).position;
+        self.state.com = self.active.body.sample(t).position;
         self.state.feet = [0, 1].map(|i| self.active.feet[i].sample(t).position);
         self.state.phase = [0, 1].map(|i| self.active.phase(i, t) as u64);
         self.state.contact = [0, 1].map(|i| u64::from(self.state.feet[i][2] < self.ground));

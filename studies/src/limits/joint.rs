@@ -24,6 +24,7 @@ use sim_backend::drive::JointCubic;
 use sim_backend::integrate::Stepper;
 use sim_backend::plant::{Plant, PlantInputs};
 
+use crate::joint_bench::one_joint;
 use crate::search::{Width, middle, windows};
 
 use super::LimitRule::{AtLeast, AtMost, Within};
@@ -127,26 +128,9 @@ impl Loop {
         Ok(self.measured(&bench.setup.robot, [0.0, KICK])? < 0.0)
     }
 
-    /// A robot of one joint on a base too heavy to feel it, with motors that do what they are told.
+    /// The joint on the bench, with motors that do what they are told.
     fn robot(&self, lola: &Robot) -> Robot {
-        let inertia = self.joint.link;
-        let mut robot = lola.clone();
-        robot.urdf = format!(
-            r#"<robot name="bench"><link name="base"><inertial><mass value="1e6"/>
-            <inertia ixx="1e7" ixy="0" ixz="0" iyy="1e7" iyz="0" izz="1e7"/></inertial></link>
-            <joint name="joint" type="continuous"><parent link="base"/><child link="link"/><axis xyz="0 0 1"/></joint>
-            <link name="link"><inertial><mass value="1"/>
-            <inertia ixx="{inertia}" ixy="0" ixz="0" iyy="{inertia}" iyz="0" izz="{inertia}"/></inertial></link></robot>"#
-        );
-        robot.torso = "base".into();
-        robot.joints.truncate(1);
-        robot.joints[0].name = "joint".into();
-        for foot in &mut robot.feet {
-            (foot.link, foot.sensor_link, foot.toe) = ("base".into(), "base".into(), None);
-            foot.points.iter_mut().for_each(|point| point.0 = "base".into());
-        }
-        robot.drives = vec![self.drive()];
-        robot
+        one_joint(lola, self.drive(), self.joint.link)
     }
 
     fn drive(&self) -> Description {

@@ -12,6 +12,7 @@
 //! | `contact` | fixed points, nearly incompressible rubber, much friction, penetration (F8-F11) |
 //! | `drives` | load torques, elasticity, linkages at their dead points (F12, F14, F15, F24) |
 //! | `joint` | gains of joint control (J1-J3), drawn by `joint_chart` |
+//! | `servo` | bandwidth of a sampled cascade with an integral (J4) |
 //! | `planning` | horizon and order of the collocation (F16, F20) |
 //! | `motion` | orientations, straight knees, energy over a minute (F22, F23) |
 //! | `geometry` | nearest points, edges (F25) |
@@ -25,6 +26,7 @@ mod joint;
 mod joint_chart;
 mod motion;
 mod planning;
+mod servo;
 mod signals;
 mod steps;
 mod stiction;
@@ -87,7 +89,7 @@ struct Bench {
 }
 
 /// The checks, in the order of the report.
-const CHECKS: [fn(&Bench) -> Findings; 29] = [
+const CHECKS: [fn(&Bench) -> Findings; 30] = [
     steps::free_layer,
     steps::mass_on_layer,
     steps::whole_robot,
@@ -112,6 +114,7 @@ const CHECKS: [fn(&Bench) -> Findings; 29] = [
     joint::continuous,
     joint::sampled,
     joint::friction,
+    servo::cascade,
     planning::collocation,
     motion::all,
     geometry::nearest,

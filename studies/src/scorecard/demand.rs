@@ -18,6 +18,8 @@ pub(super) enum What {
     Inclination,
     /// \[rad\] Hip flexion and knees.
     HipKneeTracking,
+    /// \[rad\] The same on the motors' side of elastic gears.
+    MotorSide,
     /// \[1\] Force of the landing over the largest desired one of the stance.
     LandingPeak,
     /// \[1\] Weights by which the force of the landing exceeds the desired one of the same instant.
@@ -116,6 +118,7 @@ impl What {
             Self::StepTurn => "turn per step",
             Self::Inclination => "inclination error",
             Self::HipKneeTracking => "hip, knee tracking error",
+            Self::MotorSide => "hip, knee, motor side",
             Self::LandingPeak => "landing force peak",
             Self::LandingExcess => "landing over desired",
             Self::Forward => "gets to",
@@ -130,7 +133,7 @@ impl What {
             Self::Speed => "km/h",
             Self::StepLength | Self::Forward => "m",
             Self::StepDuration => "s",
-            Self::StepTurn | Self::Inclination | Self::HipKneeTracking => "rad",
+            Self::StepTurn | Self::Inclination | Self::HipKneeTracking | Self::MotorSide => "rad",
             Self::LandingPeak => "of the stance's",
             Self::LandingExcess => "weights",
             Self::StepsToSpeed | Self::StepsToRest => "steps",
@@ -146,6 +149,7 @@ impl What {
             Self::StepTurn => f.step_turn_rad.abs(),
             Self::Inclination => f.inclination_error_max_rad[0].max(f.inclination_error_max_rad[1]),
             Self::HipKneeTracking => f.hip_knee_tracking_error_max_rad,
+            Self::MotorSide => f.hip_knee_motor_side_error_max_rad,
             Self::LandingPeak => f.landing_peak_ratio,
             Self::LandingExcess => f.landing_excess_weights,
             Self::Forward => f.end_pose[0],

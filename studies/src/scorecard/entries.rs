@@ -26,6 +26,10 @@ const LOLA: &[f64] = &[0.001, 0.0035];
 /// \[s\] Thesis 5.5.1.
 const JOHNNIE: &[f64] = &[0.0015];
 
+/// \[s\] 25 of them for a point of the drives' tables.
+const ARCHIE: &[f64] = &[0.0032];
+const ARCHIE_WALKED: &str = "Daniali 6.2: 0.25 m in 12 s";
+
 /// \[rad\] Thesis 8.1.1, at 2 km/h; sideways 8.1.2.
 const UPRIGHT: Demand = Demand::most(What::Inclination, 0.03, "thesis 8.2, 2 km/h: 0.03 rad");
 const UPRIGHT_SIDEWAYS: Demand = Demand::most(What::Inclination, 0.025, "thesis 8.7: 0.025 rad");
@@ -155,6 +159,20 @@ pub(super) const ENTRIES: &[ScorecardEntry] = &[
     johnnie("Johnnie 2.5 km/h, type 1", 1),
     johnnie("Johnnie 2.5 km/h, type 2", 2),
     johnnie("Johnnie 2.5 km/h, type 3", 3),
+    ScorecardEntry {
+        name: "Archie's own walk, open loop",
+        scene: "archie_static",
+        forward: None,
+        depth: 3,
+        cycles: ARCHIE,
+        demands: &[
+            // 2.08 cm/s within 1 %.
+            Demand::least(What::Speed, 0.074_25, ARCHIE_WALKED),
+            Demand::most(What::Speed, 0.075_75, ARCHIE_WALKED),
+            Demand::near(What::StepLength, 0.25, "Daniali 6.2: D_s"),
+            Demand::most(What::MotorSide, 1e-3, "none"),
+        ],
+    },
 ];
 
 /// Entries of which pictures are drawn: those of the thesis's figures.

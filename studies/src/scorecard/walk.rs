@@ -1,5 +1,6 @@
 //! One walk of the scorecard: set up, walked to its end or its fall, judged.
 
+use ::drives::Sampling;
 use config::Setup;
 use config::method::Integrator;
 use config::method::Method;
@@ -33,7 +34,13 @@ impl Walked {
 pub(super) fn set_up(order: &ScorecardOptions<'_>, scene: &str, depth: u8, cycle: f64) -> Result<Setup> {
     let mut setup = Setup::load(order.config, scene).map_err(|e| e.to_string())?;
     let integrator = if depth == 1 { Integrator::Euler } else { Integrator::SemiImplicit };
-    let step = STEPS[usize::from(depth > 1)];
+    let mut step = STEPS[usize::from(depth > 1)];
+    // Drives that sample by themselves do so where a step ends.
+    if let (true, Some(Sampling::Period(sampled))) =
+        (depth > 1, setup.robot.drives.first().map(|d| d.control.sampling))
+    {
+        step = sampled.speed / (sampled.speed / step).ceil();
+    }
     setup.scene.choose(Method { depth, integrator, substeps: (cycle / step).round() as u32 });
     setup.scene.cycle = cycle;
     setup.scene.seed = order.seed;

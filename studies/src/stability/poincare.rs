@@ -17,6 +17,8 @@ use nalgebra::{Complex, DMatrix};
 
 use chain::parallel;
 
+use crate::random::Random;
+
 /// Directions of y_1 that are looked at: at most so many, each at least this share of the first.
 const DIRECTIONS: (usize, f64) = (8, 0.03);
 /// Resamplings of the bootstrap, and the shares of them below and above the interval.
@@ -195,20 +197,16 @@ fn bootstrap(z: &[DMatrix<f64>; 2]) -> Result<[f64; 2], String> {
     Ok([at(TAIL), at(1.0 - TAIL)])
 }
 
-/// Uniform numbers from -1 to 1, the same for the same seed (SplitMix64).
-struct Dice(u64);
+/// Uniform numbers from -1 to 1.
+struct Dice(Random);
 
 impl Dice {
     fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0xD1B5_4A32_D192_ED03))
+        Self(Random(seed.wrapping_mul(0xD1B5_4A32_D192_ED03)))
     }
 
     fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        2.0 * self.0.unit() - 1.0
     }
 }
 

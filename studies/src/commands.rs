@@ -1,0 +1,282 @@
+//! Random commands: of so many timelines that the planner accepts, how many does the robot walk to their ends?
+//!
+//! A timeline is 20 to 40 s of velocities, steps and stops drawn from the whole range of the gait, each number by itself, at
+//! random times; the last command is held for [`HELD`]. Walked means: to the end, with the supply on, and then as fast in
+//! each direction as the last accepted command said.
+
+use chain::ending::{Ending, WalkEnd};
+use chain::{Chain, parallel};
+use config::Setup;
+use config::gait::CommandLimits;
+use config::method::{Integrator, Method};
+use messages::command::{StepCommand, VelocityCommand};
+use messages::{Command, EventCode, GaitState, Process};
+use serde::Serialize;
+
+use crate::random::Random;
+use crate::sheet::{Column, plain};
+use crate::{Error, Given, Sheet, Study};
+
+/// \[s\] The first command; the robot stands by then.
+const BEGIN: f64 = 3.0;
+/// \[s\] How long the last command is held.
+const HELD: f64 = 10.0;
+/// \[s\] Last part of that, in which speeds are looked at.
+const WATCHED: f64 = 4.0;
+/// \[m/s, m/s, rad/s\] Speeds may be off by this much, most of it the swaying of a part of a step, and by a twentieth.
+const OFF: [f64; 3] = [0.03, 0.03, 0.03];
+
+const COLUMNS: &[Column] = &[
+    plain("/depth", "type"),
+    plain("/timelines", "timelines"),
+    plain("/accepted", "commands accepted"),
+    plain("/refused", "refused"),
+    plain("/fell", "fell"),
+    plain("/stopped", "supply lost or stopped"),
+    plain("/not_as_told", "not as told at the end"),
+    plain("/seeds", "seeds of those"),
+];
+
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct RandomCommands {
+    /// Scene whose robot, gait and sensors they are; its own commands are left out.
+    #[arg(long, default_value = "walk_2kmh_sensors")]
+    pub scene: String,
+    /// How many timelines each type walks.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub timelines: u64,
+    /// Seed of the first timeline; the others count on.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Simulation types.
+    #[arg(long, value_delimiter = ',', default_values_t = [1, 2, 3], value_parser = clap::value_parser!(u8).range(1..=5))]
+    pub types: Vec<u8>,
+}
+
+/// Timelines of one type.
+#[derive(Serialize)]
+struct Row {
+    depth: u8,
+    timelines: u64,
+    accepted: u64,
+    refused: u64,
+    fell: u64,
+    stopped: u64,
+    not_as_told: u64,
+    seeds: String,
+}
+
+/// One timeline, walked.
+struct Walked {
+    seed: u64,
+    accepted: u64,
+    refused: u64,
+    end: WalkEnd,
+    as_told: bool,
+}
+
+impl Study for RandomCommands {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        let mut rows = Vec::new();
+        for (done, &depth) in self.types.iter().enumerate() {
+            (given.progress)(done, self.types.len(), &format!("type {depth}"));
+            let setup = of_type(Setup::load(given.config, &self.scene)?, depth);
+            let walked = parallel::map(self.timelines as usize, |k| walk(&setup, self.seed + k as u64));
+            let walked = walked.into_iter().collect::<Result<Vec<_>, _>>()?;
+            rows.push(summed(depth, &walked));
+        }
+        let mut sheet = Sheet::titled(format!(
+            "Random commands of 20 to 40 s, scene {}, seeds from {}",
+            self.scene, self.seed
+        ));
+        sheet.rows("rows", COLUMNS, &rows);
+        Ok(sheet)
+    }
+}
+
+/// The scene on another type, with the steps that type is walked with, and without commands of its own.
+fn of_type(mut setup: Setup, depth: u8) -> Setup {
+    let (integrator, step) =
+        if depth == 1 { (Integrator::Euler, 1e-3) } else { (Integrator::SemiImplicit, 2.5e-4) };
+    let substeps = (setup.scene.cycle / step).round().max(1.0) as u32;
+    setup.scene.choose(Method { depth, integrator, substeps });
+    setup.scene.commands.retain(|(_, command)| matches!(command, Command::Stand));
+    setup.scene.pushes.clear();
+    setup
+}
+
+fn summed(depth: u8, walked: &[Walked]) -> Row {
+    let count = |of: &dyn Fn(&Walked) -> bool| walked.iter().filter(|w| of(w)).count() as u64;
+    let failed = |w: &Walked| w.end != WalkEnd::Done || !w.as_told;
+    let seeds: Vec<String> = walked.iter().filter(|w| failed(w)).map(|w| w.seed.to_string()).collect();
+    Row {
+        depth,
+        timelines: walked.len() as u64,
+        accepted: walked.iter().map(|w| w.accepted).sum(),
+        refused: walked.iter().map(|w| w.refused).sum(),
+        fell: count(&|w| w.end == WalkEnd::Fell),
+        stopped: count(&|w| !matches!(w.end, WalkEnd::Fell | WalkEnd::Done)),
+        not_as_told: count(&|w| w.end == WalkEnd::Done && !w.as_told),
+        seeds: seeds.join(" "),
+    }
+}
+
+/// What the robot was told to do, as far as the planner accepted it.
+#[derive(Clone, Copy, Default)]
+struct Told {
+    walks: bool,
+    /// \[m/s, m/s, rad/s\] Forward, to the left, turn.
+    speeds: [f64; 3],
+}
+
+impl Told {
+    fn take(&mut self, command: &Command) {
+        match command {
+            Command::Velocity(v) => {
+                let speeds = [v.forward, v.left, v.turn];
+                (self.walks, self.speeds) = (speeds != [0.0; 3], speeds);
+            }
+            Command::Step(s) => self.speeds = [s.length, s.side, s.turn].map(|x| x / s.duration),
+            Command::Stop => self.walks = false,
+            _ => {}
+        }
+    }
+
+    fn is_near(&self, speeds: [f64; 3]) -> bool {
+        let told = if self.walks { self.speeds } else { [0.0; 3] };
+        (0..3).all(|i| (speeds[i] - told[i]).abs() <= OFF[i] + 0.05 * told[i].abs())
+    }
+}
+
+/// Walks the timeline of a seed.
+fn walk(setup: &Setup, seed: u64) -> Result<Walked, String> {
+    let mut random = Random(seed);
+    let commands = timeline(&setup.gait.limits, &mut random);
+    let end = commands.last().map_or(BEGIN, |(time, _)| *time) + HELD;
+    let mut chain = Chain::new(setup).map_err(|e| e.to_string())?;
+    let (mut ending, mut told) = (Ending::default(), Told::default());
+    let (mut accepted, mut refused, mut next) = (0, 0, commands.iter().peekable());
+    let (mut way, mut watched, mut heading) = ([0.0; 3], 0.0, None);
+    for tick in 1..=(end / chain.cycle()) as u64 {
+        let (time, cycle) = (tick as f64 * chain.cycle(), chain.cycle());
+        let command = next.next_if(|(due, _)| *due <= time).map(|(_, command)| command);
+        if let Some(command) = command {
+            chain.command(command);
+        }
+        let c = chain.step();
+        if let Some(command) = command {
+            let no = |&(who, code, _): &(Process, EventCode, _)| {
+                who == Process::Planner && matches!(code, EventCode::CommandRefused | EventCode::NotStanding)
+            };
+            if c.events.iter().any(no) {
+                refused += 1;
+            } else {
+                accepted += 1;
+                told.take(command);
+            }
+        }
+        // How it ends, and how fast the robot is then, in its own axes.
+        c.events.iter().for_each(|&(_, code, detail)| ending.tell(time, code, detail));
+        ending.see(time, c.power.on == 1, GaitState::from(c.controller_state.gait));
+        if c.sim_state.fallen == 1 {
+            break;
+        }
+        if time > end - WATCHED {
+            let turned = yaw(&c.sim_state.orientation);
+            let last = heading.replace(turned).unwrap_or(turned);
+            way[0] += c.sim_state.velocity[0] * cycle;
+            way[1] += c.sim_state.velocity[1] * cycle;
+            way[2] += (turned - last).sin();
+            watched += cycle;
+        }
+    }
+    Ok(Walked {
+        seed,
+        accepted,
+        refused,
+        end: ending.end().0,
+        as_told: told.is_near(way.map(|x| x / watched)),
+    })
+}
+
+/// \[rad\] Heading of an orientation (x, y, z, w).
+fn yaw(&[x, y, z, w]: &[f64; 4]) -> f64 {
+    (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z))
+}
+
+/// Commands with their times \[s\].
+fn timeline(limits: &CommandLimits, random: &mut Random) -> Vec<(f64, Command)> {
+    let length = random.within([20.0, 40.0]);
+    let (mut time, mut commands) = (BEGIN, Vec::new());
+    while time < BEGIN + length {
+        commands.push((time, command(limits, random)));
+        time += random.within([0.3, 8.0]);
+    }
+    commands
+}
+
+/// A command within the ranges of the gait: velocities three times as often as steps, a stop now and then.
+fn command(limits: &CommandLimits, random: &mut Random) -> Command {
+    let duration = random.within(limits.duration);
+    let mut number = |range: [f64; 2]| if random.unit() < 0.3 { 0.0 } else { random.within(range) };
+    let [length, side, turn] = [limits.length, limits.side, limits.turn].map(&mut number);
+    match random.unit() {
+        kind if kind < 0.1 => Command::Stop,
+        kind if kind < 0.3 => Command::Step(StepCommand { length, side, turn, duration }),
+        _ => Command::Velocity(VelocityCommand {
+            forward: length / duration,
+            left: side / duration,
+            turn: turn / duration,
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use config::root;
+
+    #[test]
+    fn the_same_seed_is_the_same_timeline_and_ranges_are_kept() {
+        let limits = Setup::load(&root(None), "walk_1kmh").unwrap().gait.limits;
+        let of = |seed| timeline(&limits, &mut Random(seed));
+        assert_eq!(of(7), of(7));
+        assert_ne!(of(7), of(8));
+        let all: Vec<Command> = (0..200).flat_map(of).map(|(_, command)| command).collect();
+        let (mut stops, mut steps) = (0, 0);
+        for command in &all {
+            match command {
+                Command::Stop => stops += 1,
+                Command::Step(s) => {
+                    steps += 1;
+                    assert!(s.length >= limits.length[0] && s.length <= limits.length[1], "{s:?}");
+                }
+                Command::Velocity(_) => {}
+                other => panic!("{other:?}"),
+            }
+        }
+        assert!(stops > all.len() / 20 && steps > all.len() / 8, "{stops}, {steps} of {}", all.len());
+    }
+
+    /// A robot that is told nothing walks as told; one that was told to walk and stands still does not.
+    #[test]
+    fn speeds_are_held_against_what_was_accepted() {
+        let mut told = Told::default();
+        assert!(told.is_near([0.0; 3]) && !told.is_near([0.2, 0.0, 0.0]));
+        told.take(&Command::Velocity(VelocityCommand { forward: 0.3, left: 0.0, turn: 0.1 }));
+        assert!(told.is_near([0.31, 0.0, 0.1]) && !told.is_near([0.0; 3]) && !told.is_near([0.3, 0.0, 0.0]));
+        told.take(&Command::Stop);
+        assert!(told.is_near([0.0; 3]));
+    }
+
+    /// One whole timeline, whatever comes of it, is the same twice.
+    #[test]
+    fn a_timeline_is_walked_the_same_way_twice() {
+        let setup = of_type(Setup::load(&root(None), "walk_1kmh").unwrap(), 1);
+        let of = || walk(&setup, 3).map(|w| (w.accepted, w.refused, w.end, w.as_told)).unwrap();
+        let first = of();
+        assert_eq!(first, of());
+        assert!(first.0 > 1, "{first:?}");
+    }
+}

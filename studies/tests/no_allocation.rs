@@ -1,0 +1,77 @@
+//! Neither the plans of a pattern nor the open loop that walks them allocate after the start.
+#![allow(
+    unsafe_code,
+    reason = "a counting allocator can only be written with GlobalAlloc, which is unsafe to implement"
+)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use config::{Gait, Robot, root};
+use controller::Controller;
+use messages::command::VelocityCommand;
+use messages::{Command, ControllerState, GaitState, Plan, Sensors};
+use planner::Planner;
+
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: every call goes unchanged to the system's allocator; counting touches a plain thread-local number.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.set(COUNT.get() + 1);
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        // SAFETY: the block came from `System.alloc` with this layout.
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn a_pattern_is_planned_and_walked_in_the_memory_made_at_the_start() {
+    let robot = Robot::load(&root(None).join("robots/archie")).unwrap();
+    let gait = Gait::load(&root(None).join("gaits/archie_static.toml")).unwrap();
+    let cycle = 0.01;
+    let mut planner = Planner::of(&gait, &robot).unwrap();
+    let mut controller = Controller::new(&robot, &gait, cycle).unwrap();
+    let mut sensors = Sensors { power: 1, ..Sensors::default() };
+    sensors.imu.orientation = [0.0, 0.0, 0.0, 1.0];
+    sensors.joint_angle[..robot.joints.len()].copy_from_slice(&robot.poses["stand"]);
+    let mut plan = Box::new(Plan::default());
+    let mut state = ControllerState::default();
+    let forward = Command::Velocity(VelocityCommand { forward: 0.0208, left: 0.0, turn: 0.0 });
+
+    let before = COUNT.get();
+    let (mut plans, mut walked) = (0, false);
+    for tick in 1..6000u64 {
+        let command = match tick {
+            20 => Some(Command::Stand),
+            300 => Some(forward),
+            3000 => Some(Command::Stop),
+            _ => None,
+        };
+        sensors.header.tick = tick;
+        if let Some(new) = planner.step(tick, cycle, (tick > 1).then_some(&state), command.as_slice()).plan {
+            *plan = *new;
+            plans += 1;
+        }
+        let (targets, now) = controller.step(&sensors, (plan.id > 0).then_some(&*plan));
+        (sensors.joint_angle, sensors.joint_speed, state) = (targets.angle, targets.speed, *now);
+        walked |= GaitState::from(state.gait) == GaitState::Walking;
+    }
+    let allocations = COUNT.get() - before;
+    assert_eq!(allocations, 0);
+    assert!(walked && plans >= 4, "{plans} plans");
+
+    drop(Box::new(std::hint::black_box(1)));
+    assert!(COUNT.get() > before, "the counter counts");
+}

@@ -1,0 +1,79 @@
+#!/bin/sh
+# Archie walks a stride that his drives play from tables, twice; candump hears the upload. A replay of the drives' answers is
+# the same walk, and a line that is pulled in mid-stride stops it.
+. "$(dirname "$0")/step.sh"
+. "$here/walking.sh"
+
+# The walk of thesis 6.2, four times as fast, on type 1: there are 1875 cycles in it.
+scene="$work/config/scenes/archie_tables.toml"
+sed -i -e 's/^T_c = .*/T_c = 3.0/' -e 's/^T_d = .*/T_d = 1.2/' -e 's/^T_o = .*/T_o = 2.1/' -e 's/^T_min = .*/T_min = 0.24/' \
+    -e 's/^T_max = .*/T_max = 2.1/' -e 's/^N = .*/N = 150/' "$work/config/gaits/archie_static.toml"
+sed -i -e 's/^depth = .*/depth = 1/' -e 's/^duration = .*/duration = 15.0/' -e 's/^time = 4.0/time = 2.5/' \
+    -e 's/^time = 20.0/time = 7.0/' -e 's/^forward = .*/forward = 0.0833/' "$scene"
+dbc="$here/../../config/robots/archie/can/archie_tables.dbc"
+
+twice() {
+    recorded first archie_tables --lockstep --bus can:vcan0-1 || return 1
+    walk second archie_tables --lockstep --bus can:vcan0-1 ||
+        because "gangwerk ended with $?: $(tail -n 5 "$work/second/said")" || return 1
+    "$python" "$here/same.py" "$work/first/archie_tables.mcap" "$work/second/archie_tables.mcap"
+}
+
+uploaded() {
+    "$python" "$here/tables.py" "$dbc" "$work/first.log" "$work/first/archie_tables.mcap"
+}
+
+# What the drives answered: without counters in their frames, what they said before the first SYNC would count as answers too.
+from_drives() {
+    awk 'FNR == NR && /^BU_:/ { computer = $2 } FNR == NR && /^BO_ / && $5 != computer { theirs[sprintf("%03X", $2)] = 1 }
+         FNR != NR && $3 == "080#00" { asked = 1 }
+         FNR != NR && asked && substr($3, 1, index($3, "#") - 1) in theirs' "$dbc" "$work/first.log" >"$work/answers.log"
+}
+
+counted() {
+    "$python" "$here/counted.py" "$work/first/archie_tables.mcap"
+}
+
+# answered_by NAME COMMAND...: our run without a robot; the command answers it, once it asks.
+answered_by() {
+    name=$1
+    shift
+    timeout 240 candump -n 1 vcan1,080:7FF >/dev/null &
+    waiting=$!
+    within 20 listened vcan1 || because "candump did not start" || return 1
+    walk "$name" archie_tables --lockstep --bus can:vcan0-1 --no-robot &
+    running=$!
+    wait "$waiting" || because "no SYNC on vcan1: $(tail -n 5 "$work/$name/said")" || return 1
+    if ! timeout 400 "$@" >"$work/player.said" 2>&1; then
+        kill "$running"
+        because "$1 failed: $(tail -n 5 "$work/player.said")"
+        return 1
+    fi
+    wait "$running" || because "gangwerk ended with $?: $(tail -n 5 "$work/$name/said")" || return 1
+    "$python" "$here/same.py" "$work/first/archie_tables.mcap" "$work/$name/archie_tables.mcap"
+}
+
+# In cycle 900, at the begin of the second step.
+pulled() {
+    timeout 800 candump -n 900 vcan1,080:7FF >/dev/null &
+    waiting=$!
+    within 20 listened vcan1 || return 1
+    walk fault archie_tables --lockstep --bus can:vcan0-1 &
+    running=$!
+    wait "$waiting" || because "cycle 900 was not reached: $(tail -n 5 "$work/fault/said")" || return 1
+    ip link set vcan1 down
+    within 240 grep -E 'lowlevel: a local controller is silent for too long: leg_left' "$work/fault/said"
+    code=$?
+    ip link set vcan1 up
+    wait "$running"
+    [ "$code" -eq 0 ] || because "leg_left is not named: $(tail -n 5 "$work/fault/said")" || return 1
+    "$python" "$here/at_rest.py" "$work/fault/archie_tables.mcap" Stopped
+}
+
+step "Archie walks a stride from tables over two lines, twice, bit for bit" twice
+step "the joint loop allocated nothing and lost nothing" counted
+step "candump heard the upload, and cantools decodes it to the counts of the log" uploaded
+step "the joint loop does it again from the log, byte for byte" replayed "$work/first/archie_tables.mcap"
+from_drives
+step "the drives' answers, repeated by canplayer, are the same walk" answered_by canplayer canplayer -I "$work/answers.log"
+step "a line is pulled in mid-stride: the run says which, and the joints come to rest" pulled
