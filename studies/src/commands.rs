@@ -1,7 +1,7 @@
 //! Random commands: of so many timelines that the planner accepts, how many does the robot walk to their ends?
 //!
 //! A timeline is 20 to 40 s of velocities, steps and stops drawn from the whole range of the gait, each number by itself, at
-//! random times; the last command is held for [`HELD`]. Walked means: to the end, with the supply on, and then as fast in
+//! random times; the last command is held for `HELD`. Walked means: to the end, with the supply on, and then as fast in
 //! each direction as the last accepted command said.
 
 use chain::ending::{Ending, WalkEnd};
