@@ -15,6 +15,7 @@ use serde::Serialize;
 
 use crate::random::Random;
 use crate::sheet::{Column, plain};
+use crate::way::Way;
 use crate::{Error, Given, Sheet, Study};
 
 /// \[s\] The first command; the robot stands by then.
@@ -157,7 +158,7 @@ fn walk(setup: &Setup, seed: u64) -> Result<Walked, String> {
     let mut chain = Chain::new(setup).map_err(|e| e.to_string())?;
     let (mut ending, mut told) = (Ending::default(), Told::default());
     let (mut accepted, mut refused, mut next) = (0, 0, commands.iter().peekable());
-    let (mut way, mut watched, mut heading) = ([0.0; 3], 0.0, None);
+    let (mut way, mut watched) = (Way::default(), 0.0);
     for tick in 1..=(end / chain.cycle()) as u64 {
         let (time, cycle) = (tick as f64 * chain.cycle(), chain.cycle());
         let command = next.next_if(|(due, _)| *due <= time).map(|(_, command)| command);
@@ -183,11 +184,7 @@ fn walk(setup: &Setup, seed: u64) -> Result<Walked, String> {
             break;
         }
         if time > end - WATCHED {
-            let turned = yaw(&c.sim_state.orientation);
-            let last = heading.replace(turned).unwrap_or(turned);
-            way[0] += c.sim_state.velocity[0] * cycle;
-            way[1] += c.sim_state.velocity[1] * cycle;
-            way[2] += (turned - last).sin();
+            way.add(&c.sim_state, cycle);
             watched += cycle;
         }
     }
@@ -196,13 +193,8 @@ fn walk(setup: &Setup, seed: u64) -> Result<Walked, String> {
         accepted,
         refused,
         end: ending.end().0,
-        as_told: told.is_near(way.map(|x| x / watched)),
+        as_told: told.is_near(way.gone.map(|x| x / watched)),
     })
-}
-
-/// \[rad\] Heading of an orientation (x, y, z, w).
-fn yaw(&[x, y, z, w]: &[f64; 4]) -> f64 {
-    (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z))
 }
 
 /// Commands with their times \[s\].

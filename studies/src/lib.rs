@@ -32,6 +32,7 @@ pub mod stability;
 pub mod stalls;
 pub mod tables;
 pub mod tune;
+mod way;
 
 use std::path::Path;
 

@@ -1,24 +1,31 @@
 //! Which impulse does the walking robot survive? Bisection, at several instants of a stride.
 //!
-//! A push of 0.1 s at the torso's origin. Survived: `AFTER` later the robot has not fallen, and no process has stopped
-//! it. The way it walks repeats with every stride of two steps, so the instants are spread over one stride.
+//! A push of 0.1 s at the torso's origin. Survived: `AFTER` later the robot has not fallen, no process has stopped it, and
+//! over the next stride it goes as far, as far sideways and as much round as it did before. The way it walks repeats
+//! with every stride of two steps, so the instants are drawn from one stride.
 
 use config::Setup;
 use messages::command::PushCommand;
 use messages::{EventCode, GaitState, LEFT, RIGHT};
 use serde_json::json;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use chain::parallel;
 use chain::{Chain, Cycle};
 
+use crate::random::Random;
 use crate::search::{Width, border};
 use crate::sheet::{Column, fixed, plain};
+use crate::way::Way;
 use crate::{Error, Given, Sheet, Study};
 
 /// \[s\] Length of a push.
 const DURATION: f64 = 0.1;
-/// \[s\] How long the robot must go on after it.
-const AFTER: f64 = 4.0;
+/// \[s\] How long the robot must go on after it, before its gait is looked at.
+const AFTER: f64 = 6.0;
+/// Share of its way by which a stride may differ from the undisturbed one, and \[m, m, rad\] what is allowed besides:
+/// 10 mm/s, for a walk on the spot too.
+const BACK: (f64, [f64; 3]) = (0.05, [0.02, 0.02, 0.02]);
 /// \[s\] When the stride that is disturbed begins at the earliest: the gait is periodic by then.
 const SETTLED: f64 = 8.0;
 /// \[N s\] Bisection ends with brackets this narrow.
@@ -28,9 +35,17 @@ const MOST: f64 = 128.0;
 
 /// Walking in place, and walking at 1 km/h.
 const SCENES: [&str; 2] = ["push", "walk_1kmh"];
-/// World axes; both scenes walk along x.
-const DIRECTIONS: [(&str, [f64; 2]); 4] =
-    [("forward", [1.0, 0.0]), ("backward", [-1.0, 0.0]), ("left", [0.0, 1.0]), ("right", [0.0, -1.0])];
+/// Directions of the pushes, counterclockwise from the world's x axis; both scenes walk along it.
+const DIRECTIONS: [&str; 8] = [
+    "forward",
+    "forward left",
+    "left",
+    "backward left",
+    "backward",
+    "backward right",
+    "right",
+    "forward right",
+];
 
 /// Pushes of one scene in one direction; the least one is survived whenever it comes.
 const COLUMNS: &[Column] = &[
@@ -38,6 +53,7 @@ const COLUMNS: &[Column] = &[
     plain("/direction", "push"),
     fixed("/always_n_s", "always [N s]", 2),
     fixed("/always_n_s_per_kg", "[N s/kg]", 3),
+    fixed("/median_n_s_per_kg", "median [N s/kg]", 3),
     fixed("/impulse_n_s", "at each instant [N s]", 2),
 ];
 
@@ -48,8 +64,28 @@ pub struct Push {
     #[arg(long)]
     pub scene: Option<String>,
     /// How many instants of a stride are tried.
-    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub instants: u64,
+    /// Seed from which the instants are drawn.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+}
+
+/// The undisturbed walk at an instant.
+#[derive(Clone)]
+pub(crate) struct Instant {
+    pub(crate) chain: Chain,
+    /// Its stride.
+    stride: Stride,
+}
+
+/// A stride of the undisturbed walk.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stride {
+    /// Ticks in which it begins and ends.
+    pub(crate) ticks: [u64; 2],
+    /// \[m, m, rad\] Its way: see [`Way`].
+    way: [f64; 3],
 }
 
 impl Study for Push {
@@ -66,22 +102,30 @@ impl Study for Push {
             let robot = &setup.robot;
             let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
             mass = multibody::Model::from_urdf(&robot.urdf, &robot.torso, &order)?.mass();
-            let starts = at_instants(&setup, instants)?;
+            let starts = at_random(&setup, instants, self.seed)?;
             // Every direction at every instant is a search of its own.
-            let impulses = parallel::map(DIRECTIONS.len() * instants, |k| {
-                largest(&starts[k % instants], DIRECTIONS[k / instants].1, 1.0)
+            let cases = DIRECTIONS.len() * instants;
+            let done = AtomicUsize::new(0);
+            let impulses = parallel::map(cases, |k| {
+                let turn = std::f64::consts::FRAC_PI_4 * (k / instants) as f64;
+                let found = largest(&starts[k % instants], [turn.cos(), turn.sin()], 1.0);
+                (given.progress)(done.fetch_add(1, Ordering::Relaxed), cases, scene);
+                found
             });
             let impulses = impulses.into_iter().collect::<Result<Vec<f64>, _>>()?;
-            for ((direction, _), each) in DIRECTIONS.iter().zip(impulses.chunks(instants)) {
-                let always = each.iter().copied().fold(f64::INFINITY, f64::min);
+            for (direction, each) in DIRECTIONS.iter().zip(impulses.chunks(instants)) {
+                let mut sorted = each.to_vec();
+                sorted.sort_by(f64::total_cmp);
+                let (always, median) = (sorted[0], sorted[instants / 2]);
                 rows.push(json!({
-                    "scene": scene, "direction": direction, "impulse_n_s": each,
-                    "always_n_s": always, "always_n_s_per_kg": always / mass,
+                    "scene": scene, "direction": direction, "impulse_n_s": each, "always_n_s": always,
+                    "always_n_s_per_kg": always / mass, "median_n_s_per_kg": median / mass,
                 }));
             }
         }
         let mut sheet = Sheet::titled(format!(
-            "Largest impulse survived: {DURATION} s at the torso, {mass:.3} kg, instants spread over one stride"
+            "Largest impulse survived: {DURATION} s at the torso, {mass:.3} kg, instants of one stride from seed {}",
+            self.seed
         ));
         sheet.fact("mass_kg", mass);
         sheet.fact("push_duration_s", DURATION);
@@ -91,23 +135,38 @@ impl Study for Push {
 }
 
 /// The walk of a scene at instants spread evenly over the first stride after [`SETTLED`].
-pub(crate) fn at_instants(setup: &Setup, instants: usize) -> Result<Vec<Chain>, Error> {
-    let (begin, end) = stride(setup, SETTLED)?;
+pub(crate) fn at_instants(setup: &Setup, instants: usize) -> Result<Vec<Instant>, Error> {
+    let shares: Vec<f64> = (0..instants).map(|k| k as f64 / instants as f64).collect();
+    at_shares(setup, &shares)
+}
+
+/// The walk of a scene at instants drawn from that stride, in their order.
+fn at_random(setup: &Setup, instants: usize, seed: u64) -> Result<Vec<Instant>, Error> {
+    let mut random = Random(seed);
+    let mut shares: Vec<f64> = (0..instants).map(|_| random.unit()).collect();
+    shares.sort_by(f64::total_cmp);
+    at_shares(setup, &shares)
+}
+
+/// The walk of a scene at ascending shares of that stride.
+fn at_shares(setup: &Setup, shares: &[f64]) -> Result<Vec<Instant>, Error> {
+    let stride = stride(setup, SETTLED)?;
+    let [begin, end] = stride.ticks;
     let (mut chain, mut tick, mut found) = (Chain::new(setup)?, 0, Vec::new());
-    for k in 0..instants as u64 {
-        while tick < begin + (end - begin) * k / instants as u64 {
+    for share in shares {
+        while tick < begin + ((end - begin) as f64 * share) as u64 {
             chain.step();
             tick += 1;
         }
-        found.push(chain.clone());
+        found.push(Instant { chain: chain.clone(), stride });
     }
     Ok(found)
 }
 
-/// Ticks in which the first stride after `settled` \[s\] and the one after it begin.
-pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<(u64, u64), Error> {
+/// The first stride after `settled` \[s\].
+pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<Stride, Error> {
     let mut chain = Chain::new(setup)?;
-    let (mut stance, mut begins) = (LEFT, Vec::new());
+    let (mut stance, mut begins, mut way) = (LEFT, Vec::new(), Way::default());
     for tick in 1..=(setup.scene.duration / setup.scene.cycle) as u64 {
         let c = chain.step();
         if c.sim_state.fallen == 1 {
@@ -126,8 +185,11 @@ pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<(u64, u64), Error> {
             begins.push(tick);
         }
         stance = carries;
+        if !begins.is_empty() {
+            way.add(&c.sim_state, setup.scene.cycle);
+        }
         if let [begin, end] = begins[..] {
-            return Ok((begin, end));
+            return Ok(Stride { ticks: [begin, end], way: way.gone });
         }
     }
     Err(format!("scene {}: no whole stride of walking after {settled} s", setup.scene.name).into())
@@ -137,7 +199,7 @@ pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<(u64, u64), Error> {
 ///
 /// # Errors
 /// [`MOST`] is survived.
-pub(crate) fn largest(start: &Chain, direction: [f64; 2], coarse: f64) -> Result<f64, String> {
+pub(crate) fn largest(start: &Instant, direction: [f64; 2], coarse: f64) -> Result<f64, String> {
     survived(MOST, RESOLUTION * coarse, |impulse| survives(start, direction, impulse))
 }
 
@@ -152,13 +214,30 @@ pub(crate) fn survived(most: f64, resolution: f64, survives: impl Fn(f64) -> boo
     Ok(good)
 }
 
-/// Whether the robot walks on after a push now.
-fn survives(start: &Chain, direction: [f64; 2], impulse: f64) -> bool {
-    let mut chain = start.clone();
+/// Whether the robot walks on as before after a push now.
+fn survives(start: &Instant, direction: [f64; 2], impulse: f64) -> bool {
+    let mut chain = start.chain.clone();
     let [x, y] = direction.map(|d| d * impulse / DURATION);
     chain.push(&PushCommand { force: [x, y, 0.0], duration: DURATION });
     let goes_on = (0..((DURATION + AFTER) / chain.cycle()) as u64).all(|_| !ended(chain.step()));
-    goes_on && GaitState::from(chain.step().controller_state.gait) == GaitState::Walking
+    goes_on && start.stride.is_repeated(&mut chain)
+}
+
+impl Stride {
+    /// Whether the robot walks, and its next stride is like this one, whatever its phase.
+    fn is_repeated(&self, chain: &mut Chain) -> bool {
+        let (mut way, cycle) = (Way::default(), chain.cycle());
+        for _ in 0..self.ticks[1] - self.ticks[0] {
+            let c = chain.step();
+            let walks = GaitState::from(c.controller_state.gait) == GaitState::Walking && c.power.on == 1;
+            if ended(c) || !walks {
+                return false;
+            }
+            way.add(&c.sim_state, cycle);
+        }
+        let (share, besides) = BACK;
+        (0..3).all(|i| (way.gone[i] - self.way[i]).abs() <= share * self.way[i].abs() + besides[i])
+    }
 }
 
 /// Whether the robot fell in this cycle, or a process stopped it.
@@ -172,6 +251,8 @@ pub(crate) fn ended(cycle: &Cycle) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use messages::Command;
+    use messages::command::VelocityCommand;
 
     #[test]
     fn bisection_finds_the_edge_from_below() {
@@ -189,6 +270,23 @@ mod tests {
         let start = &at_instants(&setup, 1).unwrap()[0];
         assert!(survives(start, [0.0, 1.0], 1.0));
         assert!(!survives(start, [0.0, 1.0], MOST));
+    }
+
+    /// To be on one's feet is not enough: a robot that stopped, or walks at another speed, has not survived.
+    #[test]
+    fn a_robot_that_no_longer_walks_as_told_has_not_survived() {
+        let setup = Setup::load(&config::root(None), "walk_1kmh").unwrap();
+        let start = &at_instants(&setup, 1).unwrap()[0];
+        let after = |command: Option<Command>| {
+            let mut chain = start.chain.clone();
+            command.iter().for_each(|command| chain.command(command));
+            (0..4000).for_each(|_| _ = chain.step());
+            start.stride.is_repeated(&mut chain)
+        };
+        let speed = |forward| Command::Velocity(VelocityCommand { forward, left: 0.0, turn: 0.0 });
+        assert!(after(None));
+        assert!(!after(Some(Command::Stop)));
+        assert!(!after(Some(speed(0.2))));
     }
 
     /// A copied walk goes on like the one it was copied from, bit for bit.

@@ -21,7 +21,7 @@ use serde_json::json;
 use crate::sheet::{Column, plain};
 use crate::{Error, Given, Sheet, Study, push};
 use cases::Case;
-use chain::{Chain, parallel};
+use chain::parallel;
 use trial::FaultTrial;
 
 /// The walk that is disturbed, unless another one is.
@@ -175,7 +175,7 @@ pub fn run(config: &Path, scene: &str, instants: usize) -> Result<FaultFindings,
     let lengths = cases::BURSTS;
     let bursts = parallel::map(lengths.len() * 2 * instants, |k| {
         let fault = cases::burst(lengths[k / (2 * instants)], k / instants % 2 == 1);
-        Some(trial::run(&starts[k % instants], &[fault]))
+        Some(trial::run(&starts[k % instants].chain, &[fault]))
     });
     let bursts: Vec<FaultTrial> = bursts.into_iter().flatten().collect::<Result<_, _>>()?;
     let bursts = lengths.iter().zip(bursts.chunks(2 * instants)).map(|(&cycles, trials)| {
@@ -208,10 +208,10 @@ pub fn run_some(
 }
 
 /// Each case, begun at each of these instants.
-fn rows(starts: &[Chain], cases: &[Case]) -> Result<Vec<FaultCaseRow>, Error> {
+fn rows(starts: &[push::Instant], cases: &[Case]) -> Result<Vec<FaultCaseRow>, Error> {
     let instants = starts.len();
     let trials = parallel::map(cases.len() * instants, |k| {
-        Some(trial::run(&starts[k % instants], &cases[k / instants].faults))
+        Some(trial::run(&starts[k % instants].chain, &cases[k / instants].faults))
     });
     let trials: Vec<FaultTrial> = trials.into_iter().flatten().collect::<Result<_, _>>()?;
     Ok(cases.iter().zip(trials.chunks(instants)).map(|(case, trials)| row(case, trials)).collect())

@@ -129,7 +129,7 @@ impl Study for Floquet {
 /// Rows of a scene, and what a push leaves stride by stride.
 fn of_scene(mut setup: Setup, study: &Floquet) -> Result<(Vec<FloquetRow>, Vec<f64>), Error> {
     walk_on(&mut setup);
-    let (begin, end) = stride(&setup, SETTLED)?;
+    let [begin, end] = stride(&setup, SETTLED)?.ticks;
     let mut chain = Chain::new(&setup)?;
     if chain.robot().layout().joints > 0 {
         return Err(format!("scene {}: only type 1 has a Poincaré map here", setup.scene.name).into());
