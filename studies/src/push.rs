@@ -6,7 +6,7 @@
 
 use config::Setup;
 use messages::command::PushCommand;
-use messages::{EventCode, GaitState, LEFT, RIGHT};
+use messages::{Command, EventCode, GaitState, LEFT, RIGHT};
 use serde_json::json;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -96,9 +96,7 @@ impl Study for Push {
             if only.is_some_and(|only| only != scene) {
                 continue;
             }
-            let mut setup = Setup::load(given.config, scene)?;
-            // The scene's own pushes are left out.
-            setup.scene.pushes.clear();
+            let setup = Setup::load(given.config, scene)?;
             let robot = &setup.robot;
             let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
             mass = multibody::Model::from_urdf(&robot.urdf, &robot.torso, &order)?.mass();
@@ -150,9 +148,11 @@ fn at_random(setup: &Setup, instants: usize, seed: u64) -> Result<Vec<Instant>, 
 
 /// The walk of a scene at ascending shares of that stride.
 fn at_shares(setup: &Setup, shares: &[f64]) -> Result<Vec<Instant>, Error> {
-    let stride = stride(setup, SETTLED)?;
+    let mut setup = setup.clone();
+    walk_on(&mut setup, SETTLED);
+    let stride = stride(&setup, SETTLED)?;
     let [begin, end] = stride.ticks;
-    let (mut chain, mut tick, mut found) = (Chain::new(setup)?, 0, Vec::new());
+    let (mut chain, mut tick, mut found) = (Chain::new(&setup)?, 0, Vec::new());
     for share in shares {
         while tick < begin + ((end - begin) as f64 * share) as u64 {
             chain.step();
@@ -161,6 +161,13 @@ fn at_shares(setup: &Setup, shares: &[f64]) -> Result<Vec<Instant>, Error> {
         found.push(Instant { chain: chain.clone(), stride });
     }
     Ok(found)
+}
+
+/// Leaves out what would disturb or end the walk of a scene; its strides after `settled` \[s\] can be watched.
+pub(crate) fn walk_on(setup: &mut Setup, settled: f64) {
+    setup.scene.pushes.clear();
+    setup.scene.commands.retain(|(_, command)| *command != Command::Stop);
+    setup.scene.duration = setup.scene.duration.max(settled + 10.0);
 }
 
 /// The first stride after `settled` \[s\].
@@ -251,7 +258,6 @@ pub(crate) fn ended(cycle: &Cycle) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use messages::Command;
     use messages::command::VelocityCommand;
 
     #[test]
@@ -265,8 +271,7 @@ mod tests {
     /// What is said to be survived is, and twice as much is not.
     #[test]
     fn a_small_push_is_survived_and_a_huge_one_is_not() {
-        let mut setup = Setup::load(&config::root(None), "push").unwrap();
-        setup.scene.pushes.clear();
+        let setup = Setup::load(&config::root(None), "push").unwrap();
         let start = &at_instants(&setup, 1).unwrap()[0];
         assert!(survives(start, [0.0, 1.0], 1.0));
         assert!(!survives(start, [0.0, 1.0], MOST));

@@ -15,8 +15,7 @@ const INSTANTS: [usize; 2] = [5, 2];
 pub(super) fn rows(order: &ScorecardOptions<'_>, direction: usize, cycle: f64) -> Result<Vec<ScorecardRow>> {
     let (name, axis, published) = PUSHES[direction];
     let begun = thread_time();
-    let mut setup = set_up(order, PUSHED, 3, cycle)?;
-    setup.scene.pushes.clear();
+    let setup = set_up(order, PUSHED, 3, cycle)?;
     // A stride is two steps; what happens in the second one is the mirror image of the first.
     let instants = INSTANTS[usize::from(order.quick)];
     let starts = push::at_instants(&setup, 2 * instants).map_err(|e| e.to_string())?;

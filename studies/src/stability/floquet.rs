@@ -16,13 +16,12 @@
 //! and its three multipliers are 1. Plans depend on plans alone, and joints on their targets of the cycle before.
 
 use config::Setup;
-use messages::Command;
 use messages::command::PushCommand;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::Serialize;
 
 use super::poincare::{self, Multipliers, Verdict};
-use crate::push::stride;
+use crate::push::{stride, walk_on};
 use crate::sheet::{Column, fixed, plain, scientific};
 use crate::{Error, Given, Sheet, Study};
 use chain::Chain;
@@ -128,7 +127,7 @@ impl Study for Floquet {
 
 /// Rows of a scene, and what a push leaves stride by stride.
 fn of_scene(mut setup: Setup, study: &Floquet) -> Result<(Vec<FloquetRow>, Vec<f64>), Error> {
-    walk_on(&mut setup);
+    walk_on(&mut setup, SETTLED);
     let [begin, end] = stride(&setup, SETTLED)?.ticks;
     let mut chain = Chain::new(&setup)?;
     if chain.robot().layout().joints > 0 {
@@ -157,13 +156,6 @@ fn of_scene(mut setup: Setup, study: &Floquet) -> Result<(Vec<FloquetRow>, Vec<f
         verdict,
     });
     Ok((rows.into(), pushed.ok_or("the robot falls after the small push of the check")?))
-}
-
-/// The scene without pushes and without an end of its walk.
-fn walk_on(setup: &mut Setup) {
-    setup.scene.pushes.clear();
-    setup.scene.commands.retain(|(_, command)| *command != Command::Stop);
-    setup.scene.duration = setup.scene.duration.max(SETTLED + 10.0);
 }
 
 /// Lets time pass; false if the robot fell.
