@@ -243,7 +243,8 @@ fn first_chunk(bytes: &[u8]) -> (usize, usize) {
     const CHUNK: u8 = 6;
     let mut at = 8;
     loop {
-        let (opcode, length) = (bytes[at], u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize);
+        let (opcode, length) =
+            (bytes[at], u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize);
         if opcode == CHUNK {
             return (at + 9, length);
         }
