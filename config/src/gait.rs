@@ -18,6 +18,8 @@ pub struct Gait {
     pub limits: CommandLimits,
     /// Steps over obstacles and onto platforms; none: the robot stays on level ground.
     pub obstacles: Option<Obstacles>,
+    /// Steps that react to pushes; none: footholds and times are as planned, whatever happens.
+    pub reaction: Option<Reaction>,
     /// Stabilizing control.
     pub control: StabilizerGains,
     /// Walking pattern with fixed parameters, which nobody stabilizes; it then says what the steps, limits and heights
@@ -158,6 +160,23 @@ pub struct Obstacles {
     pub duration: f64,
 }
 
+/// Room for steps that react to a push (Khadiv et al. 2016): boxes of the landing and of its time.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reaction {
+    /// \[m\] Landing forward of the stance foot.
+    pub length: [f64; 2],
+    /// \[m\] Landing to the side of the stance foot: feet do not cross.
+    pub width: [f64; 2],
+    /// \[s\] Shortest swing from lift-off to landing ...
+    pub swing: f64,
+    /// \[s\] ... and shortest rest of one, whose foothold is free no more below it.
+    pub rest: f64,
+    /// \[m/s\] Fastest mean speed of the swing foot over the ground.
+    pub speed: f64,
+    /// \[m\] Errors of the divergent component at landing, forward and to the side, that the next support makes good for.
+    pub tolerance: [f64; 2],
+}
+
 /// Gains of the stabilizer (thesis chapter 5).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StabilizerGains {
@@ -215,6 +234,7 @@ impl Gait {
                 model: top.table("model", GaitModel::build).unwrap_or_default(),
                 limits: top.table("limits", CommandLimits::build).unwrap_or_default(),
                 obstacles: top.has("obstacles").then(|| top.table("obstacles", Obstacles::build)).flatten(),
+                reaction: top.has("reaction").then(|| top.table("reaction", Reaction::build)).flatten(),
                 control: top.table("control", StabilizerGains::build).unwrap_or_default(),
                 pattern: None,
                 arm_swing: top.has("arm_swing").then(|| top.number("arm_swing", "1", 0.0..=3.0)),
@@ -379,6 +399,19 @@ impl Obstacles {
             length: table.number("length", "m", POSITIVE),
             tilt: table.number("tilt", "rad", 0.0..=0.8),
             duration: table.number("duration", "s", POSITIVE),
+        }
+    }
+}
+
+impl Reaction {
+    fn build(table: &Section<'_, '_>) -> Self {
+        Self {
+            length: table.interval("length", "m", -1.5..=1.5),
+            width: table.interval("width", "m", POSITIVE),
+            swing: table.number("swing", "s", POSITIVE),
+            rest: table.number("rest", "s", POSITIVE),
+            speed: table.number("speed", "m/s", POSITIVE),
+            tolerance: table.numbers("tolerance", "m, m", POSITIVE),
         }
     }
 }

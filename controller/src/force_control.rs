@@ -43,6 +43,8 @@ pub fn contact_stiffness(
 const SEARCH_SPEED: f64 = 0.15;
 /// \[m\] ... and how far.
 const SEARCH_DEPTH: f64 = 0.04;
+/// \[m\] A residue below this one is none.
+const NOTHING: f64 = 1e-6;
 /// \[s\] Ramp-up time of the ground-search speed: what a foot misses is mostly just below it.
 const HASTE: f64 = 0.05;
 
@@ -88,6 +90,11 @@ pub(crate) struct Modification {
     pub value: Vector6<f64>,
     /// Its rate \[m/s, rad/s, rad/s\]
     pub rate: Vector6<f64>,
+    /// \[m\] @torso Distance of each sole from where the plan wants it, that a plan from a measured pose began with; it
+    /// fades.
+    pub residue: [Vector3<f64>; 2],
+    /// \[m/s\] Its rate.
+    pub residue_rate: [Vector3<f64>; 2],
     /// A limit held it back.
     pub limited: bool,
 }
@@ -98,6 +105,17 @@ impl Modification {
         for (foot, step) in steps.into_iter().enumerate() {
             if let Some(step) = step {
                 self.value[3 * foot] += step;
+            }
+        }
+    }
+
+    /// Lets the residue fade by a cycle.
+    fn fade(&mut self, gain: f64, dt: f64) {
+        for (residue, rate) in self.residue.iter_mut().zip(&mut self.residue_rate) {
+            *rate = *residue * -gain;
+            *residue += *rate * dt;
+            if residue.amax() < NOTHING {
+                (*residue, *rate) = (Vector3::zeros(), Vector3::zeros());
             }
         }
     }
@@ -166,6 +184,7 @@ pub(crate) fn modify(
     // What the contact does not resist is position controlled; both parts within the same limits.
     let mut next = *last;
     next.limited = false;
+    next.fade(control.position_gain, dt);
     for (i, (compliance, reference)) in feet.iter().enumerate() {
         let value = last.value.fixed_rows::<3>(3 * i).into_owned();
         let fall = search_speed(value[0], -last.rate[3 * i] - reference.rise, dt);

@@ -28,6 +28,7 @@ pub mod inverse_kinematics;
 mod open_loop;
 pub mod plan_follower;
 mod plan_tables;
+mod pose_switch;
 pub mod saccade;
 mod stabilizer;
 pub mod table_builder;

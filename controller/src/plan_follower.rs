@@ -15,6 +15,8 @@ pub(crate) struct PlanFollower {
     edges: [[f64; 2]; 2],
     /// \[m\] @I_0 Planned heights of the soles at the end of the last cycle.
     sole_height: [f64; 2],
+    /// Pose at the end of the last cycle.
+    last: Option<Desired>,
 }
 
 /// Desired task space at one instant, in the planning frame of the active plan (thesis table 4.2).
@@ -39,7 +41,7 @@ pub struct Desired {
 impl PlanFollower {
     /// No plan yet; `edges` \[m\] are the rear and the front edge of each sole in its frame.
     pub(crate) fn new(edges: [[f64; 2]; 2]) -> Self {
-        Self { active: Plan::default(), next: Plan::default(), void: None, edges, sole_height: [0.0; 2] }
+        Self { active: Plan::default(), next: Plan::default(), void: None, edges, sole_height: [0.0; 2], last: None }
     }
 
     /// Id of the plan being executed; 0 before the first one.
@@ -93,12 +95,19 @@ impl PlanFollower {
     /// a plan that goes on from a sensed contact has its foot where the ground is, not where the plan before wanted it.
     pub(crate) fn height_steps(&mut self, reported: u64, now: &Desired, end: &Desired) -> [Option<f64>; 2] {
         let height = self.active.height;
-        let switched = reported > 0 && reported != self.active.id;
+        let switched = reported > 0 && reported != self.active.id && self.active.measured == 0;
         [0, 1].map(|foot| {
             let step = self.sole_height[foot] - (height + now.feet[foot].position[2]);
             self.sole_height[foot] = height + end.feet[foot].position[2];
             (switched && step.abs() > 1e-4).then_some(step)
         })
+    }
+
+    /// Notes the pose at the `end` of this cycle. The one before, if the plan has changed since the one that was reported
+    /// last, and begins at the measured pose.
+    pub(crate) fn measured_switch(&mut self, reported: u64, end: &Desired) -> Option<Desired> {
+        let switched = reported > 0 && reported != self.active.id && self.active.measured == 1;
+        self.last.replace(*end).filter(|_| switched)
     }
 
     /// Time since the start of the active plan \[s\].

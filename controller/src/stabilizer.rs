@@ -24,6 +24,7 @@ use crate::estimate::TaskEstimate;
 use crate::force_control::{Modification, modify};
 use crate::open_loop::{OpenLoop, encoders_only};
 use crate::plan_follower::{Desired, PlanFollower};
+use crate::pose_switch;
 use crate::task_space::TaskSpace;
 use crate::watch::SafetyWatch;
 use contacts::{FootContacts, measured_forces};
@@ -213,6 +214,9 @@ impl Controller {
         let (now, end) = (self.plan.sample(t), self.plan.sample(t + dt));
         let reported = self.telemetry.state.plan_id;
         self.modification.absorb_plan_switch(self.plan.height_steps(reported, &now, &end));
+        if let Some(before) = self.plan.measured_switch(reported, &end) {
+            pose_switch::take_up(&mut self.modification, &before, &now);
+        }
         let estimate = TaskEstimate::new(&self.robot, sensors, &self.measured, &self.reference(&now));
         let powered = self.plan.id() > 0 && sensors.power == 1;
         if powered {

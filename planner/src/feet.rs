@@ -111,7 +111,12 @@ impl FootTrajectories {
         for foot in 0..2 {
             stand(&mut plan.feet[foot], 0.0, &from.feet[foot], from.heights[foot]);
         }
-        for s in strides {
+        let running = from.inside.map_or(0, |inside| {
+            let s = &strides[0];
+            land(&mut plan.feet[1 - s.stance], &s.swing(&model.step), &inside.swing, s);
+            1
+        });
+        for s in &strides[running..] {
             let path = &mut plan.feet[1 - s.stance];
             swing(path, &s.swing(&model.step), &s.takeoff, &s.landing, &s.heights);
         }
@@ -150,4 +155,47 @@ pub fn swing(path: &mut FootPath, swing: &Swing, from: &PlanarPose, to: &PlanarP
         last = next;
     }
     path.push(&last, &Sample::rest([to.x, to.y, heights.landing, to.heading]), swing.end);
+}
+
+/// \[s\] Shortest piece of a swing that goes on.
+const PIECE: f64 = 0.03;
+
+/// Goes on with the swing of `s`, whose foot moves as `from` at the begin of the path: up as far as there is time, and to
+/// its landing.
+fn land(path: &mut FootPath, swing: &Swing, from: &Sample<4>, s: &Stride) {
+    let pick = |d: [usize; 3]| Sample {
+        position: d.map(|i| from.position[i]),
+        velocity: d.map(|i| from.velocity[i]),
+        acceleration: d.map(|i| from.acceleration[i]),
+    };
+    // Horizontally one quintic, vertically one to each height that is still ahead.
+    let (x, z) = (pick([0, 1, 3]), pick([2; 3]));
+    let arrive = if swing.arrive > 0.5 * swing.end { swing.arrive } else { swing.end };
+    let mut over_ground = Path::<3, 1>::resting(0.0, x.position);
+    over_ground.push(&x, &Sample::rest([s.landing.x, s.landing.y, s.landing.heading]), arrive);
+    let apex = s.heights.takeoff.max(s.heights.landing) + s.heights.lift;
+    let mut height = Path::<3, 3>::resting(0.0, z.position);
+    let mut last = z;
+    for (time, to) in [(swing.risen, apex), (swing.lowering, apex), (swing.end, s.heights.landing)] {
+        if time > height.end() + PIECE {
+            let next = Sample::rest([to; 3]);
+            height.push(&last, &next, time);
+            last = next;
+        }
+    }
+    // Both on common knots.
+    let mut last = *from;
+    for time in [swing.risen, swing.lowering, arrive, swing.end] {
+        if time > path.end() + 1e-9 {
+            let (x, z) = (over_ground.sample(time), height.sample(time));
+            let of = |x: [f64; 3], z: [f64; 3]| [x[0], x[1], z[0], x[2]];
+            let next = Sample {
+                position: of(x.position, z.position),
+                velocity: of(x.velocity, z.velocity),
+                acceleration: of(x.acceleration, z.acceleration),
+            };
+            path.push(&last, &next, time);
+            last = next;
+        }
+    }
 }

@@ -165,6 +165,11 @@ fn up_and_down<const N: usize>(
         return;
     }
     let times = [s.begin.max(path.end()), s.lift + PEAK * (s.end - s.lift), end];
+    if times[1] <= times[0] {
+        // A swing that is past its peak already.
+        path.push(from, &Sample::rest([0.0]), end);
+        return;
+    }
     let first = [from.position[0], from.velocity[0], from.acceleration[0]].map(Some);
     let given = |peak: f64| [first, [Some(peak), None, None], [Some(0.0); 3]];
     let begun = path.pieces;

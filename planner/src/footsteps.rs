@@ -96,6 +96,11 @@ impl Footsteps {
         let (from, state, step) = (demand.from, demand.state, &model.step);
         let mut sequence = StepSequence { strides: [Stride::NONE; MAX_STEPS], count: 0, blocked: None };
         let mut last = Foothold::first(from, step.swing_height);
+        if let Some(inside) = &from.inside {
+            sequence.strides[0] = inside.stride;
+            sequence.count = 1;
+            last = Foothold::after(&inside.stride);
+        }
         loop {
             let n = sequence.count;
             let (stance, nu, sole) = (last.stance, nu(last.stance), &model.soles[last.stance]);

@@ -20,7 +20,7 @@ use messages::{
 };
 
 /// Fewest cycles before its start at which a plan can still reach the controller.
-const LEAD_MIN: u64 = 3;
+pub(crate) const LEAD_MIN: u64 = 3;
 /// Most commands of one cycle.
 pub const MAX_COMMANDS: usize = 16;
 
@@ -47,14 +47,14 @@ enum Move {
 pub struct Planner {
     pub(crate) gait: Gait,
     pub(crate) builder: Builder,
-    intent: Intent,
-    parameters: StepParameters,
-    tasks: Tasks,
+    pub(crate) intent: Intent,
+    pub(crate) parameters: StepParameters,
+    pub(crate) tasks: Tasks,
     /// The plan being executed, as the controller reports.
-    active: PlannedWalk,
+    pub(crate) active: PlannedWalk,
     /// The plan that was published and has not been confirmed yet; its id is 0 if there is none.
-    next: PlannedWalk,
-    last_id: u64,
+    pub(crate) next: PlannedWalk,
+    pub(crate) last_id: u64,
     /// Cycles from publication to start, and rest after a plan.
     margins: Margins,
     /// Start of the step for which no plan could be walked.
@@ -146,6 +146,7 @@ impl Planner {
             self.answers.push(answer);
         }
         let made = match (state, self.due(tick, gait)) {
+            (Some(state), _) if self.react(tick, state, gait) => true,
             (Some(state), due) => self.make(tick, gait, state, due),
             (None, _) => false,
         };
@@ -409,7 +410,7 @@ impl Planner {
         state == GaitState::Walking && self.walk(from, GaitState::Stopping)
     }
 
-    fn publish(&mut self, start_tick: u64, tick: u64) -> bool {
+    pub(crate) fn publish(&mut self, start_tick: u64, tick: u64) -> bool {
         self.last_id += 1;
         let plan = &mut self.next.plan;
         plan.header.tick = tick;

@@ -5,6 +5,7 @@
 //! | gait coordination, finite state machine | 4.2, figure 4.5 | | [`gait`], `touchdown`, [`origin`] |
 //! | walking commands | 4.6.1 | | [`commands`], [`lease`] |
 //! | step sequence planning | 4.3, (4.1)-(4.4) | 2.1, 2.2 | [`footsteps`], [`steps`] |
+//! | steps that react to pushes | | | `reaction`, `step_adaptation` |
 //! | reactive step sequence planning, algorithm 3 | 4.3.3 | | `reactive`, [`obstacles`] |
 //! | higher level behaviour | 4.3.4 | | [`skills`] |
 //! | foot trajectories | 4.5, (4.22)-(4.28) | 2.5 | [`feet`] |
@@ -41,10 +42,12 @@ mod pattern;
 pub mod pattern_check;
 pub mod planned_walk;
 pub mod pose;
+mod reaction;
 mod reactive;
 mod segment;
 pub mod skills;
 pub mod sole;
+mod step_adaptation;
 pub mod steps;
 pub mod torso;
 mod touchdown;

@@ -146,6 +146,11 @@ pub(crate) fn lay<const N: usize>(
     let mut load = horizon.from.load_left;
     path.restart(0.0, [load]);
     let mut least = f64::INFINITY;
+    // A step that is running has handed its load over.
+    let running = usize::from(horizon.from.inside.is_some());
+    if running > 0 {
+        hold(path, load, horizon.strides[0].end);
+    }
     let mut lay = |begin: f64, end: f64, until: f64, feet: [PlanarPose; 2], to: f64| {
         // Kinks of a modification in the double support, left out where there is none.
         let times = standing_shape(begin, end).corners();
@@ -162,7 +167,7 @@ pub(crate) fn lay<const N: usize>(
         load = to;
     };
     // Each step begins with a double support, and the last one is followed by that in which the robot comes to rest.
-    for s in horizon.strides {
+    for s in &horizon.strides[running..] {
         let mut feet = [s.foothold; 2];
         feet[1 - s.stance] = s.takeoff;
         lay(s.begin, s.lift, s.end, feet, if s.stance == LEFT { 1.0 } else { 0.0 });

@@ -2,8 +2,9 @@
 
 use crate::planned_walk::PlannedWalk;
 use crate::pose::{PlanarPose, rotate};
-use crate::steps::StepParameters;
+use crate::steps::{StepParameters, Stride};
 use curves::Sample;
+use multibody::GRAVITY_ACCELERATION as GRAVITY;
 use messages::{BodyPoint, ControllerState, LEFT, RIGHT};
 use std::f64::consts::FRAC_PI_2;
 
@@ -39,6 +40,17 @@ pub struct PlanOrigin {
     /// \[s, m\] By how much the stance foot has touched early, and where the zero-moment point shall be then: the first
     /// double support is that much longer.
     pub early: Option<(f64, [f64; 2])>,
+    /// The step in whose single support the plan begins; none: it begins with a double support.
+    pub inside: Option<RunningStep>,
+}
+
+/// A step whose foot swings.
+#[derive(Clone, Copy, Debug)]
+pub struct RunningStep {
+    /// The step; what of it lies before the begin of the plan has negative times.
+    pub stride: Stride,
+    /// Footprint of the swing foot.
+    pub swing: Sample<4>,
 }
 
 impl PlanOrigin {
@@ -57,13 +69,7 @@ impl PlanOrigin {
         let (frame, ground) = (feet[stance], soles[stance][2]);
         let feet = feet.map(|f| frame.relative(&f));
         // The motion goes on without a jump: position, velocity and acceleration, in the new frame.
-        let mut body = plan.body.sample(t);
-        let at = frame.local([body.position[0], body.position[1]]);
-        let v = rotate(-frame.heading, [body.velocity[0], body.velocity[1]]);
-        let a = rotate(-frame.heading, [body.acceleration[0], body.acceleration[1]]);
-        body.position = [at[0], at[1], body.position[2] - ground];
-        body.velocity[..2].copy_from_slice(&v);
-        body.acceleration[..2].copy_from_slice(&a);
+        let body = seen(&frame, ground, &plan.body.sample(t));
         // So does the upper body, whose heading counts from that of the stance foot.
         let mut torso = plan.torso.sample(t);
         torso.position[2] -= frame.heading;
@@ -83,6 +89,7 @@ impl PlanOrigin {
             previous,
             width: width.unwrap_or(feet[1 - stance].y.abs()),
             early: None,
+            inside: None,
         }
     }
 
@@ -128,7 +135,116 @@ impl PlanOrigin {
             previous: StepParameters::on_the_spot(1.0),
             width: feet[LEFT].y.abs(),
             early: None,
+            inside: None,
         };
         Some((from, state.feet.map(|f| f[2] - ground)))
+    }
+
+    /// The robot as it is measured, inside the single support of step `k` of the active plan `walk`, at `t` \[s\], `ahead` \[s\]
+    /// after the measurement `state`; its foot lands at `landing` (@frame of that plan) after `cycles` of `cycle_s` \[s\].
+    ///
+    /// A robot whose joints are led errs by turning about its stance sole: the upper body leans, and everything else with it.
+    /// So the plan begins leaning; joints go on where they are.
+    pub(crate) fn inside(
+        walk: &PlannedWalk,
+        (k, t): (usize, f64),
+        (state, ahead): (&ControllerState, f64),
+        landing: &PlanarPose,
+        (cycles, cycle_s): (u64, f64),
+    ) -> Self {
+        let (plan, s) = (&*walk.plan, &walk.strides[k]);
+        let swing = 1 - s.stance;
+        // Body: a pendulum over the measured zero-moment point until then.
+        let ground = s.heights.foothold;
+        let w2 = GRAVITY / (state.com[2] - ground);
+        let zmp = if state.zmp[0].is_finite() { state.zmp } else { state.zmp_desired };
+        let mut body = Sample { position: state.com, velocity: state.com_velocity, acceleration: [0.0; 3] };
+        for d in 0..2 {
+            body.acceleration[d] = w2 * (state.com[d] - zmp[d]);
+        }
+        for d in 0..3 {
+            body.position[d] += ahead * (body.velocity[d] + 0.5 * ahead * body.acceleration[d]);
+            body.velocity[d] += ahead * body.acceleration[d];
+        }
+        // Upper body: leans as it is measured, and goes on leaning.
+        let mut torso = plan.torso.sample(t);
+        let (lean, rate) = (state.inclination_error, state.inclination_rate_error);
+        for i in 0..2 {
+            torso.position[i] -= lean[i] + ahead * rate[i];
+            torso.velocity[i] -= rate[i];
+        }
+        // Swing foot: displaced as it is measured, and turned about the stance foot with everything else.
+        let foot = plan.feet[swing].sample(t);
+        let arm: [f64; 3] = std::array::from_fn(|d| state.feet[swing][d] - state.feet[s.stance][d]);
+        let (sin, cos) = torso.position[2].sin_cos();
+        let (roll, pitch) = (rate[1], -rate[0]);
+        let omega = [cos * roll - sin * pitch, sin * roll + cos * pitch];
+        let drift =
+            [omega[1] * arm[2], -omega[0] * arm[2], omega[0] * arm[1] - omega[1] * arm[0]];
+        let mut moved = foot;
+        for d in 0..3 {
+            moved.position[d] += state.feet[swing][d] - state.feet_desired[swing][d] + ahead * drift[d];
+            moved.velocity[d] += drift[d];
+        }
+
+        // All of it seen from below the stance foot.
+        let mut soles = walk.soles(t);
+        soles[swing] = moved.position;
+        let previous = s.parameters;
+        let mut from = Self::on_plan(walk, t, soles, s.stance, previous, Some(s.width));
+        let stance = soles[s.stance];
+        let frame = PlanarPose::new(stance[0], stance[1], stance[3]);
+        from.body = seen(&frame, stance[2], &body);
+        from.zmp = frame.local(zmp);
+        from.torso = torso;
+        from.torso.position[2] -= frame.heading;
+        let relative = |pose: &PlanarPose| frame.relative(pose);
+        let mut heights = s.heights;
+        for z in [&mut heights.foothold, &mut heights.takeoff, &mut heights.landing] {
+            *z -= stance[2];
+        }
+        let stride = Stride {
+            begin: s.begin - t,
+            lift: s.lift - t,
+            end: cycles as f64 * cycle_s,
+            end_cycle: cycles,
+            foothold: relative(&s.foothold),
+            takeoff: relative(&s.takeoff),
+            landing: relative(landing),
+            heights,
+            ..*s
+        };
+        let flat = |v: [f64; 4]| Sample { position: [v[0], v[1], v[2]], velocity: [0.0; 3], acceleration: [0.0; 3] };
+        let turned = seen(
+            &frame,
+            stance[2],
+            &Sample {
+                velocity: [moved.velocity[0], moved.velocity[1], moved.velocity[2]],
+                acceleration: [moved.acceleration[0], moved.acceleration[1], moved.acceleration[2]],
+                ..flat(moved.position)
+            },
+        );
+        let with = |a: [f64; 3], heading: f64| [a[0], a[1], a[2], heading];
+        let swing = Sample {
+            position: with(turned.position, moved.position[3] - frame.heading),
+            velocity: with(turned.velocity, moved.velocity[3]),
+            acceleration: with(turned.acceleration, moved.acceleration[3]),
+        };
+        from.inside = Some(RunningStep { stride, swing });
+        from
+    }
+}
+
+/// A motion seen from a frame on the ground \[m\].
+fn seen(frame: &PlanarPose, ground: f64, s: &Sample<3>) -> Sample<3> {
+    let at = frame.local([s.position[0], s.position[1]]);
+    let back = |v: [f64; 3]| {
+        let [x, y] = rotate(-frame.heading, [v[0], v[1]]);
+        [x, y, v[2]]
+    };
+    Sample {
+        position: [at[0], at[1], s.position[2] - ground],
+        velocity: back(s.velocity),
+        acceleration: back(s.acceleration),
     }
 }

@@ -227,6 +227,7 @@ fn standing(p: &Pattern, ahead: f64) -> PlanOrigin {
         previous: rest,
         width: p.width,
         early: None,
+        inside: None,
     }
 }
 

@@ -15,6 +15,9 @@ use messages::GaitState;
 /// Pieces of the centre of gravity that a plan has room for.
 const COM_PIECES: usize = 96;
 
+/// Shares of what is left of a single support in which a modification rises and falls.
+const RUNNING: [f64; 2] = [0.1, 0.2];
+
 /// Steps of a plan, split into the two problems that bring it to rest.
 #[derive(Clone, Copy)]
 pub(crate) struct Horizon<'a> {
@@ -59,7 +62,7 @@ impl<'a> WalkSegment<'a> {
         hold(&mut reference, shrunk, &strides[0], true);
         hold(&mut reference, shrunk, &strides[1], false);
         reference.fix(strides[1].end, to);
-        let first = first_shape(step, horizon.state, &strides[0]);
+        let first = first_shape(step, horizon, &strides[0]);
         let mut marks = Marks::from(0.0);
         mark(&mut marks, step, strides);
         marks.add(&first.corners());
@@ -77,15 +80,15 @@ impl<'a> WalkSegment<'a> {
     ) -> Self {
         let whole = horizon.head == 0; // the plan begins with it
         let strides = &horizon.strides[horizon.head..];
-        let start = strides[0].begin;
+        let start = strides[0].begin.max(0.0);
         let mut reference = begin(horizon.from, start, from, whole);
         for s in strides {
             hold(&mut reference, shrunk, s, true);
         }
         reference.fix(horizon.end, goal);
-        // Only a plan's own first step can be one out of standing.
-        let state = if whole { horizon.state } else { GaitState::Walking };
-        let (first, settling) = (first_shape(step, state, &strides[0]), horizon.settling());
+        // Only a plan's own first step can be one out of standing, or running.
+        let first = if whole { first_shape(step, horizon, &strides[0]) } else { shape(step, &strides[0]) };
+        let settling = horizon.settling();
         let mut marks = Marks::from(start);
         mark(&mut marks, step, strides);
         if whole {
@@ -137,7 +140,10 @@ pub(crate) fn knot_spacing(model: &WalkingModel, horizon: &Horizon<'_>) -> [f64;
     let mut first = Marks::from(0.0);
     mark(&mut first, &model.step, &strides[..head]);
     first.add(&standing_shape(0.0, strides[0].lift).corners());
-    let mut rest = Marks::from(strides[head].begin);
+    if horizon.from.inside.is_some() {
+        first.add(&running_shape(strides[0].end).corners());
+    }
+    let mut rest = Marks::from(strides[head].begin.max(0.0));
     mark(&mut rest, &model.step, &strides[head..]);
     rest.add(&horizon.settling().corners());
     // The tail is mostly replaced before it is walked: it becomes coarse first, down to a third.
@@ -165,9 +171,19 @@ fn shape(step: &gait::StepSettings, s: &Stride) -> Trapezoid {
     Trapezoid { rise: (s.begin, s.lift), fall: (s.swing(step).lowering(), s.end) }
 }
 
-/// Shape during the first step; one out of standing modifies its double support only.
-fn first_shape(step: &gait::StepSettings, state: GaitState, s: &Stride) -> Trapezoid {
-    if state == GaitState::Starting { standing_shape(0.0, s.lift) } else { shape(step, s) }
+/// Shape during the first step; one out of standing modifies its double support only, one that is running what is left
+/// of it.
+fn first_shape(step: &gait::StepSettings, horizon: &Horizon<'_>, s: &Stride) -> Trapezoid {
+    if horizon.from.inside.is_some() {
+        return running_shape(s.end);
+    }
+    if horizon.state == GaitState::Starting { standing_shape(0.0, s.lift) } else { shape(step, s) }
+}
+
+/// Shape of a modification in the rest of a single support, until `end` \[s\].
+fn running_shape(end: f64) -> Trapezoid {
+    let [rise, fall] = RUNNING.map(|share| share * end);
+    Trapezoid { rise: (0.0, rise), fall: (end - fall, end) }
 }
 
 /// A reference that begins at `t` \[s\] in `p` \[m\]. After an early contact, in the first segment, it stays where it would
@@ -184,7 +200,10 @@ fn begin(from: &PlanOrigin, t: f64, p: [f64; 2], first: bool) -> ZmpProblem {
 /// The stance foot holds the zero-moment point at the begin of the single support, or at both ends.
 fn hold(reference: &mut ZmpProblem, shrunk: &[Sole; 2], s: &Stride, both: bool) {
     let sole = &shrunk[s.stance];
-    reference.hold(s.lift, sole, &s.foothold);
+    // A step that is running holds it at its end only.
+    if s.lift > 0.0 {
+        reference.hold(s.lift, sole, &s.foothold);
+    }
     if both {
         reference.hold(s.end, sole, &s.foothold);
     }

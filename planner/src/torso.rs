@@ -7,9 +7,17 @@ use std::f64::consts::FRAC_PI_2;
 /// Inclinations phi_x, phi_y and heading alpha.
 pub(crate) type TorsoPath = Path<3, 16>;
 
-/// Writes the path of the upper body: from `start`, at the end of each step half-way between the feet, at `end` at rest.
+/// \[s\] Time in which an upper body that leans is brought upright.
+const RIGHTING: f64 = 0.4;
+
+/// Writes the path of the upper body: from `start`, at the end of each step half-way between the feet, at `end` at rest. One
+/// that leans at first is brought upright within [`RIGHTING`], whatever the steps are.
 pub fn follow(path: &mut TorsoPath, start: &Sample<3>, strides: &[Stride], end: f64) {
     path.restart(0.0, start.position);
+    let mut lean = Path::<3, 1>::resting(0.0, [FRAC_PI_2, FRAC_PI_2, 0.0]);
+    if start.position[..2] != [FRAC_PI_2; 2] {
+        lean.push(start, &Sample::rest([FRAC_PI_2, FRAC_PI_2, 0.0]), RIGHTING);
+    }
     let middle = |s: &Stride| 0.5 * (s.foothold.heading + s.landing.heading);
     let mut last = *start;
     for (k, stride) in strides.iter().enumerate() {
@@ -19,6 +27,10 @@ pub fn follow(path: &mut TorsoPath, start: &Sample<3>, strides: &[Stride], end: 
             let turn = |s: &Stride| (s.landing.heading - s.takeoff.heading) / 2.0 / (s.end - s.begin);
             next.velocity[2] = 0.5 * (turn(stride) + turn(after));
         }
+        let leans = lean.sample(stride.end);
+        next.position[..2].copy_from_slice(&leans.position[..2]);
+        next.velocity[..2].copy_from_slice(&leans.velocity[..2]);
+        next.acceleration[..2].copy_from_slice(&leans.acceleration[..2]);
         path.push(&last, &next, stride.end);
         last = next;
     }

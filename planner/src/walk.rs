@@ -190,6 +190,7 @@ fn begin(plan: &mut Plan, from: &PlanOrigin, state: GaitState, leads: BodyPoint)
     plan.zmp_height.clear();
     plan.height = from.height;
     (plan.leads, plan.pitch_height) = (leads as u64, 0.0);
+    plan.measured = u64::from(from.inside.is_some());
     for foot in 0..2 {
         plan.toes[foot].restart(0.0, from.toes[foot].position);
         plan.pitch[foot].restart(0.0, from.pitch[foot].position);

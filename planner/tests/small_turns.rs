@@ -47,6 +47,7 @@ fn standing(gait: &Gait, left: bool) -> PlanOrigin {
         previous: StepParameters { length: 0.0, side: 0.0, turn: 0.0, duration: gait.step.by_speed[0][2] },
         width,
         early: None,
+        inside: None,
     }
 }
 

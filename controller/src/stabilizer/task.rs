@@ -65,11 +65,15 @@ pub(super) fn task_velocity(
         let vertical = back.column(2);
 
         // Sole against the centre of gravity, seen from the torso, which turns itself.
-        let position =
+        let mut position =
             back * (Vector3::new(s.position[0], s.position[1], s.position[2]) - com) + vertical * m[0];
-        let velocity = back * (Vector3::new(s.velocity[0], s.velocity[1], s.velocity[2]) - com_velocity)
+        let mut velocity = back * (Vector3::new(s.velocity[0], s.velocity[1], s.velocity[2]) - com_velocity)
             + vertical * m_rate[0]
             - omega.cross(&position);
+        if modification.residue[foot] != Vector3::zeros() {
+            position += modification.residue[foot];
+            velocity += modification.residue_rate[foot];
+        }
         let tilt = Rotation3::from_axis_angle(&Vector3::y_axis(), m[2])
             * Rotation3::from_axis_angle(&Vector3::x_axis(), m[1]);
         let rotation = axes * tilt.matrix();

@@ -233,6 +233,10 @@ events! {
     /// on the spot. Detail: the plan's id.
     StepsUnchanged = 72, Plan, "no change towards what was commanded can be walked; the steps stay as they were", "plan {n}",
         "command less, or a little at a time";
+    /// A foot is put down elsewhere, and earlier, than planned, to catch the body. Detail: the plan's id.
+    StepAdapted = 73, Plan, "a foot is put down elsewhere than planned, to catch the body", "plan {n}", "";
+    /// The same, but one step will not be enough, or its plan leaves the support. Detail: the plan's id.
+    StepStretched = 74, Plan, "a foot is put down as far as it gets, to catch the body; one step may not be enough", "plan {n}", "";
 }
 
 impl EventCode {

@@ -131,6 +131,9 @@ record! {
         step_count: u64,
         /// The steps of the plan, the running one first.
         steps: [Step; 8],
+        /// \[1\] 1 if the plan begins inside a step, from the measured pose of the robot: body, torso and feet do not go on
+        /// from where the plan before wanted them.
+        measured: u64,
         /// \[1\] A [`BodyPoint`]: what `body` leads.
         leads: u64,
         /// \[m\] That point of the body (x, y, z).

@@ -89,6 +89,7 @@ impl Walk {
             previous: strides[0].parameters,
             width,
             early: None,
+            inside: None,
         };
         let end = 5.0 * step_time + double_support;
         let horizon = Horizon { from: &from, state: GaitState::Walking, strides: &strides, head: 0, end };

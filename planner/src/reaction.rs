@@ -1,0 +1,99 @@
+//! Reaction to pushes: in single support, a plan from where the robot is, whose foot lands where it catches the body
+//! ([`crate::step_adaptation`]). Where the stabilizer alone can make good for an error, nothing happens.
+
+use crate::commands::Intent;
+use crate::footsteps::StepDemand;
+use crate::gait::{LEAD_MIN, Planner};
+use crate::origin::PlanOrigin;
+use crate::skills::{Script, Skill};
+use crate::step_adaptation::{self, Divergence, Landing};
+use crate::steps::{ROUNDING, StepParameters};
+use crate::verdict::PlanVerdict;
+use messages::{ControllerState, Detail, EventCode, GaitState};
+use multibody::GRAVITY_ACCELERATION as GRAVITY;
+
+/// \[rad\] A robot that leans farther is not caught by a step.
+const LOST: f64 = 0.35;
+
+impl Planner {
+    /// Plans on from inside the present step, if the body has to be caught; `true` if there is such a plan.
+    pub(crate) fn react(&mut self, tick: u64, state: &ControllerState, gait: GaitState) -> bool {
+        let start = tick + LEAD_MIN;
+        let Some((k, landing)) = self.catch(start, state, gait) else { return false };
+        let cycle_s = self.builder.model.cycle_s;
+        let t = (start - self.active.plan.start_tick) as f64 * cycle_s;
+        let ahead = (start - state.header.tick) as f64 * cycle_s;
+        let cycles = self.builder.model.cycles(landing.rest);
+        let from = PlanOrigin::inside(&self.active, (k, t), (state, ahead), &landing.pose, (cycles, cycle_s));
+        let stays = gait != GaitState::Stopping || self.intent == Intent::Walk;
+        let to = if stays && self.intent == Intent::Walk { GaitState::Walking } else { GaitState::Stopping };
+        if !self.walk_on(&from, to, landing.catches) {
+            return false;
+        }
+        let sound = landing.catches && self.next.verdict == PlanVerdict::Sound;
+        let code = if sound { EventCode::StepAdapted } else { EventCode::StepStretched };
+        self.events.push(code, Detail::Plan(self.last_id + 1));
+        self.publish(start, tick)
+    }
+
+    /// Step of the active plan that runs at the tick `start`, and the landing that it needs instead of its own.
+    fn catch(&self, start: u64, state: &ControllerState, gait: GaitState) -> Option<(usize, Landing)> {
+        let rules = self.gait.reaction.as_ref()?;
+        let walks = matches!(gait, GaitState::Starting | GaitState::Walking | GaitState::Stopping);
+        let (walk, model) = (&self.active, &self.builder.model);
+        let known = state.plan_id == walk.plan.id && start > walk.plan.start_tick && self.next.plan.id == 0;
+        // A skill knows its steps, and knows of heights that others do not.
+        if !walks || !known || self.tasks.active != Skill::Walk {
+            return None;
+        }
+        let t = (start - walk.plan.start_tick) as f64 * model.cycle_s;
+        let k = walk.steps().iter().position(|s| t < s.end)?;
+        let s = &walk.strides[k];
+        let level = (s.heights.landing - s.heights.foothold).abs() < ROUNDING && !s.is_high(&model.step);
+        let lean = state.inclination_error;
+        if t < s.lift || !level || !lean.iter().all(|x| x.abs() < LOST) {
+            return None;
+        }
+        let foot = state.feet[1 - s.stance];
+        let body = divergence(state, s.heights.foothold, start, model.cycle_s)?;
+        let landing =
+            step_adaptation::adapt(rules, walk, (k, t), &body, [foot[0], foot[1]], &model.soles[s.stance])?;
+        Some((k, landing))
+    }
+
+    /// The plan from there: as commanded or, if that leaves the support or one step is not enough, with steps on the spot.
+    /// Of two that leave it, the one that leaves it less. `false`: there is none at all.
+    fn walk_on(&mut self, from: &PlanOrigin, state: GaitState, catches: bool) -> bool {
+        let rest = StepParameters::on_the_spot(self.parameters.duration);
+        let wishes = [self.parameters, rest];
+        let mut demand =
+            StepDemand { from, state, wish: wishes[0], share: 1.0, skill: Skill::Walk, script: Script::NONE };
+        let mut margins = [f64::NEG_INFINITY; 2];
+        for (wish, margin) in wishes.into_iter().zip(&mut margins).skip(usize::from(!catches)) {
+            demand.wish = wish;
+            self.builder.walk(&demand, &mut self.next);
+            if self.next.verdict == PlanVerdict::Sound {
+                return true;
+            }
+            *margin = self.next.margin;
+        }
+        if margins[0] > margins[1] {
+            demand.wish = wishes[0];
+            self.builder.walk(&demand, &mut self.next);
+        }
+        use PlanVerdict::{LeavesSupport, OverloadsSole, Slips, Sound};
+        matches!(self.next.verdict, Sound | LeavesSupport | OverloadsSole | Slips)
+    }
+}
+
+/// Divergent component at the tick `start`, the zero-moment point staying where it is; none without a measurement.
+fn divergence(state: &ControllerState, ground: f64, start: u64, cycle_s: f64) -> Option<Divergence> {
+    let w = (GRAVITY / (state.com[2] - ground)).sqrt();
+    let growth = w * (start - state.header.tick) as f64 * cycle_s;
+    let error = [0, 1].map(|d| {
+        let shift = state.zmp[d] - state.zmp_desired[d];
+        let shift = if shift.is_finite() { shift } else { 0.0 };
+        -state.dcm_error[d] + growth * (-state.dcm_error[d] - shift)
+    });
+    (w.is_finite() && error.iter().all(|e| e.is_finite())).then_some(Divergence { w, error })
+}

@@ -1,0 +1,183 @@
+//! Step adaptation: where and when the swing foot has to land so that the next support catches a body that was pushed
+//! (Khadiv et al. 2016, Griffin et al. 2017).
+//!
+//! The divergent component xi = c + c'/w of a linear pendulum leaves a resting zero-moment point p as e^(w t). Up to the
+//! landing p may be moved within the sole; what remains is met by a landing elsewhere, and earlier.
+//!
+//! ```text
+//! Variables    u   landing                                                     [m]  stance foot
+//!              r   rest of the swing                                           [s]
+//!              b   offset of xi from the landing at that time                  [m]  stance foot
+//!              d   shift of the zero-moment point until then                   [m]  stance foot
+//! Objective    |u - u_plan|^2 + OFFSET |b - b_plan|^2 + HASTE (r_plan - r)^2
+//! Constraints  u + b = p + d + (xi - p - d) e^(w r)
+//!              u, r, d in boxes
+//! ```
+//! Given r everything else is in closed form, axis by axis; r itself is found by a search between two ends.
+
+use crate::planned_walk::PlannedWalk;
+use crate::pose::PlanarPose;
+use crate::sole::Sole;
+use crate::steps::nu;
+use config::gait;
+
+/// Weight of the offset b.
+const OFFSET: f64 = 30.0;
+/// \[m^2/s^2\] Weight of a shorter swing.
+const HASTE: f64 = 0.01;
+/// Share of the sole, about its middle, in which the zero-moment point is counted on.
+const COUNTED: f64 = 0.8;
+/// Steps of the search for r: its bracket shrinks to a thousandth.
+const NARROWINGS: usize = 16;
+
+/// Divergent component of the body at an instant of a plan.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Divergence {
+    /// \[1/s\] Rate of the pendulum.
+    pub(crate) w: f64,
+    /// \[m\] @planning frame Measured less planned.
+    pub(crate) error: [f64; 2],
+}
+
+/// A landing that catches the body, as far as one can.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Landing {
+    /// Pose of the foot, @planning frame of the active plan.
+    pub(crate) pose: PlanarPose,
+    /// \[s\] Until then.
+    pub(crate) rest: f64,
+    /// The next support can make good for what is left.
+    pub(crate) catches: bool,
+}
+
+/// One axis of the problem.
+#[derive(Clone, Copy)]
+struct Axis {
+    /// \[m\] Planned: divergent component now and at landing, zero-moment point that leads from one to the other, landing.
+    xi: f64,
+    end: f64,
+    zmp: f64,
+    landing: f64,
+    /// \[m\] Measured less planned divergent component.
+    error: f64,
+    /// \[m\] How far the zero-moment point may be shifted, and where the foot may land; where it is now.
+    shift: [f64; 2],
+    room: [f64; 2],
+    foot: f64,
+}
+
+impl Axis {
+    /// \[m\] Distance of xi from where the plan wanted it at landing, if it grew by `growth`; the zero-moment point has done
+    /// what it can.
+    fn missed(&self, growth: f64) -> f64 {
+        let at = self.zmp + (self.xi - self.zmp + self.error) * growth - self.end;
+        let [low, high] = self.shift.map(|d| d * (growth - 1.0));
+        at - at.clamp(low, high)
+    }
+
+    /// \[m\] Change of the landing and of the offset that make good for it; the foot gets no farther than `reach`.
+    fn split(&self, growth: f64, reach: f64) -> [f64; 2] {
+        let missed = self.missed(growth);
+        let [low, high] = self.room;
+        let near = |x: f64| x.clamp(self.foot - reach, self.foot + reach).clamp(low, high);
+        let moved = near(self.landing + missed * OFFSET / (1.0 + OFFSET)) - self.landing;
+        [moved, missed - moved]
+    }
+}
+
+/// Landing of step `k` of `walk` at its time `t` \[s\], in single support, that makes good for the error of `body`; `foot` is
+/// where the swing foot is \[m\] @planning frame, `sole` that of the stance foot. None if the stabilizer alone can.
+pub(crate) fn adapt(
+    rules: &gait::Reaction,
+    walk: &PlannedWalk,
+    (k, t): (usize, f64),
+    body: &Divergence,
+    foot: [f64; 2],
+    sole: &Sole,
+) -> Option<Landing> {
+    let s = &walk.strides[k];
+    let rest = s.end - t;
+    if rest < rules.rest {
+        return None;
+    }
+    let axes = axes(rules, walk, (k, t), body, foot, sole);
+    let growth = |r: f64| (body.w * r).exp();
+    let missed = axes.map(|a| a.missed(growth(rest)));
+    if (0..2).all(|d| missed[d].abs() <= rules.tolerance[d]) {
+        return None;
+    }
+    // The objective is convex in r where boxes do not bind, and has one valley where they do.
+    let split = |r: f64| axes.map(|a| a.split(growth(r), rules.speed * r));
+    let cost = |r: f64| {
+        let late = HASTE * (rest - r) * (rest - r);
+        split(r).iter().map(|[u, b]| u * u + OFFSET * b * b).sum::<f64>() + late
+    };
+    let shortest = rules.rest.max(rules.swing - (t - s.lift)).min(rest);
+    let r = least(shortest, rest, cost);
+    let [[x, left_x], [y, left_y]] = split(r);
+    let local = s.foothold.relative(&s.landing);
+    let pose = s.foothold.compose(&PlanarPose { x: local.x + x, y: local.y + y, ..local });
+    let catches = left_x.abs() <= rules.tolerance[0] && left_y.abs() <= rules.tolerance[1];
+    Some(Landing { pose, rest: r, catches })
+}
+
+/// Both axes of the stance foot.
+fn axes(
+    rules: &gait::Reaction,
+    walk: &PlannedWalk,
+    (k, t): (usize, f64),
+    body: &Divergence,
+    foot: [f64; 2],
+    sole: &Sole,
+) -> [Axis; 2] {
+    let s = &walk.strides[k];
+    let at = &s.foothold;
+    let xi = |t: f64| {
+        let c = walk.plan.body.sample(t);
+        at.local([c.position[0] + c.velocity[0] / body.w, c.position[1] + c.velocity[1] / body.w])
+    };
+    let (now, end) = (xi(t), xi(s.end));
+    let growth = (body.w * (s.end - t)).exp();
+    let landing = at.relative(&s.landing);
+    let error = crate::pose::rotate(-at.heading, body.error);
+    let foot = at.local(foot);
+    let [near, far] = rules.width;
+    let side = if nu(s.stance) > 0.0 { [near, far] } else { [-far, -near] };
+    [0, 1].map(|d| {
+        let zmp = (end[d] - now[d] * growth) / (1.0 - growth);
+        let half = COUNTED * sole.half[d];
+        let planned = [landing.x, landing.y][d];
+        // A plan may land outside of the box, and a zero-moment point be outside of the counted part: both stay where they are.
+        let [low, high] = [rules.length, side][d];
+        Axis {
+            xi: now[d],
+            end: end[d],
+            zmp,
+            landing: planned,
+            error: error[d],
+            shift: [(sole.center[d] - half - zmp).min(0.0), (sole.center[d] + half - zmp).max(0.0)],
+            room: [low.min(planned), high.max(planned)],
+            foot: foot[d],
+        }
+    })
+}
+
+/// Where `cost` is least between two ends, if it has one valley: by golden section.
+fn least(low: f64, high: f64, cost: impl Fn(f64) -> f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let (mut low, mut high) = (low, high);
+    let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+    let (mut at_a, mut at_b) = (cost(a), cost(b));
+    for _ in 0..NARROWINGS {
+        if at_a <= at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = high - GOLDEN * (high - low);
+            at_a = cost(a);
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = low + GOLDEN * (high - low);
+            at_b = cost(b);
+        }
+    }
+    0.5 * (low + high)
+}
