@@ -173,6 +173,8 @@ pub struct Reaction {
     pub rest: f64,
     /// \[m/s\] Fastest mean speed of the swing foot over the ground.
     pub speed: f64,
+    /// \[m\] Least error of the divergent component to which a step reacts.
+    pub error: f64,
     /// \[m\] Errors of the divergent component at landing, forward and to the side, that the next support makes good for.
     pub tolerance: [f64; 2],
 }
@@ -411,6 +413,7 @@ impl Reaction {
             swing: table.number("swing", "s", POSITIVE),
             rest: table.number("rest", "s", POSITIVE),
             speed: table.number("speed", "m/s", POSITIVE),
+            error: table.number("error", "m", POSITIVE),
             tolerance: table.numbers("tolerance", "m, m", POSITIVE),
         }
     }

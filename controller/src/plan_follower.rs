@@ -41,7 +41,14 @@ pub struct Desired {
 impl PlanFollower {
     /// No plan yet; `edges` \[m\] are the rear and the front edge of each sole in its frame.
     pub(crate) fn new(edges: [[f64; 2]; 2]) -> Self {
-        Self { active: Plan::default(), next: Plan::default(), void: None, edges, sole_height: [0.0; 2], last: None }
+        Self {
+            active: Plan::default(),
+            next: Plan::default(),
+            void: None,
+            edges,
+            sole_height: [0.0; 2],
+            last: None,
+        }
     }
 
     /// Id of the plan being executed; 0 before the first one.

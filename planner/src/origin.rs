@@ -4,8 +4,8 @@ use crate::planned_walk::PlannedWalk;
 use crate::pose::{PlanarPose, rotate};
 use crate::steps::{StepParameters, Stride};
 use curves::Sample;
-use multibody::GRAVITY_ACCELERATION as GRAVITY;
 use messages::{BodyPoint, ControllerState, LEFT, RIGHT};
+use multibody::GRAVITY_ACCELERATION as GRAVITY;
 use std::f64::consts::FRAC_PI_2;
 
 /// Motion at the begin of a plan, in its own planning frame.
@@ -179,8 +179,7 @@ impl PlanOrigin {
         let (sin, cos) = torso.position[2].sin_cos();
         let (roll, pitch) = (rate[1], -rate[0]);
         let omega = [cos * roll - sin * pitch, sin * roll + cos * pitch];
-        let drift =
-            [omega[1] * arm[2], -omega[0] * arm[2], omega[0] * arm[1] - omega[1] * arm[0]];
+        let drift = [omega[1] * arm[2], -omega[0] * arm[2], omega[0] * arm[1] - omega[1] * arm[0]];
         let mut moved = foot;
         for d in 0..3 {
             moved.position[d] += state.feet[swing][d] - state.feet_desired[swing][d] + ahead * drift[d];
@@ -214,7 +213,8 @@ impl PlanOrigin {
             heights,
             ..*s
         };
-        let flat = |v: [f64; 4]| Sample { position: [v[0], v[1], v[2]], velocity: [0.0; 3], acceleration: [0.0; 3] };
+        let flat =
+            |v: [f64; 4]| Sample { position: [v[0], v[1], v[2]], velocity: [0.0; 3], acceleration: [0.0; 3] };
         let turned = seen(
             &frame,
             stance[2],

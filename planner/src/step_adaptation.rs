@@ -100,12 +100,13 @@ pub(crate) fn adapt(
     if rest < rules.rest {
         return None;
     }
-    let axes = axes(rules, walk, (k, t), body, foot, sole);
+    let axes = |counted: f64| axes(rules, walk, (k, t), body, foot, (sole, counted));
     let growth = |r: f64| (body.w * r).exp();
-    let missed = axes.map(|a| a.missed(growth(rest)));
-    if (0..2).all(|d| missed[d].abs() <= rules.tolerance[d]) {
+    let stays = |(a, most): (Axis, f64)| a.error.abs() <= rules.error || a.missed(growth(rest)).abs() <= most;
+    if axes(1.0).into_iter().zip(rules.tolerance).all(stays) {
         return None;
     }
+    let axes = axes(COUNTED);
     // The objective is convex in r where boxes do not bind, and has one valley where they do.
     let split = |r: f64| axes.map(|a| a.split(growth(r), rules.speed * r));
     let cost = |r: f64| {
@@ -128,7 +129,7 @@ fn axes(
     (k, t): (usize, f64),
     body: &Divergence,
     foot: [f64; 2],
-    sole: &Sole,
+    (sole, counted): (&Sole, f64),
 ) -> [Axis; 2] {
     let s = &walk.strides[k];
     let at = &s.foothold;
@@ -145,7 +146,7 @@ fn axes(
     let side = if nu(s.stance) > 0.0 { [near, far] } else { [-far, -near] };
     [0, 1].map(|d| {
         let zmp = (end[d] - now[d] * growth) / (1.0 - growth);
-        let half = COUNTED * sole.half[d];
+        let half = counted * sole.half[d];
         let planned = [landing.x, landing.y][d];
         // A plan may land outside of the box, and a zero-moment point be outside of the counted part: both stay where they are.
         let [low, high] = [rules.length, side][d];
