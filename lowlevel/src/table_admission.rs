@@ -76,14 +76,13 @@ pub(crate) fn admit_whole(t: &JointTables, robot: &Robot, units: &[f64], samples
     }
 }
 
-/// Place in the drives' memory beside the running table.
+/// Place in the drives' memory beside the running table: in the other half of it, so that one as long as half of it has room
+/// beside this one in turn, however short the running table is.
 pub(crate) fn place(points: usize, running: Option<&PlacedTables>) -> Result<usize, Detail> {
-    match running {
-        None => Ok(1),
-        Some(r) if r.first > points => Ok(1),
-        Some(r) if r.last() + points <= MOST_POINTS => Ok(r.last() + 1),
-        Some(_) => Err(fault(0, 0, TableFault::Room)),
-    }
+    let Some(running) = running.filter(|r| r.first <= points) else { return Ok(1) };
+    let last = running.last();
+    let before = [last.max(MOST_POINTS / 2), last].into_iter().find(|before| before + points <= MOST_POINTS);
+    before.map(|before| before + 1).ok_or_else(|| fault(0, 0, TableFault::Room))
 }
 
 /// Speed of each joint with which a table begins, in its own unit \[count/T\]: zero, or that of the running table, which has

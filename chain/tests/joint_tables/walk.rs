@@ -102,6 +102,25 @@ fn the_drives_are_where_the_targets_are() {
     }
 }
 
+/// Told to walk while he stands up, to stop in the first step, and to walk again at once: the drives have room for each plan
+/// beside the one that they play, long or short.
+#[test]
+fn a_plan_has_room_beside_any_other() {
+    let walk = Command::Velocity(VelocityCommand { forward: 0.0208, left: 0.0, turn: 0.0 });
+    for (told, tables) in [
+        (vec![(3.1, walk), (20.0, Command::Stop)], 4),
+        (vec![(3.0, walk), (4.3, Command::Stop), (5.2, walk), (60.0, Command::Stop)], 7),
+    ] {
+        let mut setup = setup(|_| ());
+        let end = told[told.len() - 1].0;
+        setup.scene.commands = std::iter::once((0.2, Command::Stand)).chain(told).collect();
+        setup.scene.duration = end + 36.0;
+        let played = play(&setup, |_| ());
+        assert!(played.begun.len() >= tables, "{:?}", played.begun);
+        assert!(played.apart.iter().all(|apart| *apart <= 0.004), "{:?} deg", played.apart);
+    }
+}
+
 /// Ankles bent by 0.02 rad with the soles not flat, which no plan has: the first table leads them from where they rest.
 #[test]
 fn the_first_table_comes_from_where_the_joints_rest() {
