@@ -240,3 +240,31 @@ fn compare(leg: &Leg, foot: &Foot, model: &Model, names: &[&str]) -> Result<(), 
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Rotation3;
+
+    /// Frame {0} of a foot with its toes down, and frame {6} of a torso that turns, leans to its left and forward, in the world:
+    /// errata of Archie's thesis, V14. Products of rotations about x, y and z as he stands.
+    #[test]
+    fn orientations_of_foot_and_torso() {
+        let about = |axis: Vector3<f64>, angle: f64| *Rotation3::new(axis * angle).matrix();
+        let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+        let foot = about(y, 0.2) * SOLE_FROM_0;
+        let torso = about(z, 0.1) * about(x, -0.05) * about(y, 0.08) * TORSO_FROM_6;
+        #[rustfmt::skip]
+        let printed = [
+            Matrix3::new(0.198669330795, 0.0, 0.980066577841, 0.0, -1.0, 0.0, 0.980066577841, 0.0, -0.198669330795),
+            Matrix3::new(
+                0.099708650872, -0.992220591383, -0.074541820315,
+                -0.993760669166, -0.095540003756, -0.057548589053,
+                0.049979169271, 0.079814821411, -0.995555963732,
+            ),
+        ];
+        for (is, printed) in [foot, torso].into_iter().zip(printed) {
+            assert!((is - printed).amax() < 1e-12, "{is}");
+        }
+    }
+}

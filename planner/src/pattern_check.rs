@@ -1,5 +1,6 @@
 //! Whether a robot can walk a pattern: reach of its legs, ranges and speeds of their joints, feet that collide, soles in
-//! the ground. Checked on the walk itself, out of standing and into it, at every point of the drives' tables.
+//! the ground. Checked on the walk itself, out of standing and into it, at every point of the drives' tables and at no fewer
+//! than [`LEAST_POINTS`] of a stride.
 
 use crate::footsteps::StepDemand;
 use crate::origin::PlanOrigin;
@@ -20,6 +21,8 @@ use std::fmt;
 
 /// Plans of the walk that is looked at.
 const PLANS: usize = 5;
+/// \[1\] Points of a stride that are looked at, at least: as many as the thesis's tables have.
+const LEAST_POINTS: u64 = 300;
 /// \[m\] Sole below the ground that is rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -158,7 +161,9 @@ pub fn walk_of(gait: &Gait, robot: &Robot) -> Result<Vec<WalkedPlan>, PatternFau
 /// # Errors
 /// The first rule that is broken.
 pub(crate) fn check(builder: &mut Builder, pattern: &Pattern, robot: &Robot) -> Result<(), PatternFault> {
-    let spacing = 2.0 * pattern.step_time / pattern.points as f64;
+    // Drives that get a point in every cycle need none of these tables: few points must not hide what is between them.
+    let points = pattern.points * LEAST_POINTS.div_ceil(pattern.points.max(1));
+    let spacing = 2.0 * pattern.step_time / points as f64;
     let plans = plans(builder, pattern, robot)?;
     plans.iter().try_for_each(|walked| PlanVisit { robot, walked, spacing }.all())?;
     match &robot.tables {

@@ -1,6 +1,6 @@
 //! Archie's own walk: what the planner lets go out, and what it refuses.
 
-use config::pattern::Pattern;
+use config::pattern::{Pattern, TorsoHeight};
 use config::{Gait, LegError, Robot};
 use messages::command::{StepCommand, VelocityCommand};
 use messages::{
@@ -11,6 +11,7 @@ use planner::pattern_check::PatternFault;
 
 /// \[s\]
 const CYCLE: f64 = 3.2e-3;
+const SPLINE: TorsoHeight = TorsoHeight::Spline;
 
 fn gait() -> Gait {
     Gait::load(&config::root(None).join("gaits/archie_static.toml")).unwrap()
@@ -221,13 +222,19 @@ fn archie_with_straight_knees() -> Robot {
 #[test]
 fn ends_of_reach() {
     let robot = archie_with_straight_knees();
-    // Each parameter with its two shapes of z_h, and where reach ends [cm].
+    // Each parameter, what is tried, and where reach ends [cm].
     type Set = fn(&mut Pattern, f64);
-    let ends: [(&str, Set, [f64; 2], f64); 4] = [
+    let ends: [(&str, Set, [f64; 2], f64); 5] = [
         ("D_s", |p, x| (p.length, p.over_length) = (x, x), [0.25, 0.30], 26.156),
         ("H_max", |p, x| p.heights[1] = x, [0.57, 0.60], 58.048),
         ("w_s", |p, x| p.width = x, [0.17, 0.25], 19.638),
         ("w_m", |p, x| p.shift = x, [0.02, 0.08], 4.638),
+        (
+            "w_m, z_h a spline",
+            |p, x| (p.shift, p.height, p.start_height) = (x, SPLINE, 0.542),
+            [0.02, 0.08],
+            3.282,
+        ),
     ];
     for (key, set, [mut good, mut bad], end) in ends {
         let of = |x: f64| {
@@ -290,6 +297,26 @@ fn faults_are_named() {
     // Another robot has no such legs.
     let lola = Robot::load(&config::root(None).join("robots/lola")).unwrap();
     assert_eq!(verdict(&lola, p), Err(PatternFault::NoLegs));
+}
+
+/// However few points the tables of a stride have, what lies between them is looked at.
+#[test]
+fn few_points_of_tables_hide_nothing() {
+    let robot = archie();
+    let told = |set: fn(&mut Pattern)| {
+        [2, 3, 300, 1024].map(|points| {
+            let mut p = Pattern { points, ..pattern() };
+            set(&mut p);
+            verdict(&robot, p).map_err(|fault| fault.to_string())
+        })
+    };
+    let all = |found: [Result<(), String>; 4], words: &str| {
+        assert!(found.iter().all(|v| v.as_ref().is_err_and(|text| text.contains(words))), "{found:?}");
+    };
+    all(told(|p| (p.length, p.over_length) = (0.30, 0.30)), "the straight leg has");
+    all(told(|p| p.over_height = 0.05), "in the ground");
+    all(told(|p| p.shift = 0.08), "the straight leg has");
+    assert_eq!(told(|_| ()), [const { Ok(()) }; 4]);
 }
 
 /// Drives that play tables have 1024 points for two plans: three steps and a double support of 0.45 T_c would take 520.

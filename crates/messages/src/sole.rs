@@ -94,6 +94,22 @@ mod tests {
         assert_eq!(rolled(&flat(0.1), &Sample::rest([0.0]), edges), flat(0.1));
     }
 
+    /// Archie's ankle, 5.6 cm over a sole that ends 12.5 cm in front of it and 6.5 cm behind, on the toe and on the heel \[cm\]:
+    /// errata of his thesis, V7.
+    #[test]
+    fn ankle_of_a_foot_on_its_toe_and_on_its_heel() {
+        for (angle, [forward, up]) in
+            [(0.2f64, [1.361716029437, 7.971739470849]), (-0.3, [-1.945225977987, 7.270765682402])]
+        {
+            let sole = rolled(&Sample::rest([0.0; 4]), &Sample::rest([angle]), [-0.065, 0.125]);
+            let [x, _, z, _] = sole.position;
+            let ankle = [x + 0.056 * angle.sin(), z + 0.056 * angle.cos()];
+            for (is, printed) in ankle.into_iter().zip([forward, up]) {
+                assert!((100.0 * is - printed).abs() < 1e-11, "{angle}: {is} is {printed}");
+            }
+        }
+    }
+
     /// A foot that swings pitches about its ankle, and passes zero without a jump of it; about its edges, it would jump.
     #[test]
     fn a_foot_pitches_about_its_ankle() {

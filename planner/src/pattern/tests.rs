@@ -302,10 +302,21 @@ fn archie() -> Robot {
 impl Walk {
     /// Thesis angles of a leg at `t` \[s\] of the pattern.
     fn theta(&self, robot: &Robot, foot: usize, t: f64) -> Result<[f64; 6], config::LegError> {
+        self.theta_under(robot, foot, t, self.plan.body.sample(self.begin + t).position)
+    }
+
+    /// The same with the torso at `body` \[m\].
+    fn theta_under(
+        &self,
+        robot: &Robot,
+        foot: usize,
+        t: f64,
+        body: [f64; 3],
+    ) -> Result<[f64; 6], config::LegError> {
         let (sole, pitch) = self.plan.sole(foot, self.begin + t, EDGES);
         let [x, y, z, _] = sole.position;
         let turned = nalgebra::Rotation3::from_axis_angle(&Vector3::y_axis(), pitch.position[0]);
-        let body = Vector3::from(self.plan.body.sample(self.begin + t).position);
+        let body = Vector3::from(body);
         let leg = &robot.legs.as_ref().unwrap()[foot];
         let upright = Matrix3::identity();
         Ok(leg.theta(&leg.angles((turned.matrix(), &Vector3::new(x, y, z)), (&upright, &body))?))
@@ -379,27 +390,68 @@ fn points_in_reach() {
     assert_eq!(beyond(spline, 300), 22);
 }
 
+/// Torso forward \[m\] at `t` \[s\] of a stride by (4-13), (4-14) as they are printed; the stride begins with its rear ankle at 0.
+fn printed_forward(p: &Pattern, t: f64) -> f64 {
+    let (cycle, double, way) = (p.step_time, p.double_support, p.length);
+    let single = cycle - double;
+    let printed = way - p.end_ahead - p.start_behind;
+    let step = (t / cycle).floor();
+    let t = t - step * cycle;
+    let [before, x] = if t > double {
+        let (a, b) = (t - double, cycle - t);
+        let cubic = a.powi(3) - b.powi(3) + single * single * (b - a);
+        let ends = (way - p.start_behind) * b + (way + p.end_ahead) * a;
+        [step, printed / (double * single * single) * cubic + ends / single]
+    } else {
+        // Printed for T_c < t < T_c + T_d: the step before.
+        let (a, b) = (t, double - t);
+        let cubic = b.powi(3) - a.powi(3) + double * double * (a - b);
+        let ends = p.end_ahead * b + (way - p.start_behind) * a;
+        [step - 1.0, way + printed / (double * double * single) * cubic + ends / double]
+    };
+    before * way + x
+}
+
+/// Evidence of what is printed: with that x_h and the spline of z_h 32 of the 600 points of 6.2 are beyond the legs' reach.
+#[test]
+fn the_printed_torso_is_out_of_reach() {
+    // V8.
+    near(&[printed_forward(&example(), 0.1), printed_forward(&example(), 0.8)], &[8.359375, 18.75]);
+    let pattern = Pattern { height: TorsoHeight::Spline, start_height: 0.542, ..static_walk() };
+    let (robot, walk) = (archie(), Walk::new(pattern));
+    let beyond = |i: u32| {
+        let t = 2.0 * pattern.step_time * f64::from(i) / 300.0;
+        let [_, y, z] = walk.plan.body.sample(walk.begin + t).position;
+        let body = [walk.at.x + printed_forward(&pattern, t), y, z];
+        [RIGHT, LEFT].map(|foot| {
+            let far = walk.theta_under(&robot, foot, t, body);
+            usize::from(matches!(far, Err(config::LegError::TooFar { .. })))
+        })
+    };
+    assert_eq!((0..300).flat_map(beyond).sum::<usize>(), 32);
+}
+
 /// Ranges \[deg\] and largest speeds \[deg/s\] of the right leg over 300 points: errata, section 3, to the last printed digit.
 #[test]
 fn ranges_and_speeds_of_the_joints() {
     let robot = archie();
     let spline = |p: Pattern| Pattern { height: TorsoHeight::Spline, start_height: 0.542, ..p };
-    type Printed = [[f64; 4]; 6]; // least, greatest, speed, half of the last digit of the speed
+    type Printed = [[f64; 5]; 6]; // least, greatest, speed, half of the last digit of the range, and of the speed
     let example_of: Printed = [
-        [-12.5, 16.2, 108.0, 0.5],
-        [-51.1, -28.8, 121.0, 0.5],
-        [64.4, 77.2, 26.0, 0.5],
-        [-46.4, -17.5, 48.0, 0.5],
-        [-16.2, 12.5, 108.0, 0.5],
-        [-2.24, 1.31, 21.0, 0.5],
+        [-12.5, 16.2, 108.0, 0.05, 0.5],
+        [-51.1, -28.8, 121.0, 0.05, 0.5],
+        [64.4, 77.2, 26.0, 0.05, 0.5],
+        [-46.4, -17.5, 48.0, 0.05, 0.5],
+        [-16.2, 12.5, 108.0, 0.05, 0.5],
+        [-2.24, 1.31, 21.0, 0.005, 0.5],
     ];
     let static_of: Printed = [
-        [-12.5, 16.2, 9.0, 0.05],
-        [-55.7, -7.9, 19.7, 0.05],
-        [11.4, 77.2, 28.8, 0.05],
-        [-48.5, 25.5, 22.7, 0.05],
-        [-16.2, 12.5, 9.0, 0.05],
-        [0.0, 0.0, 0.0, 1e-9],
+        [-12.5, 16.2, 9.0, 0.05, 0.05],
+        [-55.7, -7.9, 19.7, 0.05, 0.05],
+        [11.4, 77.2, 28.8, 0.05, 0.05],
+        [-48.5, 25.5, 22.7, 0.05, 0.05],
+        [-16.2, 12.5, 9.0, 0.05, 0.05],
+        [0.0, 0.0, 0.0, 1e-9, 1e-9],
     ];
     for (pattern, printed) in [(spline(example()), example_of), (spline(static_walk()), static_of)] {
         let walk = Walk::new(pattern);
@@ -409,17 +461,17 @@ fn ranges_and_speeds_of_the_joints() {
             theta[4] -= std::f64::consts::FRAC_PI_2;
             theta.map(f64::to_degrees)
         };
-        for (joint, [least, greatest, speed, digit]) in printed.into_iter().enumerate() {
+        for (joint, [least, greatest, speed, digit, speed_digit]) in printed.into_iter().enumerate() {
             let all = || (0..300).map(|i| angles(i)[joint]);
             let (low, high) = all().fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
             let name = joint + 1;
             assert!(
-                (low - least).abs() < 0.051 && (high - greatest).abs() < 0.051,
+                (low - least).abs() < 1.01 * digit && (high - greatest).abs() < 1.01 * digit,
                 "theta {name}: {low} {high}"
             );
             let rate = |i: u32| (angles(i + 1)[joint] - angles(i)[joint]).abs() / spacing;
             let fastest = (0..300).map(rate).fold(0.0, f64::max);
-            assert!((fastest - speed).abs() < 1.01 * digit, "theta {name}: {fastest} deg/s");
+            assert!((fastest - speed).abs() < 1.01 * speed_digit, "theta {name}: {fastest} deg/s");
         }
     }
 }
