@@ -90,7 +90,7 @@ impl Pattern {
         let height = [TorsoHeight::Quintic, TorsoHeight::Spline][table.word("z_h", &TorsoHeight::WORDS)];
         // A foot that stays flat needs no times of its pitch.
         let (leave, land) = (table.number("q_b", "rad", 0.0..=0.8), table.number("q_f", "rad", 0.0..=0.8));
-        let rolls = leave != 0.0 || land != 0.0 || table.has("T_1");
+        let rolls = leave > 0.0 || land > 0.0 || table.has("T_1");
         let pattern = Self {
             step_time,
             double_support,
@@ -113,7 +113,8 @@ impl Pattern {
             end_ahead: table.number("x_ed", "m", -0.5..=0.5),
             start_behind: table.number("x_sd", "m", -0.5..=0.5),
             heights: [table.number("H_min", "m", POSITIVE), table.number("H_max", "m", POSITIVE)],
-            start_height: if height == TorsoHeight::Spline {
+            // Where another key is wrong, z_h may be: then nobody knows whether H_0 is one too many.
+            start_height: if height == TorsoHeight::Spline || !table.is_sound() && table.has("H_0") {
                 table.number("H_0", "m", POSITIVE)
             } else {
                 0.0
@@ -122,21 +123,23 @@ impl Pattern {
             height,
             points: table.integer("N", 2..=1024),
         };
-        if let Some((key, problem)) = pattern.disorder() {
+        let front_flat = (rolls && table.has("T_4")).then(|| time("T_4"));
+        if let Some((key, problem)) = pattern.first_problem(front_flat).filter(|_| table.is_sound()) {
             table.problem(key, problem);
         }
-        // T_4 says the same as T_3 of the other foot, (4-32).
-        if rolls && table.has("T_4") {
-            let [first, _, third] = pattern.pitch_times;
-            let (is, must) = (time("T_4"), third - step_time - first);
-            if (is - must).abs() > 1e-9 {
-                table.problem(
-                    "T_4",
-                    format!("{is} s must be T_3 - T_c - T_1 = {must:.4} s: both feet walk alike"),
-                );
-            }
-        }
         pattern
+    }
+
+    /// First key that does not fit the others, and why; `front_flat` \[s\] is `T_4`, if it is given: it says the same as
+    /// `T_3` of the other foot, (4-32).
+    fn first_problem(&self, front_flat: Option<f64>) -> Option<(&'static str, String)> {
+        self.disorder().or_else(|| {
+            let [first, _, third] = self.pitch_times;
+            let must = third - self.step_time - first;
+            front_flat.filter(|is| (is - must).abs() > 1e-9).map(|is| {
+                ("T_4", format!("{is} s must be T_3 - T_c - T_1 = {must:.4} s: both feet walk alike"))
+            })
+        })
     }
 
     /// First key whose value breaks an order that needs no robot, and why.

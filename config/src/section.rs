@@ -87,6 +87,11 @@ impl<'a, 't> Section<'a, 't> {
         self.file.note(at, self.path(key), text.into());
     }
 
+    /// True if nothing of the file was found wrong so far: rules between keys may be looked at.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.file.problems.borrow().is_empty()
+    }
+
     /// Is the key there?
     pub(crate) fn has(&self, key: &str) -> bool {
         self.asked.borrow_mut().push(key.to_owned());
@@ -233,7 +238,8 @@ impl<'a, 't> Section<'a, 't> {
     pub(crate) fn word(&self, key: &str, words: &[&str]) -> usize {
         let text = self.text(key);
         words.iter().position(|word| *word == text).unwrap_or_else(|| {
-            if !text.is_empty() {
+            // What is missing or no string has been named.
+            if self.table.get(key).is_some_and(|value| value.get_ref().as_str().is_some()) {
                 self.problem(key, format!("`{text}` is not known; it takes one of {}", listed(words)));
             }
             0

@@ -185,8 +185,16 @@ impl Setup {
                 .or_else(|| outside("duration", step.duration, limits.duration)),
             Command::Velocity(v) => {
                 let most = self.gait.step.by_speed.last().map_or(0.0, |row| row[0]);
+                // No component is faster than the largest step in the shortest time.
+                let rate = |name: &str, x: f64, limit: [f64; 2], unit: &str| {
+                    let [lo, hi] = limit.map(|x| x / limits.duration[0]);
+                    (x < lo || x > hi).then(|| format!("{name} = {x} lies outside of [{lo}, {hi}] {unit}"))
+                };
                 (v.forward.abs() > most)
                     .then(|| format!("forward = {} is beyond by_speed's {most} m/s", v.forward))
+                    .or_else(|| rate("forward", v.forward, limits.length, "m/s"))
+                    .or_else(|| rate("left", v.left, limits.side, "m/s"))
+                    .or_else(|| rate("turn", v.turn, limits.turn, "rad/s"))
             }
             Command::Platform(p) => {
                 let most = self.gait.obstacles.map_or(0.0, |o| o.height);
