@@ -271,6 +271,12 @@ impl Gait {
                 format!("swing_lag + swing_lead = {sum} s leave nothing of a swing of {swing:.3} s"),
             );
         }
+        if self.reaction.is_some() && self.heel_strike.is_some() {
+            top.problem(
+                "reaction",
+                "a foot that is to land on its heel lands nowhere else: leave out [heel_strike], or this",
+            );
+        }
         if let Some(o) = &self.obstacles {
             let [least, most] = limits.duration;
             if o.duration < least || o.duration > most {

@@ -33,3 +33,59 @@ pub(crate) fn take_up(modification: &mut Modification, before: &Desired, now: &D
         modification.value[3 * foot + 2] = -turned[(2, 0)].clamp(-1.0, 1.0).asin();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use curves::Sample;
+    use std::f64::consts::FRAC_PI_2;
+
+    /// Seen from the torso, where and how a sole is led to: the task of `stabilizer/task.rs`, written out.
+    fn led(m: &Modification, at: &Desired, foot: usize) -> (Vector3<f64>, Matrix3<f64>) {
+        let torso = torso::rotation(&Vector3::from(at.torso.position)).unwrap();
+        let [x, y, z, heading] = at.feet[foot].position;
+        let v = m.value.fixed_rows::<3>(3 * foot);
+        let sole = Vector3::new(x, y, z + v[0]) - Vector3::from(at.body.position);
+        let turn = |axis, angle| *Rotation3::from_axis_angle(&axis, angle).matrix();
+        let (x, y, z) = (Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis());
+        let tilt = turn(y, at.pitch[foot].position[0]) * turn(y, v[2]) * turn(x, v[1]);
+        (torso.transpose() * sole + m.residue[foot], torso.transpose() * turn(z, heading) * tilt)
+    }
+
+    fn pose(lean: [f64; 2], body: [f64; 3], frame: f64) -> Desired {
+        let sole = |y: f64| Sample::rest([0.02, y, 0.01, 0.1 - frame]);
+        Desired {
+            body: Sample::rest(body),
+            torso: Sample::rest([FRAC_PI_2 + lean[0], FRAC_PI_2 + lean[1], 0.05 - frame]),
+            feet: [sole(0.0), sole(0.2)],
+            pitch: [Sample::rest([0.0]), Sample::rest([0.1])],
+            toes: [Sample::rest([0.0]); 2],
+            zmp: [0.0; 2],
+            load: [1.0, 0.0],
+        }
+    }
+
+    /// An upright plan, and one that leans by 9 degrees with the body elsewhere: soles are led to the same poses.
+    #[test]
+    fn soles_stay_where_they_are_seen_from_the_torso() {
+        let mut m = Modification::default();
+        m.value.copy_from_slice(&[0.004, 0.01, -0.02, 0.0, -0.01, 0.03]);
+        let before = pose([0.0; 2], [0.0, 0.1, 0.77], 0.0);
+        let now = pose([0.12, -0.1], [0.09, 0.03, 0.76], 0.0);
+        let (was, turned) = (led(&m, &before, 0), m);
+        let other = led(&m, &before, 1);
+        take_up(&mut m, &before, &now);
+        for (foot, (place, rotation)) in [was, other].into_iter().enumerate() {
+            let (p, r) = led(&m, &now, foot);
+            assert!((p - place).norm() < 1e-12);
+            // What is left turns about the vertical, and is of second order.
+            let off = Rotation3::from_matrix_unchecked(r.transpose() * rotation);
+            assert!(off.angle() < 0.02, "{}", off.angle());
+        }
+        assert!((m.value[1] - turned.value[1]).abs() > 0.05, "the lean is taken up");
+        // Nothing to take up.
+        let same = m;
+        take_up(&mut m, &now, &now);
+        assert!((m.value - same.value).norm() < 1e-12 && (m.residue[0] - same.residue[0]).norm() < 1e-12);
+    }
+}

@@ -182,3 +182,6 @@ fn least(low: f64, high: f64, cost: impl Fn(f64) -> f64) -> f64 {
     }
     0.5 * (low + high)
 }
+
+#[cfg(test)]
+mod tests;

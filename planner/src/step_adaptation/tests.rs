@@ -1,0 +1,179 @@
+//! A landing is held against the pendulum itself, walked in small steps of time, and against a search on a grid.
+
+use super::*;
+use crate::footsteps::StepDemand;
+use crate::origin::PlanOrigin;
+use crate::skills::{Script, Skill};
+use crate::steps::StepParameters;
+use crate::walk::Builder;
+use config::gait::Reaction;
+use config::{Gait, Robot, root};
+use curves::Sample;
+use messages::{GaitState, LEFT, RIGHT};
+use std::f64::consts::FRAC_PI_2;
+
+/// \[1/s\]
+const W: f64 = 3.57;
+
+/// Lola's first steps on the spot, the room of her reaction, and a stance sole.
+fn walk() -> (PlannedWalk, Reaction, Sole) {
+    let gait = Gait::load(&root(None).join("gaits/lola.toml")).unwrap();
+    let robot = Robot::load(&root(None).join("robots/lola")).unwrap();
+    let soles = [0, 1].map(|i| Sole::new(robot.feet[i].support));
+    let (width, ahead) = (gait.step.width, gait.model.com_forward);
+    let from = PlanOrigin {
+        frame: PlanarPose::default(),
+        height: 0.0,
+        stance: RIGHT,
+        feet: [PlanarPose::default(), PlanarPose::new(0.0, width, 0.0)],
+        heights: [0.0; 2],
+        body: Sample::rest([ahead, 0.5 * width, gait.model.com_height]),
+        zmp: [ahead, 0.5 * width],
+        torso: Sample::rest([FRAC_PI_2, FRAC_PI_2, 0.0]),
+        pitch: [Sample::rest([0.0]); 2],
+        toes: [Sample::rest([0.0]); 2],
+        load_left: 0.5,
+        previous: StepParameters::on_the_spot(1.2),
+        width,
+        early: None,
+        inside: None,
+    };
+    let mut walk = PlannedWalk::new();
+    let wish = StepParameters::on_the_spot(1.2);
+    let demand = StepDemand {
+        from: &from,
+        state: GaitState::Starting,
+        wish,
+        share: 1.0,
+        skill: Skill::Walk,
+        script: Script::NONE,
+    };
+    Builder::new(&gait, soles).walk(&demand, &mut walk);
+    assert_eq!(walk.strides[0].stance, RIGHT);
+    (walk, gait.reaction.unwrap(), soles[RIGHT])
+}
+
+/// \[m\] Divergent component of the plan at `t` \[s\].
+fn planned(walk: &PlannedWalk, t: f64) -> [f64; 2] {
+    let c = walk.plan.body.sample(t);
+    [0, 1].map(|d| c.position[d] + c.velocity[d] / W)
+}
+
+/// \[m\] How far the divergent component is off, relative to the foot, where it lands: Euler steps of 0.1 ms over the
+/// zero-moment point of the plan's own motion, which is shifted within the sole as far as it helps.
+fn left_over(walk: &PlannedWalk, t: f64, error: [f64; 2], landing: &Landing, sole: &Sole) -> [f64; 2] {
+    let s = &walk.strides[0];
+    let (now, end) = (planned(walk, t), planned(walk, s.end));
+    let growth = (W * (s.end - t)).exp();
+    let to = [landing.pose.x - s.landing.x, landing.pose.y - s.landing.y];
+    std::array::from_fn(|d| {
+        let p = (end[d] - now[d] * growth) / (1.0 - growth);
+        let half = COUNTED * sole.half[d];
+        let [low, high] = [sole.center[d] - half, sole.center[d] + half];
+        let fall = |p: f64| {
+            let (mut xi, steps) = (now[d] + error[d], (landing.rest / 1e-4).round() as usize);
+            (0..steps).for_each(|_| xi += 1e-4 * W * (xi - p));
+            xi - end[d] - to[d]
+        };
+        // Linear in p: the best one lies where it vanishes, or at an end.
+        let [at_low, at_high] = [fall(low.min(p)), fall(high.max(p))];
+        if at_low * at_high <= 0.0 {
+            0.0
+        } else if at_low.abs() < at_high.abs() {
+            at_low
+        } else {
+            at_high
+        }
+    })
+}
+
+fn adapted(t: f64, error: [f64; 2]) -> (PlannedWalk, Sole, Option<Landing>) {
+    let (walk, rules, sole) = walk();
+    let foot = walk.plan.feet[LEFT].sample(t).position;
+    let body = Divergence { w: W, error };
+    let landing = adapt(&rules, &walk, (0, t), &body, [foot[0], foot[1]], &sole);
+    (walk, sole, landing)
+}
+
+/// Where it says that the landing catches the body, the pendulum is where the plan wants it over the foot that has landed.
+#[test]
+fn the_pendulum_is_caught_where_it_is_said_to_be() {
+    let (walk, rules, _) = walk();
+    let s = walk.strides[0];
+    let mut caught = 0;
+    for k in 0..200 {
+        let share = |n: usize| f64::from((k * n % 97) as u32) / 97.0;
+        let t = s.lift + (s.end - s.lift - rules.rest) * share(31);
+        let error = [0.3 * (share(17) - 0.5), 0.3 * (share(53) - 0.5)];
+        let (walk, sole, Some(landing)) = adapted(t, error) else { continue };
+        let off = left_over(&walk, t, error, &landing, &sole);
+        if landing.catches {
+            caught += 1;
+            for d in 0..2 {
+                assert!(
+                    off[d].abs() < rules.tolerance[d] + 2e-3,
+                    "{k}: {error:?} at {t:.3} s leaves {off:?}"
+                );
+            }
+        }
+        // Boxes.
+        let [near, far] = rules.width;
+        assert!(landing.pose.y >= near.min(s.landing.y) - 1e-12 && landing.pose.y <= far + 1e-12);
+        assert!(landing.rest >= rules.rest - 1e-9 && landing.rest <= s.end - t + 1e-9);
+    }
+    assert!(caught > 60, "{caught} of 200");
+}
+
+/// A push towards the swing foot: it lands farther out and earlier. Over the stance foot: not across it. None: as planned.
+#[test]
+fn a_foot_lands_where_the_body_falls() {
+    let (walk, rules, _) = walk();
+    let s = walk.strides[0];
+    let t = s.lift + 0.3 * (s.end - s.lift);
+    let out = adapted(t, [0.0, 0.08]).2.unwrap();
+    assert!(out.pose.y > s.landing.y + 0.02 && out.rest < s.end - t - 0.05, "{out:?}");
+    let over = adapted(t, [0.0, -0.2]).2.unwrap();
+    assert!(over.pose.y >= rules.width[0] - 1e-12 && over.pose.y < s.landing.y, "{over:?}");
+    let ahead = adapted(t, [0.15, 0.0]).2.unwrap();
+    let back = adapted(t, [-0.15, 0.0]).2.unwrap();
+    assert!(ahead.pose.x > s.landing.x && back.pose.x < s.landing.x, "{ahead:?} {back:?}");
+    assert_eq!(adapted(t, [0.0; 2]).2, None);
+    assert_eq!(adapted(t, [0.9 * rules.error; 2]).2, None, "that is the stabilizer's");
+    assert_eq!(adapted(s.end - 0.5 * rules.rest, [0.3; 2]).2, None, "too late for another foothold");
+}
+
+/// No landing on a fine grid is better.
+#[test]
+fn the_search_finds_the_best_landing() {
+    let (walk, rules, sole) = walk();
+    let s = walk.strides[0];
+    for (share, error) in [(0.1, [0.05, 0.06]), (0.5, [-0.1, 0.1]), (0.7, [0.2, -0.12])] {
+        let t = s.lift + share * (s.end - s.lift);
+        let foot = walk.plan.feet[LEFT].sample(t).position;
+        let body = Divergence { w: W, error };
+        let found = adapt(&rules, &walk, (0, t), &body, [foot[0], foot[1]], &sole).unwrap();
+        let cost = |landing: &Landing| {
+            let off = left_over(&walk, t, error, landing, &sole);
+            let moved = [landing.pose.x - s.landing.x, landing.pose.y - s.landing.y];
+            let late = s.end - t - landing.rest;
+            (0..2).map(|d| moved[d].powi(2) + OFFSET * off[d].powi(2)).sum::<f64>() + HASTE * late * late
+        };
+        let best = cost(&found);
+        for k in 0..21 * 21 * 21 {
+            let at = |n: i32| f64::from(k / n % 21) / 20.0;
+            let reach = rules.speed * (s.end - t);
+            let x = foot[0] + reach * (2.0 * at(1) - 1.0);
+            let y = rules.width[0] + at(21) * (rules.width[1] - rules.width[0]);
+            let shortest = rules.rest.max(rules.swing - (t - s.lift));
+            let rest = shortest + at(441) * (s.end - t - shortest);
+            let near = |u: f64, foot: f64| (u - foot).abs() <= rules.speed * rest;
+            let inside = x >= rules.length[0] && x <= rules.length[1] && near(x, foot[0]) && near(y, foot[1]);
+            let pose = PlanarPose { x, y, ..s.landing };
+            let other = cost(&Landing { pose, rest, catches: false });
+            assert!(
+                !inside || other > best - 1e-4,
+                "{x:.3} {y:.3} {rest:.3}: {other} beats {best} of {found:?}"
+            );
+        }
+    }
+}
