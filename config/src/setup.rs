@@ -148,8 +148,11 @@ impl Setup {
         }
         // Names of joints and local controllers in plant mismatch and bus faults.
         let mismatch = &scene.plant_mismatch;
-        let named =
-            [("joint_offset_rad", &mismatch.joint_offset), ("drive_clock_ppm", &mismatch.drive_clock)];
+        let named = [
+            ("joint_offset_rad", &mismatch.joint_offset),
+            ("drive_clock_ppm", &mismatch.drive_clock),
+            ("mass_factor", &mismatch.mass_factor),
+        ];
         for (key, (name, _)) in named.iter().flat_map(|(key, of)| of.own.iter().map(move |own| (key, own))) {
             if !joints.contains(&name.as_str()) {
                 let near = nearest(name, &joints).unwrap_or("none");

@@ -39,6 +39,7 @@ impl SimulatedBody {
         let pose = &robot.poses[&scene.start_pose];
         let real = with_plant_mismatch(robot, scene);
         let mut plant = Plant::new(&real, terrain::environment(scene)?, scene.components(), pose)?;
+        plant.weigh(&scene.plant_mismatch)?;
         plant.set_friction_ramp(scene.friction_ramp);
         let state = match &scene.crane {
             None => plant.standing(pose),
@@ -175,7 +176,7 @@ impl SimulatedBody {
     }
 }
 
-/// The robot as it is, where that is not what its software believes.
+/// The soles as they are, where that is not what the robot's software believes.
 fn with_plant_mismatch(robot: &Robot, scene: &Scene) -> Robot {
     let (mut robot, factor) = (robot.clone(), scene.plant_mismatch.contact_stiffness);
     robot.contact.normal_stiffness *= factor;

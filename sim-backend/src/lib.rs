@@ -47,6 +47,7 @@ mod joints;
 pub mod layout;
 mod loads;
 mod local_control;
+mod masses;
 pub mod plant;
 pub mod power;
 mod resolution;

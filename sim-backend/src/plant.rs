@@ -8,6 +8,7 @@ mod observation;
 use std::error::Error;
 
 use config::components::JointModel;
+use config::plant_mismatch::PlantMismatch;
 use config::{Components, Robot};
 use environment::Environment;
 use multibody::{Data, Model};
@@ -20,6 +21,7 @@ use crate::inputs::DriveSwitches;
 pub use crate::inputs::PlantInputs;
 pub use crate::layout::orientation;
 use crate::layout::{StateLayout, quaternion_rate};
+use crate::masses;
 use crate::shaft::TrainInputs;
 use crate::train::{Train, TrainFault, rotors};
 
@@ -118,6 +120,15 @@ impl Plant {
         };
         let scratch = Scratch::new(&model);
         Ok(Self { model, data, components, layout, ground, joints, moving, scratch })
+    }
+
+    /// Bodies that do not weigh what they are described to; drives stay tuned to the described ones.
+    ///
+    /// # Errors
+    /// A body would have an inertia that does not exist.
+    pub(crate) fn weigh(&mut self, mismatch: &PlantMismatch) -> Result<(), multibody::ModelError> {
+        self.model = masses::with_mismatch(self.model.clone(), mismatch)?;
+        Ok(())
     }
 
     /// Components.

@@ -6,13 +6,14 @@ use config::Scene;
 use config::terrain::{ObjectShape, TerrainObject, TerrainPose};
 use environment::{Environment, Mesh, Object, Pose, Schedule};
 
-/// Flat ground, tilted if the scene says so, with the objects of a scene.
+/// Flat ground, lower or tilted if the scene says so, with the objects of a scene.
 ///
 /// # Errors
 /// A mesh cannot be read.
 pub fn environment(scene: &Scene) -> Result<Environment, Box<dyn Error>> {
     let objects = scene.objects.iter().map(object).collect::<Result<Vec<_>, _>>()?;
-    Ok(Environment::new(objects).tilted(scene.plant_mismatch.ground_tilt))
+    let mismatch = &scene.plant_mismatch;
+    Ok(Environment::new(objects).at_height(mismatch.ground_height).tilted(mismatch.ground_tilt))
 }
 
 fn object(o: &TerrainObject) -> Result<Object, Box<dyn Error>> {

@@ -20,6 +20,8 @@ pub struct Object {
     pub(crate) clock: f64,
     /// Its next change is waiting.
     pub(crate) refused: bool,
+    /// \[m\] @world Height of the ground it lies on.
+    ground: f64,
     pose: Pose,
     /// world_from_mesh
     rotation: Matrix3<f64>,
@@ -57,6 +59,7 @@ impl Object {
             mesh,
             friction,
             schedule,
+            ground: 0.0,
             pose,
         };
         object.place(pose);
@@ -88,6 +91,12 @@ impl Object {
         &self.bounds
     }
 
+    /// From now on the ground is at `height` \[m\] @world.
+    pub(crate) fn lie_on(&mut self, height: f64) {
+        self.ground = height;
+        self.place(self.pose);
+    }
+
     pub(crate) fn place(&mut self, pose: Pose) {
         self.pose = pose;
         self.rotation = pose.rotation.to_rotation_matrix().into_inner();
@@ -96,7 +105,7 @@ impl Object {
         self.bounds = Bounds::of(self.mesh.triangles().iter().flat_map(|t| t.corners.map(world)));
         self.any_buried = false;
         for (i, t) in self.mesh.triangles().iter().enumerate() {
-            self.buried[i] = t.corners.iter().all(|v| world(*v).z <= FLUSH);
+            self.buried[i] = t.corners.iter().all(|v| world(*v).z <= self.ground + FLUSH);
             self.floor[i] = (rotation * t.normal).z >= STANDABLE;
             self.any_buried |= self.buried[i];
         }

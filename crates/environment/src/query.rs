@@ -18,7 +18,7 @@ pub const REACH: f64 = 0.01;
 pub enum Surface {
     /// Nothing within reach: the gap is a lower bound, the normal points up.
     Far,
-    /// The plane z = 0.
+    /// The ground: the plane z = 0, unless it is tilted or at another height.
     Ground,
     /// The object of this number.
     Object(usize),
@@ -57,6 +57,8 @@ pub struct Environment {
     pub(crate) time: f64,
     /// \[1\] Normal of the ground, if it is tilted.
     pub(crate) up: Option<[f64; 3]>,
+    /// \[m\] @world Height of the ground below or above the origin.
+    pub(crate) height: f64,
 }
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
@@ -70,13 +72,21 @@ impl Environment {
     /// The plane z = 0 with `objects`, as they are at time 0.
     pub fn new(objects: Vec<Object>) -> Self {
         let events = Vec::with_capacity(2 * objects.len());
-        Self { objects, events, time: 0.0, up: None }
+        Self { objects, events, time: 0.0, up: None, height: 0.0 }
     }
 
-    /// The same with the ground turned about the origin: `roll` \[rad\] about x, then `pitch` about y.
+    /// The same with the ground turned about the point of it that is above or below the origin: `roll` \[rad\] about x, then `pitch` about y.
     pub fn tilted(mut self, [roll, pitch]: [f64; 2]) -> Self {
         let up = [pitch.sin() * roll.cos(), -roll.sin(), pitch.cos() * roll.cos()];
         self.up = (up != UP).then_some(up);
+        self
+    }
+
+    /// The same with the ground at `height` \[m\] over the origin: below zero, objects can have faces to stand on at z = 0 and
+    /// end in a drop.
+    pub fn at_height(mut self, height: f64) -> Self {
+        self.height = height;
+        self.objects.iter_mut().for_each(|object| object.lie_on(height));
         self
     }
 
@@ -97,9 +107,9 @@ impl Environment {
     #[inline]
     pub fn query(&self, p: [f64; 3]) -> Hit {
         let ground = match self.up {
-            None => Hit { gap: p[2], normal: UP, surface: Surface::Ground },
+            None => Hit { gap: p[2] - self.height, normal: UP, surface: Surface::Ground },
             Some(n) => {
-                let gap = p[0] * n[0] + p[1] * n[1] + p[2] * n[2];
+                let gap = p[0] * n[0] + p[1] * n[1] + (p[2] - self.height) * n[2];
                 Hit { gap, normal: n, surface: Surface::Ground }
             }
         };

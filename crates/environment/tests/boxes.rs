@@ -36,6 +36,26 @@ fn tilted_ground_is_the_distance_to_its_plane() {
     assert!(board.advance(1.0, &[false], &[]).is_empty());
 }
 
+/// A platform over ground that lies lower: its top, flush with the origin, is a surface to stand on, and beside it is the drop.
+#[test]
+fn ground_below_the_origin_leaves_a_drop_beside_a_platform() {
+    let platform = object("platform", [2.0, 2.0, 0.5], Pose::new([0.0, 0.0, -0.25], [0.0; 3]));
+    let environment = Environment::new(vec![platform]).at_height(-0.04);
+    for (p, surface, gap) in [
+        ([0.5, 0.0, -1e-3], Surface::Object(0), -1e-3),
+        ([0.5, 0.0, 2e-3], Surface::Object(0), 2e-3),
+        ([1.02, 0.0, -0.041], Surface::Ground, -1e-3),
+        ([3.0, 0.0, 0.0], Surface::Ground, 0.04),
+    ] {
+        let hit = environment.query(p);
+        assert_eq!(hit.surface, surface, "{p:?}");
+        assert!((hit.gap - gap).abs() < 1e-12 && hit.normal == [0.0, 0.0, 1.0], "{p:?}: {hit:?}");
+    }
+    let tilted = Environment::flat().at_height(-0.3).tilted([0.0, 0.1]);
+    assert!(tilted.query([1.0, 0.0, -0.3 - 0.1_f64.tan()]).gap.abs() < 1e-15);
+    assert_eq!(Environment::flat().at_height(0.0).query([1.0; 3]), Environment::flat().query([1.0; 3]));
+}
+
 /// Signed distance to a box of half extent `h` at the origin.
 fn box_distance(p: [f64; 3], h: [f64; 3]) -> f64 {
     let q: [f64; 3] = std::array::from_fn(|i| p[i].abs() - h[i]);

@@ -21,6 +21,7 @@
 //! # Ok::<(), multibody::ModelError>(())
 //! ```
 
+mod altered;
 mod body;
 mod builder;
 mod centroid;

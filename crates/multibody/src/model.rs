@@ -64,15 +64,22 @@ impl Frame {
 
 impl Model {
     pub(crate) fn new(bodies: Vec<Body>, links: Vec<NamedLink>, joint_names: Vec<String>) -> Model {
-        let mut carried: Vec<f64> = bodies.iter().map(|b| b.m).collect();
-        for k in (1..bodies.len()).rev() {
-            carried[bodies[k].parent] += carried[k];
-        }
         let own = bodies.iter().map(Body::own).collect();
         let paths = Paths::new(&bodies);
         let subtrees = Subtrees::new(&bodies, &paths);
-        let (rotor_names, gyros) = (Vec::new(), Vec::new());
-        Model { bodies, own, links, joint_names, carried, paths, subtrees, rotor_names, gyros }
+        let (carried, rotor_names, gyros) = (Vec::new(), Vec::new(), Vec::new());
+        let mut model =
+            Model { bodies, own, links, joint_names, carried, paths, subtrees, rotor_names, gyros };
+        model.weigh();
+        model
+    }
+
+    /// Sums up what each body carries.
+    pub(crate) fn weigh(&mut self) {
+        self.carried = self.bodies.iter().map(|b| b.m).collect();
+        for k in (1..self.bodies.len()).rev() {
+            self.carried[self.bodies[k].parent] += self.carried[k];
+        }
     }
 
     /// Number of joints n.
@@ -98,6 +105,11 @@ impl Model {
     /// \[kg\] Mass of the whole robot.
     pub fn mass(&self) -> f64 {
         self.carried[0]
+    }
+
+    /// Names of the joints by their indices.
+    pub fn joint_names(&self) -> &[String] {
+        &self.joint_names
     }
 
     /// Index of a joint (0..n); its coordinate is q\[7 + i\], its speed v\[6 + i\].
