@@ -8,13 +8,13 @@ use chain::ending::{Ending, WalkEnd};
 use chain::{Chain, parallel};
 use config::Setup;
 use config::gait::CommandLimits;
-use config::method::{Integrator, Method};
 use messages::command::{StepCommand, VelocityCommand};
 use messages::{Command, EventCode, GaitState, Process};
 use serde::Serialize;
 
 use crate::random::Random;
 use crate::sheet::{Column, plain};
+use crate::undisturbed::{STEP, on_type};
 use crate::way::Way;
 use crate::{Error, Given, Sheet, Study};
 
@@ -96,12 +96,9 @@ impl Study for RandomCommands {
     }
 }
 
-/// The scene on another type, with the steps that type is walked with, and without commands of its own.
+/// The scene on another type, and without commands of its own.
 fn of_type(mut setup: Setup, depth: u8) -> Setup {
-    let (integrator, step) =
-        if depth == 1 { (Integrator::Euler, 1e-3) } else { (Integrator::SemiImplicit, 2.5e-4) };
-    let substeps = (setup.scene.cycle / step).round().max(1.0) as u32;
-    setup.scene.choose(Method { depth, integrator, substeps });
+    on_type(&mut setup, depth, if depth == 1 { 1e-3 } else { STEP });
     setup.scene.commands.retain(|(_, command)| matches!(command, Command::Stand));
     setup.scene.pushes.clear();
     setup

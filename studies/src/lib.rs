@@ -15,6 +15,7 @@ pub mod commands;
 pub mod components;
 pub mod cycles;
 pub mod figures_of_thesis;
+pub mod ground;
 mod joint_bench;
 pub mod limits;
 pub mod lines;
@@ -32,6 +33,7 @@ pub mod stability;
 pub mod stalls;
 pub mod tables;
 pub mod tune;
+mod undisturbed;
 mod way;
 
 use std::path::Path;
@@ -80,6 +82,8 @@ macro_rules! studies {
 studies! {
     /// Which impulse the walking robot survives.
     Push: push::Push,
+    /// How often the robot walks over ground that it was not told of, and as a robot that differs from what it was told.
+    Ground: ground::GroundStudy,
     /// How many random timelines of commands the robot walks to their ends.
     Commands: commands::RandomCommands,
     /// Which disturbances and errors a gait survives: pushes, wrong sensors, wrong ground, delay.

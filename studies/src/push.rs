@@ -1,31 +1,25 @@
 //! Which impulse does the walking robot survive? Bisection, at several instants of a stride.
 //!
-//! A push of 0.1 s at the torso's origin. Survived: `AFTER` later the robot has not fallen, no process has stopped it, and
+//! A push of 0.1 s at the torso's origin. Survived: 6 s later the robot has not fallen, no process has stopped it, and
 //! over the next stride it goes as far, as far sideways and as much round as it did before. The way it walks repeats
 //! with every stride of two steps, so the instants are drawn from one stride.
 
 use config::Setup;
 use messages::command::PushCommand;
-use messages::{Command, EventCode, GaitState, LEFT, RIGHT};
 use serde_json::json;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use chain::Chain;
 use chain::parallel;
-use chain::{Chain, Cycle};
 
 use crate::random::Random;
 use crate::search::{Width, border};
 use crate::sheet::{Column, fixed, plain};
-use crate::way::Way;
+use crate::undisturbed::{AFTER, Stride, ended, stride, walk_on};
 use crate::{Error, Given, Sheet, Study};
 
 /// \[s\] Length of a push.
 const DURATION: f64 = 0.1;
-/// \[s\] How long the robot must go on after it, before its gait is looked at.
-const AFTER: f64 = 6.0;
-/// Share of its way by which a stride may differ from the undisturbed one, and \[m, m, rad\] what is allowed besides:
-/// 10 mm/s, for a walk on the spot too.
-const BACK: (f64, [f64; 3]) = (0.05, [0.02, 0.02, 0.02]);
 /// \[s\] When the stride that is disturbed begins at the earliest: the gait is periodic by then.
 const SETTLED: f64 = 8.0;
 /// \[N s\] Bisection ends with brackets this narrow.
@@ -77,15 +71,6 @@ pub(crate) struct Instant {
     pub(crate) chain: Chain,
     /// Its stride.
     stride: Stride,
-}
-
-/// A stride of the undisturbed walk.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Stride {
-    /// Ticks in which it begins and ends.
-    pub(crate) ticks: [u64; 2],
-    /// \[m, m, rad\] Its way: see [`Way`].
-    way: [f64; 3],
 }
 
 impl Study for Push {
@@ -163,45 +148,6 @@ fn at_shares(setup: &Setup, shares: &[f64]) -> Result<Vec<Instant>, Error> {
     Ok(found)
 }
 
-/// Leaves out what would disturb or end the walk of a scene; its strides after `settled` \[s\] can be watched.
-pub(crate) fn walk_on(setup: &mut Setup, settled: f64) {
-    setup.scene.pushes.clear();
-    setup.scene.commands.retain(|(_, command)| *command != Command::Stop);
-    setup.scene.duration = setup.scene.duration.max(settled + 10.0);
-}
-
-/// The first stride after `settled` \[s\].
-pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<Stride, Error> {
-    let mut chain = Chain::new(setup)?;
-    let (mut stance, mut begins, mut way) = (LEFT, Vec::new(), Way::default());
-    for tick in 1..=(setup.scene.duration / setup.scene.cycle) as u64 {
-        let c = chain.step();
-        if c.sim_state.fallen == 1 {
-            return Err(format!("scene {}: the robot falls without a push", setup.scene.name).into());
-        }
-        let (now, gait) = (c.controller_state.load_left, GaitState::from(c.controller_state.gait));
-        // A stride begins where the right foot takes all of the load from the left one.
-        let carries = if now >= 1.0 {
-            LEFT
-        } else if now <= 0.0 {
-            RIGHT
-        } else {
-            stance
-        };
-        if carries == RIGHT && stance == LEFT && gait == GaitState::Walking && c.sim_state.time >= settled {
-            begins.push(tick);
-        }
-        stance = carries;
-        if !begins.is_empty() {
-            way.add(&c.sim_state, setup.scene.cycle);
-        }
-        if let [begin, end] = begins[..] {
-            return Ok(Stride { ticks: [begin, end], way: way.gone });
-        }
-    }
-    Err(format!("scene {}: no whole stride of walking after {settled} s", setup.scene.name).into())
-}
-
 /// Largest impulse \[N s\] in a direction that is known to be survived; brackets are `coarse` times as wide as [`RESOLUTION`].
 ///
 /// # Errors
@@ -227,37 +173,13 @@ fn survives(start: &Instant, direction: [f64; 2], impulse: f64) -> bool {
     let [x, y] = direction.map(|d| d * impulse / DURATION);
     chain.push(&PushCommand { force: [x, y, 0.0], duration: DURATION });
     let goes_on = (0..((DURATION + AFTER) / chain.cycle()) as u64).all(|_| !ended(chain.step()));
-    goes_on && start.stride.is_repeated(&mut chain)
-}
-
-impl Stride {
-    /// Whether the robot walks, and its next stride is like this one, whatever its phase.
-    fn is_repeated(&self, chain: &mut Chain) -> bool {
-        let (mut way, cycle) = (Way::default(), chain.cycle());
-        for _ in 0..self.ticks[1] - self.ticks[0] {
-            let c = chain.step();
-            let walks = GaitState::from(c.controller_state.gait) == GaitState::Walking && c.power.on == 1;
-            if ended(c) || !walks {
-                return false;
-            }
-            way.add(&c.sim_state, cycle);
-        }
-        let (share, besides) = BACK;
-        (0..3).all(|i| (way.gone[i] - self.way[i]).abs() <= share * self.way[i].abs() + besides[i])
-    }
-}
-
-/// Whether the robot fell in this cycle, or a process stopped it.
-pub(crate) fn ended(cycle: &Cycle) -> bool {
-    let ends = |code| {
-        matches!(code, EventCode::Fallen | EventCode::Lifted | EventCode::SafeStop | EventCode::PowerOff)
-    };
-    cycle.sim_state.fallen == 1 || cycle.events.iter().any(|&(_, code, _)| ends(code))
+    goes_on && start.stride.is_repeated(&mut chain, |_| ())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use messages::Command;
     use messages::command::VelocityCommand;
 
     #[test]
@@ -286,7 +208,7 @@ mod tests {
             let mut chain = start.chain.clone();
             command.iter().for_each(|command| chain.command(command));
             (0..4000).for_each(|_| _ = chain.step());
-            start.stride.is_repeated(&mut chain)
+            start.stride.is_repeated(&mut chain, |_| ())
         };
         let speed = |forward| Command::Velocity(VelocityCommand { forward, left: 0.0, turn: 0.0 });
         assert!(after(None));

@@ -10,7 +10,7 @@ use messages::command::VelocityCommand;
 use messages::{Command, GaitState, JointTargets, MAX_JOINTS, SimState};
 
 use super::TILT;
-use crate::{Error, push};
+use crate::{Error, undisturbed};
 
 /// \[s\] The walk begins; the robot stands still at the end of a scene, after the last double support.
 pub(super) const BEGIN: f64 = 3.0;
@@ -152,7 +152,7 @@ pub(super) fn walk_with(
         landings.see(state);
         walked.tilt = walked.tilt.max(tilt(state));
         (walked.rests, walked.time) = (gait.rests(), state.time);
-        if push::ended(cycle) || !(walked.tilt < 2.0 * TILT) {
+        if undisturbed::ended(cycle) || !(walked.tilt < 2.0 * TILT) {
             break;
         }
     }

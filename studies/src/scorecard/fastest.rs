@@ -1,8 +1,9 @@
 //! As fast as it goes: a ladder of speeds upwards, and the edge between the last that is held and the first that is not.
 
 use super::entries::FASTEST;
-use super::walk::{set_up, walk, walk_at};
+use super::walk::{set_up, walk};
 use super::{Result, ScorecardOptions, ScorecardRow};
+use crate::undisturbed::walk_at;
 
 /// \[km/h\] Rungs; the last one is Lola's design speed.
 const LADDER: [f64; 5] = [3.34, 3.6, 4.0, 4.5, 5.0];

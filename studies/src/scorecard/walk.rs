@@ -4,11 +4,12 @@ use ::drives::Sampling;
 use config::Setup;
 use config::method::Integrator;
 use config::method::Method;
-use messages::{Command, EventCode, Process};
+use messages::{EventCode, Process};
 use realtime::clock::thread_time;
 
 use super::entries::ScorecardEntry;
 use super::{Result, ScorecardOptions, ScorecardRow};
+use crate::undisturbed::walk_at;
 use chain::Chain;
 use chain::figures::{Figures, Gatherer};
 
@@ -45,15 +46,6 @@ pub(super) fn set_up(order: &ScorecardOptions<'_>, scene: &str, depth: u8, cycle
     setup.scene.cycle = cycle;
     setup.scene.seed = order.seed;
     Ok(setup)
-}
-
-/// Walks forward at this speed \[km/h\] from the scene's own velocity command on.
-pub(super) fn walk_at(setup: &mut Setup, kmh: f64) {
-    for (_, command) in &mut setup.scene.commands {
-        if let Command::Velocity(velocity) = command {
-            velocity.forward = kmh / 3.6;
-        }
-    }
 }
 
 /// One walk.

@@ -21,8 +21,8 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::Serialize;
 
 use super::poincare::{self, Multipliers, Verdict};
-use crate::push::{stride, walk_on};
 use crate::sheet::{Column, fixed, plain, scientific};
+use crate::undisturbed::{stride, walk_on};
 use crate::{Error, Given, Sheet, Study};
 use chain::Chain;
 

@@ -26,7 +26,7 @@ use super::errors::{ErrorSource, kinds};
 use super::picture;
 use crate::search::{NoBorder, Width, border};
 use crate::sheet::{Column, fixed, plain};
-use crate::{Error, Given, Sheet, Study, push};
+use crate::{Error, Given, Sheet, Study, push, undisturbed};
 use chain::Chain;
 use chain::ending::{Ending, WalkEnd};
 use chain::parallel;
@@ -359,7 +359,7 @@ fn walk(setup: &Setup) -> Result<Walked, String> {
         gait = if state.fallen == 1 { GaitState::Fallen } else { cycle.controller_state.gait.into() };
         ending.see(state.time, state.power == 1, gait);
         way = [0, 1].map(|k| way[k] + state.velocity[k] * setup.scene.cycle);
-        if push::ended(cycle) {
+        if undisturbed::ended(cycle) {
             break;
         }
     }

@@ -1,0 +1,110 @@
+//! The undisturbed walk of a scene: on which type and how fast, its stride, and whether another walk still is like it.
+//!
+//! One rule for all studies that disturb a walk: the robot is on its feet and supplied, it walks, and over one stride
+//! it gets as far, as far sideways and as much round as it did undisturbed. To be on one's feet is not enough.
+
+use chain::{Chain, Cycle};
+use config::Setup;
+use config::method::{Integrator, Method};
+use messages::{Command, EventCode, GaitState, LEFT, RIGHT};
+
+use crate::Error;
+use crate::way::Way;
+
+/// Share of its way by which a stride may differ from the undisturbed one, and \[m, m, rad\] what is allowed besides:
+/// 10 mm/s, for a walk on the spot too.
+const BACK: (f64, [f64; 3]) = (0.05, [0.02, 0.02, 0.02]);
+/// \[s\] How long the robot must go on after a disturbance, before its gait is looked at.
+pub(crate) const AFTER: f64 = 6.0;
+/// \[s\] Integration steps with which walks of all types are the same but for millimetres.
+pub(crate) const STEP: f64 = 2.5e-4;
+
+/// A stride of the undisturbed walk.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stride {
+    /// Ticks in which it begins and ends.
+    pub(crate) ticks: [u64; 2],
+    /// \[m, m, rad\] Its way: see [`Way`].
+    way: [f64; 3],
+}
+
+/// Simulates the scene on another type, with steps of this length \[s\].
+pub(crate) fn on_type(setup: &mut Setup, depth: u8, step: f64) {
+    let integrator = if depth == 1 { Integrator::Euler } else { Integrator::SemiImplicit };
+    let substeps = (setup.scene.cycle / step).round().max(1.0) as u32;
+    setup.scene.choose(Method { depth, integrator, substeps });
+}
+
+/// Walks forward at this speed \[km/h\] from the scene's own velocity command on.
+pub(crate) fn walk_at(setup: &mut Setup, kmh: f64) {
+    for (_, command) in &mut setup.scene.commands {
+        if let Command::Velocity(velocity) = command {
+            velocity.forward = kmh / 3.6;
+        }
+    }
+}
+
+/// Leaves out what would disturb or end the walk of a scene; its strides after `settled` \[s\] can be watched.
+pub(crate) fn walk_on(setup: &mut Setup, settled: f64) {
+    setup.scene.pushes.clear();
+    setup.scene.commands.retain(|(_, command)| *command != Command::Stop);
+    setup.scene.duration = setup.scene.duration.max(settled + 10.0);
+}
+
+/// The first stride after `settled` \[s\].
+pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<Stride, Error> {
+    let mut chain = Chain::new(setup)?;
+    let (mut stance, mut begins, mut way) = (LEFT, Vec::new(), Way::default());
+    for tick in 1..=(setup.scene.duration / setup.scene.cycle) as u64 {
+        let c = chain.step();
+        if c.sim_state.fallen == 1 {
+            return Err(format!("scene {}: the robot falls without a push", setup.scene.name).into());
+        }
+        let (now, gait) = (c.controller_state.load_left, GaitState::from(c.controller_state.gait));
+        // A stride begins where the right foot takes all of the load from the left one.
+        let carries = if now >= 1.0 {
+            LEFT
+        } else if now <= 0.0 {
+            RIGHT
+        } else {
+            stance
+        };
+        if carries == RIGHT && stance == LEFT && gait == GaitState::Walking && c.sim_state.time >= settled {
+            begins.push(tick);
+        }
+        stance = carries;
+        if !begins.is_empty() {
+            way.add(&c.sim_state, setup.scene.cycle);
+        }
+        if let [begin, end] = begins[..] {
+            return Ok(Stride { ticks: [begin, end], way: way.gone });
+        }
+    }
+    Err(format!("scene {}: no whole stride of walking after {settled} s", setup.scene.name).into())
+}
+
+impl Stride {
+    /// Whether the robot walks, and its next stride, which `see` sees, is like this one, whatever its phase.
+    pub(crate) fn is_repeated(&self, chain: &mut Chain, mut see: impl FnMut(&Cycle)) -> bool {
+        let (mut way, cycle) = (Way::default(), chain.cycle());
+        for _ in 0..self.ticks[1] - self.ticks[0] {
+            let c = chain.step();
+            see(c);
+            let walks = GaitState::from(c.controller_state.gait) == GaitState::Walking && c.power.on == 1;
+            if ended(c) || !walks {
+                return false;
+            }
+            way.add(&c.sim_state, cycle);
+        }
+        let (share, besides) = BACK;
+        (0..3).all(|i| (way.gone[i] - self.way[i]).abs() <= share * self.way[i].abs() + besides[i])
+    }
+}
+
+/// Whether the robot fell in this cycle, or a process stopped it.
+pub(crate) fn ended(cycle: &Cycle) -> bool {
+    let ends = |code| {
+        matches!(code, EventCode::Fallen | EventCode::Lifted | EventCode::SafeStop | EventCode::PowerOff)
+    };
+    cycle.sim_state.fallen == 1 || cycle.events.iter().any(|&(_, code, _)| ends(code))
+}
