@@ -1,5 +1,4 @@
-//! Steps that react to pushes: they catch her where she would fall, do nothing to a walk that nobody disturbs, and do not
-//! let joints jump.
+//! Steps that react to pushes: they catch her where she would fall, and do nothing to a walk that nobody disturbs.
 
 use chain::Chain;
 use config::{Setup, root};
@@ -20,11 +19,10 @@ fn setup(scene: &str, reacts: bool) -> Setup {
 }
 
 /// Walks on for [`WATCHED`] after a push of `impulse` \[N s\] at `time` \[s\]; `None` if she falls or stops, otherwise how many
-/// steps were changed and the largest change of a joint's target speed in one cycle \[rad/s\].
-fn pushed(setup: &Setup, time: f64, impulse: [f64; 2]) -> Option<(usize, f64)> {
+/// steps were changed.
+fn pushed(setup: &Setup, time: f64, impulse: [f64; 2]) -> Option<usize> {
     let mut chain = Chain::new(setup).unwrap();
-    let cycle = chain.cycle();
-    let (mut adapted, mut jump, mut before) = (0, 0.0_f64, None);
+    let (cycle, mut adapted) = (chain.cycle(), 0);
     for tick in 0..((time + PUSH + WATCHED) / cycle) as u64 {
         if tick == (time / cycle) as u64 {
             let [x, y] = impulse.map(|i| i / PUSH);
@@ -33,17 +31,13 @@ fn pushed(setup: &Setup, time: f64, impulse: [f64; 2]) -> Option<(usize, f64)> {
         let c = chain.step();
         let changes = |code| matches!(code, EventCode::StepAdapted | EventCode::StepStretched);
         adapted += c.events.iter().filter(|(_, code, _)| changes(*code)).count();
-        let speed = c.joint_targets.speed;
-        if let Some(before) = before.replace(speed) {
-            jump = speed.iter().zip(&before).map(|(a, b): (&f64, &f64)| (a - b).abs()).fold(jump, f64::max);
-        }
         if c.sim_state.fallen == 1 {
             return None;
         }
     }
     let c = chain.step();
     let walks = GaitState::from(c.controller_state.gait) == GaitState::Walking && c.power.on == 1;
-    walks.then_some((adapted, jump))
+    walks.then_some(adapted)
 }
 
 /// Instants \[s\] of a stride of 2.4 s, drawn from a seed.
@@ -63,7 +57,7 @@ fn pushes_to_the_side_are_caught_by_steps() {
     let (mut caught, mut fell, mut adapted) = (0, 0, 0);
     for time in instants(11, 6) {
         for side in [impulse, -impulse] {
-            if let Some((steps, _)) = pushed(&with, time, [0.0, side]) {
+            if let Some(steps) = pushed(&with, time, [0.0, side]) {
                 caught += 1;
                 adapted += usize::from(steps > 0);
             }
@@ -82,22 +76,8 @@ fn a_walk_that_nobody_disturbs_is_the_same_with_the_reaction_armed() {
             let mut chain = Chain::new(&setup(scene, reacts)).unwrap();
             (0..(12.0 / chain.cycle()) as u64).for_each(|_| _ = chain.step());
             let angles = chain.step().joint_targets.angle.map(f64::to_bits);
-            (angles, chain.robot().integrated())
+            (angles, chain.robot().integrated().to_vec())
         });
         assert!(walked[0] == walked[1], "{scene}");
-    }
-}
-
-/// The plan begins at the measured pose, and joints go on where they are.
-#[test]
-fn joints_do_not_jump_where_a_plan_begins_inside_a_step() {
-    let setup = setup("push", true);
-    let undisturbed = pushed(&setup, 9.0, [0.0; 2]).unwrap();
-    assert_eq!(undisturbed.0, 0);
-    let impulse = 0.1 * setup.robot.total_mass;
-    for time in instants(3, 4) {
-        let (_, jump) = pushed(&setup, time, [0.0, impulse]).expect("caught");
-        println!("{time:.3} s: {jump:.3} rad/s, undisturbed {:.3} rad/s", undisturbed.1);
-        assert!(jump < 0.5, "{time} s: a joint's speed changes by {jump} rad/s in a cycle");
     }
 }
