@@ -140,11 +140,9 @@ impl Study for GroundStudy {
             reference.over(kind, size, self.seed + (k % each) as u64)
         });
         let failed = failed.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let of = |(place, failed): (&(&(GroundKind, f64), (&(u8, f64), &Reference)), &[Option<Failed>])| {
-            let (ground, (walk, _)) = *place;
-            row(*ground, *walk, failed)
-        };
-        let rows: Vec<Row> = rows.iter().zip(failed.chunks(each)).map(of).collect();
+        let rows = rows.iter().zip(failed.chunks(each));
+        let rows: Vec<Row> =
+            rows.map(|((ground, (walk, _)), failed)| row(**ground, **walk, failed)).collect();
         let mut sheet = Sheet::titled(format!(
             "Unknown ground at {each} random places, scene {}, seeds from {}",
             self.scene, self.seed

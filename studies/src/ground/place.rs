@@ -97,12 +97,12 @@ impl Masses {
                 masses.factors = (0..=MOST_JOINTS).map(|_| random.within([1.0 - size, 1.0 + size])).collect();
             }
             GroundKind::Weight => {
-                masses.factors = vec![if random.unit() < 0.5 { 1.0 - size } else { 1.0 + size }]
+                masses.factors = vec![if random.unit() < 0.5 { 1.0 - size } else { 1.0 + size }];
             }
             GroundKind::TorsoCog => masses.cog_shift = [(); 3].map(|()| random.within([-size, size])),
             _ => {
                 masses.payload =
-                    Some(Payload { mass: size, position: LOAD.map(|range| random.within(range)) })
+                    Some(Payload { mass: size, position: LOAD.map(|range| random.within(range)) });
             }
         }
         masses
