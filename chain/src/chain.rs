@@ -122,6 +122,11 @@ impl Chain {
         self.sim.push(push);
     }
 
+    /// Begins a push now, `above` \[m\] the torso's own centre of gravity along the torso's z axis.
+    pub fn push_above(&mut self, push: &messages::command::PushCommand, above: f64) {
+        self.sim.push_above(push, above);
+    }
+
     /// A live command: whoever hears its domain takes it in the next cycle that it runs.
     pub fn command(&mut self, command: &Command) {
         if let Command::Push(push) = command {

@@ -11,6 +11,8 @@ use crate::layout::orientation;
 pub struct ExternalForces {
     /// \[N\] @world Push at the torso's own centre of gravity.
     pub push: [f64; 3],
+    /// \[N m\] @world Moment of the push about that point, if it acts beside it.
+    pub push_moment: [f64; 3],
     /// Rope that holds the torso.
     pub rope: Option<Rope>,
 }
@@ -22,7 +24,7 @@ impl ExternalForces {
         let place = Vector3::from_column_slice(&x[..3]);
         let pushed = place + orientation(x) * model.base_cog();
         let push = Vector3::from(self.push);
-        let (mut force, mut moment) = (push, pushed.cross(&push));
+        let (mut force, mut moment) = (push, pushed.cross(&push) + Vector3::from(self.push_moment));
         if let Some(rope) = &self.rope {
             let (pull, at) = rope.in_state(x, speed);
             force += pull;

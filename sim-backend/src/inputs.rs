@@ -27,7 +27,7 @@ pub struct DriveSwitches {
 impl PlantInputs {
     /// No force from outside, all drives on.
     pub const POWERED: Self = Self {
-        forces: ExternalForces { push: [0.0; 3], rope: None },
+        forces: ExternalForces { push: [0.0; 3], push_moment: [0.0; 3], rope: None },
         switches: DriveSwitches { powered: true, off: 0, braked: 0, held: 0 },
     };
 }

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use crate::crane::CraneRope;
 use crate::drive::JointCubic;
 use crate::external_forces::ExternalForces;
+use crate::layout::orientation;
 use crate::plant::Plant;
 
 /// Loads on the torso of one robot.
@@ -14,8 +15,8 @@ use crate::plant::Plant;
 pub(crate) struct Loads {
     /// Pushes of the scene: begin \[s\], and what is pushed.
     scripted: Vec<(f64, PushCommand)>,
-    /// The newest push by command, and when it ends \[s\].
-    commanded: Option<(PushCommand, f64)>,
+    /// The newest push by command, when it ends \[s\], and how far above the torso's centre of gravity it acts \[m\].
+    commanded: Option<(PushCommand, f64, f64)>,
     crane: Option<CraneRope>,
 }
 
@@ -33,9 +34,9 @@ impl Loads {
         Self { scripted: scene.pushes.clone(), commanded: None, crane: None }
     }
 
-    /// Begins a push at `time` \[s\].
-    pub(crate) fn push(&mut self, push: &PushCommand, time: f64) {
-        self.commanded = Some((*push, time + push.duration));
+    /// Begins a push at `time` \[s\], `above` \[m\] the torso's own centre of gravity along the torso's z axis.
+    pub(crate) fn push(&mut self, push: &PushCommand, time: f64, above: f64) {
+        self.commanded = Some((*push, time + push.duration, above));
     }
 
     /// Lowers the crane from now on; whether there is one.
@@ -45,15 +46,26 @@ impl Loads {
 
     /// Forces during the cycle of `dt` \[s\] that begins at `time` \[s\] in this state.
     pub(crate) fn step(&mut self, time: f64, dt: f64, state: &[f64]) -> ExternalForces {
-        let push = self.push_at(time + 0.5 * dt); // mid-cycle: rounding adds no cycle and takes none
-        ExternalForces { push, rope: self.crane.as_mut().map(|crane| crane.step(state, dt)) }
+        let middle = time + 0.5 * dt; // mid-cycle: rounding adds no cycle and takes none
+        let (push, push_moment) = (self.push_at(middle), self.moment_at(middle, state));
+        ExternalForces { push, push_moment, rope: self.crane.as_mut().map(|crane| crane.step(state, dt)) }
+    }
+
+    /// Moment of the pushes at t \[s\] about the torso's own centre of gravity \[N m\].
+    fn moment_at(&self, t: f64, state: &[f64]) -> [f64; 3] {
+        let Some((push, _, above)) = self.commanded.filter(|(_, until, above)| t < *until && *above != 0.0)
+        else {
+            return [0.0; 3];
+        };
+        let arm = orientation(state) * Vector3::new(0.0, 0.0, above);
+        arm.cross(&Vector3::from(push.force)).into()
     }
 
     /// Sum of the pushes at t \[s\] \[N\].
     pub(crate) fn push_at(&self, t: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
         let scripted = self.scripted.iter().filter(|(at, p)| *at <= t && t < at + p.duration).map(|(_, p)| p);
-        let commanded = self.commanded.iter().filter(|(_, until)| t < *until).map(|(p, _)| p);
+        let commanded = self.commanded.iter().filter(|(_, until, _)| t < *until).map(|(p, ..)| p);
         for p in scripted.chain(commanded) {
             for k in 0..3 {
                 sum[k] += p.force[k];

@@ -103,7 +103,12 @@ impl SimBackend {
 
     /// Begins a push now.
     pub fn push(&mut self, push: &PushCommand) {
-        self.loads.push(push, self.time());
+        self.push_above(push, 0.0);
+    }
+
+    /// Begins a push now, `above` \[m\] the torso's own centre of gravity along the torso's z axis.
+    pub fn push_above(&mut self, push: &PushCommand, above: f64) {
+        self.loads.push(push, self.time(), above);
     }
 
     /// Lowers the crane from now on; whether there is one.

@@ -26,6 +26,8 @@ pub(crate) struct Stride {
     pub(crate) ticks: [u64; 2],
     /// \[m, m, rad\] Its way: see [`Way`].
     way: [f64; 3],
+    /// What the robot is doing over it.
+    gait: GaitState,
 }
 
 /// Simulates the scene on another type, with steps of this length \[s\].
@@ -49,6 +51,12 @@ pub(crate) fn walk_on(setup: &mut Setup, settled: f64) {
     setup.scene.pushes.clear();
     setup.scene.commands.retain(|(_, command)| *command != Command::Stop);
     setup.scene.duration = setup.scene.duration.max(settled + 10.0);
+}
+
+/// 2 s of standing after `settled` \[s\], to be held against like a stride.
+pub(crate) fn standing(setup: &Setup, settled: f64) -> Stride {
+    let ticks = [settled, settled + 2.0].map(|time| (time / setup.scene.cycle) as u64);
+    Stride { ticks, way: [0.0; 3], gait: GaitState::Standing }
 }
 
 /// The first stride after `settled` \[s\].
@@ -77,21 +85,21 @@ pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<Stride, Error> {
             way.add(&c.sim_state, setup.scene.cycle);
         }
         if let [begin, end] = begins[..] {
-            return Ok(Stride { ticks: [begin, end], way: way.gone });
+            return Ok(Stride { ticks: [begin, end], way: way.gone, gait: GaitState::Walking });
         }
     }
     Err(format!("scene {}: no whole stride of walking after {settled} s", setup.scene.name).into())
 }
 
 impl Stride {
-    /// Whether the robot walks, and its next stride, which `see` sees, is like this one, whatever its phase.
+    /// Whether the robot walks, or stands if it stood, and its next stride, which `see` sees, is like this one, whatever its phase.
     pub(crate) fn is_repeated(&self, chain: &mut Chain, mut see: impl FnMut(&Cycle)) -> bool {
         let (mut way, cycle) = (Way::default(), chain.cycle());
         for _ in 0..self.ticks[1] - self.ticks[0] {
             let c = chain.step();
             see(c);
-            let walks = GaitState::from(c.controller_state.gait) == GaitState::Walking && c.power.on == 1;
-            if ended(c) || !walks {
+            let goes_on = GaitState::from(c.controller_state.gait) == self.gait && c.power.on == 1;
+            if ended(c) || !goes_on {
                 return false;
             }
             way.add(&c.sim_state, cycle);

@@ -7,6 +7,7 @@
 
 mod footprint;
 mod kind;
+mod picture;
 mod place;
 mod terrain;
 #[cfg(test)]
@@ -14,6 +15,7 @@ mod tests;
 mod trial;
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use chain::parallel;
@@ -70,6 +72,9 @@ pub struct GroundStudy {
     /// Simulation types.
     #[arg(long, value_delimiter = ',', default_values_t = [1, 3], value_parser = clap::value_parser!(u8).range(1..=5))]
     pub types: Vec<u8>,
+    /// Directory of the picture; none is drawn without it.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// A number above zero.
@@ -148,6 +153,10 @@ impl Study for GroundStudy {
             self.scene, self.seed
         ));
         sheet.rows("rows", COLUMNS, &rows);
+        if let Some(out) = &self.out {
+            let about = format!("{each} random places each, scene {}, seeds from {}", self.scene, self.seed);
+            sheet.draw(out, "ground.png", &picture::rates(&rows, &about))?;
+        }
         Ok(sheet)
     }
 }
