@@ -20,6 +20,7 @@ pub const TOES: [Option<[f64; 2]>; 2] = [Some([-0.7767, 0.1623]), Some([-0.1885,
 pub fn gait() -> Gait {
     Gait {
         arm_swing: None,
+        reaction: None,
         pattern: None,
         step: StepSettings {
             width: 0.21,
