@@ -248,10 +248,13 @@ impl Balance {
 
         // Reference without modification, whose end is its start, moved on by two steps.
         let mut reference = ZmpProblem::new();
-        reference.hold(t[0], &shrunk[1 - stance], &f1);
-        reference.hold(swings[0].lift, &shrunk[stance], &f2);
-        reference.hold(t[1], &shrunk[stance], &f2);
-        reference.hold(swings[1].lift, &shrunk[1 - stance], &f3);
+        let first = shrunk[1 - stance].between(&f1, [&f2, &f2]);
+        let second = shrunk[stance].between(&f2, [&f1, &f3]);
+        let third = shrunk[1 - stance].between(&f3, [&f2, &f4]);
+        reference.hold(t[0], &first, &f1);
+        reference.hold(swings[0].lift, &second, &f2);
+        reference.hold(t[1], &second, &f2);
+        reference.hold(swings[1].lift, &third, &f3);
         reference.fix(t[2], [0.0; 2]);
         let found = reference.solve_periodic(&f1, &f3);
         let mut marks = Marks::from(t[0]);

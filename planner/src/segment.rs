@@ -199,7 +199,7 @@ fn begin(from: &PlanOrigin, t: f64, p: [f64; 2], first: bool) -> ZmpProblem {
 
 /// The stance foot holds the zero-moment point at the begin of the single support, or at both ends.
 fn hold(reference: &mut ZmpProblem, shrunk: &[Sole; 2], s: &Stride, both: bool) {
-    let sole = &shrunk[s.stance];
+    let sole = &shrunk[s.stance].between(&s.foothold, [&s.takeoff, &s.landing]);
     // A step that is running holds it at its end only.
     if s.lift > 0.0 {
         reference.hold(s.lift, sole, &s.foothold);

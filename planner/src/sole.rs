@@ -2,6 +2,9 @@
 
 use crate::pose::PlanarPose;
 
+/// Share of a sole's half length that a zero-moment point may use while steps lead neither forward nor back.
+const AT_REST: f64 = 0.25;
+
 /// Rectangle of a foot in its sole frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sole {
@@ -23,6 +26,18 @@ impl Sole {
     /// The rectangle with its edges drawn in by `margin` \[m\], but never by more than 0.9 of its half extent (gap 9).
     pub fn shrunk(&self, margin: f64) -> Self {
         Self { center: self.center, half: self.half.map(|h| (h - margin).max(0.1 * h)) }
+    }
+
+    /// The part of this sole at `pose` that a zero-moment point may use between steps from and to soles at `others`: lengthwise
+    /// about its middle, [`AT_REST`] of it and as far as the farther one of those is ahead or behind.
+    ///
+    /// A reference is as short as it can be, and on a circle whose centre lies ahead of the feet or behind them the shortest
+    /// way leads through tips or heels, at the inner edge. Slow steps would stand in a corner of the sole for all of their
+    /// single support, for a gain of millimetres.
+    pub fn between(&self, pose: &PlanarPose, others: [&PlanarPose; 2]) -> Self {
+        let ahead = others.map(|other| (pose.local(self.middle(other))[0] - self.center[0]).abs());
+        let length = AT_REST * self.half[0] + ahead[0].max(ahead[1]);
+        Self { center: self.center, half: [self.half[0].min(length), self.half[1]] }
     }
 
     /// The point of the rectangle at `pose` that is nearest to `p`.
