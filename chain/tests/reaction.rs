@@ -1,7 +1,7 @@
 //! Steps that react to pushes: they catch her where she would fall, and do nothing to a walk that nobody disturbs.
 
 use chain::Chain;
-use config::{Setup, root};
+use config::{Gait, Setup, root};
 use messages::command::PushCommand;
 use messages::{EventCode, GaitState};
 
@@ -12,8 +12,9 @@ const WATCHED: f64 = 6.0;
 fn setup(scene: &str, reacts: bool) -> Setup {
     let mut setup = Setup::load(&root(None), scene).unwrap();
     setup.scene.pushes.clear();
-    if !reacts {
-        setup.gait.reaction = None;
+    if reacts {
+        let gait = Gait::load(&root(None).join("gaits/lola_reacting.toml")).unwrap();
+        setup.gait.reaction = gait.reaction;
     }
     setup
 }
