@@ -11,7 +11,7 @@ pub(crate) type TorsoPath = Path<3, 16>;
 const RIGHTING: f64 = 0.4;
 
 /// Writes the path of the upper body: from `start`, at the end of each step half-way between the feet, at `end` at rest. One
-/// that leans at first is brought upright within [`RIGHTING`], whatever the steps are.
+/// that leans at first is brought upright within 0.4 s, whatever the steps are.
 pub fn follow(path: &mut TorsoPath, start: &Sample<3>, strides: &[Stride], end: f64) {
     path.restart(0.0, start.position);
     let mut lean = Path::<3, 1>::resting(0.0, [FRAC_PI_2, FRAC_PI_2, 0.0]);
