@@ -1,8 +1,8 @@
 //! Unknown ground: over how many random places of a kind does the robot walk, of which nobody has told it? And how often does a
 //! robot walk that does not weigh what its software believes?
 //!
-//! A place is drawn from its seed where the undisturbed walk steps ([`place`]), and becomes objects of the scene that the
-//! planner does not know ([`terrain`]). Walked: over it and 6 s further, on its feet, the supply on, and over the next
+//! A place is drawn from its seed where the undisturbed walk steps (`place`), and becomes objects of the scene that the
+//! planner does not know (`terrain`). Walked: over it and 6 s further, on its feet, the supply on, and over the next
 //! stride as far in each direction as without it.
 
 mod footprint;
@@ -57,7 +57,7 @@ pub struct GroundStudy {
     /// Kinds of ground; default: all.
     #[arg(long, value_delimiter = ',', value_enum)]
     pub kind: Vec<GroundKind>,
-    /// Heights [m], slopes [deg], shares of a sole or coefficients of friction [1], instead of those of each kind.
+    /// Heights (m), slopes (deg), shares of a sole or coefficients of friction (1), instead of those of each kind.
     #[arg(long, value_delimiter = ',', value_parser = size)]
     pub size: Vec<f64>,
     /// How many places of each kind and size.

@@ -64,13 +64,13 @@ pub struct Push {
     /// Simulation types instead of the scene's.
     #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=5))]
     pub types: Vec<u8>,
-    /// Bus cycles [ms] instead of the scene's.
+    /// Bus cycles (ms) instead of the scene's.
     #[arg(long, value_delimiter = ',', value_parser = cases::cycle)]
     pub cycles: Vec<f64>,
     /// Sensors instead of the scene's.
     #[arg(long, value_delimiter = ',', value_enum)]
     pub sensors: Vec<SensorChoice>,
-    /// How far above the torso's own centre of gravity the pushes act [m].
+    /// How far above the torso's own centre of gravity the pushes act (m).
     #[arg(long, value_delimiter = ',', default_values_t = [0.0], value_parser = cases::number)]
     pub height: Vec<f64>,
     /// How many instants of a stride are tried.
