@@ -1,6 +1,6 @@
 //! Whether a robot can walk a pattern: reach of its legs, ranges and speeds of their joints, feet that collide, soles in
 //! the ground. Checked on the walk itself, out of standing and into it, at every point of the drives' tables and at no fewer
-//! than [`LEAST_POINTS`] of a stride.
+//! than `LEAST_POINTS` of a stride.
 
 use crate::footsteps::StepDemand;
 use crate::origin::PlanOrigin;

@@ -29,7 +29,7 @@ impl Sole {
     }
 
     /// The part of this sole at `pose` that a zero-moment point may use between steps from and to soles at `others`: lengthwise
-    /// about its middle, [`AT_REST`] of it and as far as the farther one of those is ahead or behind.
+    /// about its middle, a quarter of it and as far as the farther one of those is ahead or behind.
     ///
     /// A reference is as short as it can be, and on a circle whose centre lies ahead of the feet or behind them the shortest
     /// way leads through tips or heels, at the inner edge. Slow steps would stand in a corner of the sole for all of their
