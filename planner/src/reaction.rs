@@ -25,8 +25,7 @@ impl Planner {
         let ahead = (start - state.header.tick) as f64 * cycle_s;
         let cycles = self.builder.model.cycles(landing.rest);
         let from = PlanOrigin::inside(&self.active, (k, t), (state, ahead), &landing.pose, (cycles, cycle_s));
-        let stays = gait != GaitState::Stopping || self.intent == Intent::Walk;
-        let to = if stays && self.intent == Intent::Walk { GaitState::Walking } else { GaitState::Stopping };
+        let to = if self.intent == Intent::Walk { GaitState::Walking } else { GaitState::Stopping };
         if !self.walk_on(&from, to, landing.catches) {
             return false;
         }

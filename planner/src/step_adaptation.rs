@@ -163,7 +163,7 @@ fn axes(
     })
 }
 
-/// Where `cost` is least between two ends, if it has one valley: by golden section.
+/// Minimum of `cost` between two ends, if it has one valley: by golden section.
 fn least(low: f64, high: f64, cost: impl Fn(f64) -> f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let (mut low, mut high) = (low, high);
