@@ -24,7 +24,9 @@ impl Folder {
         let dir = std::env::temp_dir().join(format!("gangwerk-installed-{name}-{}", std::process::id()));
         let _ = fs::remove_dir_all(&dir);
         fs::create_dir(&dir).unwrap();
-        fs::copy(EXE, dir.join("gangwerk")).unwrap();
+        // Copied by another process: a child forked by a test beside this one would inherit our descriptor of the file,
+        // and a file that is open for writing cannot be executed ("Text file busy").
+        assert!(Command::new("cp").arg(EXE).arg(&dir).status().unwrap().success());
         fs::set_permissions(&dir, fs::Permissions::from_mode(0o755)).unwrap();
         // As an ordinary user there is no other one to become: the rest holds all the same.
         let _ = chown(&dir, Some(NOBODY), Some(NOBODY));

@@ -357,6 +357,23 @@ fn what_the_software_is_not_told() {
 }
 
 #[test]
+fn masses_that_cannot_be() {
+    let masses = "seed = 1\n\
+                  [plant_mismatch]\n\
+                  ground_height = 0.1\n\
+                  mass_factor = { all = 0.0 }\n\
+                  payload = { mass = -8.0, position = [0.0, 0.0, 0.0] }";
+    let copy = Copy::new("masses").spoil("scenes/stand.toml", "seed = 1", masses);
+    let found = text(&copy.scene("stand"));
+    for key in ["ground_height: 0.1", "mass_factor.all: 0", "payload.mass: -8"] {
+        assert!(found.contains(&format!("plant_mismatch.{key} is not allowed")), "{key} in {found}");
+    }
+    let masses = "seed = 1\n[plant_mismatch]\nmass_factor = { right_kne_flexion = 1.1 }";
+    let copy = Copy::new("masses-joint").spoil("scenes/stand.toml", "seed = 1", masses);
+    assert!(text(&copy.scene("stand")).contains("plant_mismatch.mass_factor: robot lola has no joint"));
+}
+
+#[test]
 fn crane_that_cannot_be() {
     let crane = "seed = 1\n\
                  [crane]\n\

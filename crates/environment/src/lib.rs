@@ -1,4 +1,5 @@
-//! Environment of a robot: the plane z = 0 and rigid objects on it (thesis 2.3.2), and the distance of a point to them.
+//! Environment of a robot: a plane, z = 0 unless it is lower or tilted, and rigid objects on it (thesis 2.3.2), and the distance
+//! of a point to them.
 //!
 //! - [`Environment`]: ground and objects; [`Environment::query`] answers with gap, normal and what was hit.
 //! - [`Object`]: a [`Mesh`] with a pose; it may appear, move and vanish while nothing touches it.

@@ -21,9 +21,7 @@ const PENS: [(Color, bool); 8] = [
 
 /// One case, all directions; of a robot of this mass \[kg\].
 pub(super) fn polar(rows: &[Row], mass: f64) -> Figure {
-    let title =
-        "Impulse survived [N s/kg] over the stride; the angle is the share of the stride that has gone";
-    let mut chart = Chart::new(title, "[N s/kg]", "[N s/kg]").equal();
+    let mut chart = Chart::new("", "[N s/kg]", "[N s/kg]").equal();
     let most = rows.iter().flat_map(|row| &row.impulse_n_s).fold(0.0_f64, |most, x| most.max(x / mass));
     let ring = 10f64.powf((most / 2.0).log10().floor());
     let ring = [1.0, 2.0, 5.0].map(|x| x * ring).into_iter().rfind(|x| 2.0 * x <= most).unwrap_or(ring);
@@ -41,15 +39,16 @@ pub(super) fn polar(rows: &[Row], mass: f64) -> Figure {
         // Instants are in their order; the last one meets the first one again.
         let mut line: Vec<_> =
             row.share.iter().zip(&row.impulse_n_s).map(|(s, x)| at(*s, x / mass)).collect();
+        chart.dots("", line.clone(), 3.5, color);
         line.extend(line.first().copied());
         chart.styled(row.direction, line, Pen { color, width: 2.5, dashed });
     }
     let about = rows.first().map_or(String::new(), |row| {
         let (walk, depth, cycle) = (&row.walk, row.depth, 1e3 * row.cycle_s);
         format!(
-            "{walk}, type {depth}, cycle {cycle} ms, sensors {}, {} m above; 0 to the right: the right foot begins to carry",
+            "{walk}, type {depth}, cycle {cycle} ms, sensors {}, {} m above; angle: share of the stride, from the right foot's load on",
             row.sensors, row.above_m
         )
     });
-    Figure::new("Pushes survived", &about).with(chart)
+    Figure::new("Impulse survived over the stride, by direction", &about).with(chart)
 }
