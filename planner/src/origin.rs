@@ -141,14 +141,14 @@ impl PlanOrigin {
     }
 
     /// The robot as it is measured, inside the single support of step `k` of the active plan `walk`, at `t` \[s\], `ahead` \[s\]
-    /// after the measurement `state`; its foot lands at `landing` (@frame of that plan) after `cycles` of `cycle_s` \[s\].
+    /// after the measurement `state` with the zero-moment point at `zmp`; its foot lands at `landing` (@frame of that plan) after `cycles` of `cycle_s` \[s\].
     ///
     /// A robot whose joints are led errs by turning about its stance sole: the upper body leans, and everything else with it.
     /// So the plan begins leaning; joints go on where they are.
     pub(crate) fn inside(
         walk: &PlannedWalk,
         (k, t): (usize, f64),
-        (state, ahead): (&ControllerState, f64),
+        (state, zmp, ahead): (&ControllerState, [f64; 2], f64),
         landing: &PlanarPose,
         (cycles, cycle_s): (u64, f64),
     ) -> Self {
@@ -157,7 +157,6 @@ impl PlanOrigin {
         // Body: a pendulum over the measured zero-moment point until then.
         let ground = s.heights.foothold;
         let w2 = GRAVITY / (state.com[2] - ground);
-        let zmp = if state.zmp[0].is_finite() { state.zmp } else { state.zmp_desired };
         let mut body = Sample { position: state.com, velocity: state.com_velocity, acceleration: [0.0; 3] };
         for d in 0..2 {
             body.acceleration[d] = w2 * (state.com[d] - zmp[d]);

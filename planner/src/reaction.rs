@@ -5,7 +5,9 @@ use crate::commands::Intent;
 use crate::footsteps::StepDemand;
 use crate::gait::{LEAD_MIN, Planner};
 use crate::origin::PlanOrigin;
+use crate::pose::PlanarPose;
 use crate::skills::{Script, Skill};
+use crate::sole::Sole;
 use crate::step_adaptation::{self, Divergence, Landing};
 use crate::steps::{ROUNDING, StepParameters};
 use crate::verdict::PlanVerdict;
@@ -19,12 +21,13 @@ impl Planner {
     /// Plans on from inside the present step, if the body has to be caught; `true` if there is such a plan.
     pub(crate) fn react(&mut self, tick: u64, state: &ControllerState, gait: GaitState) -> bool {
         let start = tick + LEAD_MIN;
-        let Some((k, landing)) = self.catch(start, state, gait) else { return false };
+        let Some((k, zmp, landing)) = self.catch(start, state, gait) else { return false };
         let cycle_s = self.builder.model.cycle_s;
         let t = (start - self.active.plan.start_tick) as f64 * cycle_s;
         let ahead = (start - state.header.tick) as f64 * cycle_s;
         let cycles = self.builder.model.cycles(landing.rest);
-        let from = PlanOrigin::inside(&self.active, (k, t), (state, ahead), &landing.pose, (cycles, cycle_s));
+        let from =
+            PlanOrigin::inside(&self.active, (k, t), (state, zmp, ahead), &landing.pose, (cycles, cycle_s));
         let to = if self.intent == Intent::Walk { GaitState::Walking } else { GaitState::Stopping };
         if !self.walk_on(&from, to, landing.catches) {
             return false;
@@ -35,8 +38,14 @@ impl Planner {
         self.publish(start, tick)
     }
 
-    /// Step of the active plan that runs at the tick `start`, and the landing that it needs instead of its own.
-    fn catch(&self, start: u64, state: &ControllerState, gait: GaitState) -> Option<(usize, Landing)> {
+    /// Step of the active plan that runs at the tick `start`, the zero-moment point, and the landing that it needs instead of
+    /// its own.
+    fn catch(
+        &self,
+        start: u64,
+        state: &ControllerState,
+        gait: GaitState,
+    ) -> Option<(usize, [f64; 2], Landing)> {
         let rules = self.gait.reaction.as_ref()?;
         let walks = matches!(gait, GaitState::Starting | GaitState::Walking | GaitState::Stopping);
         let (walk, model) = (&self.active, &self.builder.model);
@@ -54,10 +63,11 @@ impl Planner {
             return None;
         }
         let foot = state.feet[1 - s.stance];
-        let body = divergence(state, s.heights.foothold, start, model.cycle_s)?;
-        let landing =
-            step_adaptation::adapt(rules, walk, (k, t), &body, [foot[0], foot[1]], &model.soles[s.stance])?;
-        Some((k, landing))
+        let sole = &model.soles[s.stance];
+        let zmp = zmp_in_sole(state, &s.foothold, sole);
+        let body = divergence(state, zmp, s.heights.foothold, start, model.cycle_s)?;
+        let landing = step_adaptation::adapt(rules, walk, (k, t), &body, [foot[0], foot[1]], sole)?;
+        Some((k, zmp, landing))
     }
 
     /// The plan from there: as commanded or, if that leaves the support or one step is not enough, with steps on the spot.
@@ -85,13 +95,28 @@ impl Planner {
     }
 }
 
-/// Divergent component at the tick `start`, the zero-moment point staying where it is; none without a measurement.
-fn divergence(state: &ControllerState, ground: f64, start: u64, cycle_s: f64) -> Option<Divergence> {
+/// \[m\] Measured zero-moment point, or the nearest place in the sole at `foothold`: that of a foot which bounces, and does not
+/// press for a cycle, is metres away. The desired one without a measurement.
+fn zmp_in_sole(state: &ControllerState, foothold: &PlanarPose, sole: &Sole) -> [f64; 2] {
+    if !state.zmp.iter().all(|x| x.is_finite()) {
+        return state.zmp_desired;
+    }
+    let p = foothold.local(state.zmp);
+    foothold.point([0, 1].map(|d| p[d].clamp(sole.center[d] - sole.half[d], sole.center[d] + sole.half[d])))
+}
+
+/// Divergent component at the tick `start`, the zero-moment point staying at `zmp`; none without a measurement.
+fn divergence(
+    state: &ControllerState,
+    zmp: [f64; 2],
+    ground: f64,
+    start: u64,
+    cycle_s: f64,
+) -> Option<Divergence> {
     let w = (GRAVITY / (state.com[2] - ground)).sqrt();
     let growth = w * (start - state.header.tick) as f64 * cycle_s;
     let error = [0, 1].map(|d| {
-        let shift = state.zmp[d] - state.zmp_desired[d];
-        let shift = if shift.is_finite() { shift } else { 0.0 };
+        let shift = zmp[d] - state.zmp_desired[d];
         -state.dcm_error[d] + growth * (-state.dcm_error[d] - shift)
     });
     (w.is_finite() && error.iter().all(|e| e.is_finite())).then_some(Divergence { w, error })
