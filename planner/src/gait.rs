@@ -61,6 +61,8 @@ pub struct Planner {
     given_up: u64,
     /// Plan and step whose early contact was looked at.
     tried: (u64, usize),
+    /// Last tick in which no step had to be changed, or in which one was.
+    pub(crate) calm: u64,
     pub(crate) events: EventQueue,
     answers: Vec<Result<(), Reason>>,
 }
@@ -81,6 +83,7 @@ impl Planner {
             margins: Margins::default(),
             given_up: 0,
             tried: (0, 0),
+            calm: 0,
             events: EventQueue::default(),
             answers: Vec::with_capacity(MAX_COMMANDS),
         }

@@ -14,6 +14,8 @@ use crate::verdict::PlanVerdict;
 use messages::{ControllerState, Detail, EventCode, GaitState};
 use multibody::GRAVITY_ACCELERATION as GRAVITY;
 
+/// \[s\] So long must a step be needed before it is changed: a bent frame on the bus jolts the body for 20 ms.
+const PERSISTS: f64 = 0.03;
 /// \[rad\] A robot that leans farther is not caught by a step.
 const LOST: f64 = 0.35;
 
@@ -21,8 +23,16 @@ impl Planner {
     /// Plans on from inside the present step, if the body has to be caught; `true` if there is such a plan.
     pub(crate) fn react(&mut self, tick: u64, state: &ControllerState, gait: GaitState) -> bool {
         let start = tick + LEAD_MIN;
-        let Some((k, zmp, landing)) = self.catch(start, state, gait) else { return false };
         let cycle_s = self.builder.model.cycle_s;
+        let needed = self.catch(start, state, gait);
+        let Some((k, zmp, landing)) = needed else {
+            self.calm = tick;
+            return false;
+        };
+        if ((tick - self.calm) as f64) * cycle_s < PERSISTS {
+            return false;
+        }
+        self.calm = tick;
         let t = (start - self.active.plan.start_tick) as f64 * cycle_s;
         let ahead = (start - state.header.tick) as f64 * cycle_s;
         let cycles = self.builder.model.cycles(landing.rest);

@@ -17,7 +17,7 @@ const W: f64 = 3.57;
 
 /// Lola's first steps on the spot, the room of her reaction, and a stance sole.
 fn walk() -> (PlannedWalk, Reaction, Sole) {
-    let gait = Gait::load(&root(None).join("gaits/lola_reacting.toml")).unwrap();
+    let gait = Gait::load(&root(None).join("gaits/lola.toml")).unwrap();
     let robot = Robot::load(&root(None).join("robots/lola")).unwrap();
     let soles = [0, 1].map(|i| Sole::new(robot.feet[i].support));
     let (width, ahead) = (gait.step.width, gait.model.com_forward);
