@@ -70,7 +70,15 @@ fn pushes_to_the_side_are_caught_by_steps() {
 /// Nobody pushes: bit for bit the same walk, whether she would react or not. Ideal and erring sensors, types 1 and 3.
 #[test]
 fn a_walk_that_nobody_disturbs_is_the_same_with_the_reaction_armed() {
-    for scene in ["walk_2kmh", "walk_2kmh_sensors", "walk_2kmh_type3", "can_2kmh", "walk_tables", "bus_faults", "startup"] {
+    for scene in [
+        "walk_2kmh",
+        "walk_2kmh_sensors",
+        "walk_2kmh_type3",
+        "can_2kmh",
+        "walk_tables",
+        "bus_faults",
+        "startup",
+    ] {
         let walked = [true, false].map(|reacts| {
             let mut chain = Chain::new(&setup(scene, reacts)).unwrap();
             (0..(12.0 / chain.cycle()) as u64).for_each(|_| _ = chain.step());

@@ -74,6 +74,11 @@ impl Footsteps {
         Self { reactive }
     }
 
+    /// Nothing is known to lie on the ground.
+    pub(crate) fn sees_nothing(&self) -> bool {
+        self.reactive.as_ref().is_none_or(|reactive| reactive.known.is_empty())
+    }
+
     /// Obstacles that are known from now on; a gait without steps over obstacles knows of none.
     pub(crate) fn see(&mut self, known: KnownObstacles) {
         if let Some(reactive) = &mut self.reactive {

@@ -67,7 +67,9 @@ impl Planner {
         let t = (start - walk.plan.start_tick) as f64 * model.cycle_s;
         let k = walk.steps().iter().position(|s| t < s.end)?;
         let s = &walk.strides[k];
+        // Ground that was felt to be higher or lower goes on as it is; what is known to lie there may not.
         let level = (s.heights.landing - s.heights.foothold).abs() < ROUNDING && !s.is_high(&model.step);
+        let level = level || self.builder.footsteps.sees_nothing();
         let lean = state.inclination_error;
         if t < s.lift || !level || !lean.iter().all(|x| x.abs() < LOST) {
             return None;
