@@ -81,7 +81,7 @@ fn a_walk_that_nobody_disturbs_is_the_same_with_the_reaction_armed() {
     ] {
         let walked = [true, false].map(|reacts| {
             let mut chain = Chain::new(&setup(scene, reacts)).unwrap();
-            (0..(12.0 / chain.cycle()) as u64).for_each(|_| _ = chain.step());
+            (0..(14.0 / chain.cycle()) as u64).for_each(|_| _ = chain.step());
             let angles = chain.step().joint_targets.angle.map(f64::to_bits);
             (angles, chain.robot().integrated().to_vec())
         });

@@ -141,6 +141,26 @@ pub struct CommandLimits {
     pub turn: [f64; 2],
     /// \[s\] Step duration.
     pub duration: [f64; 2],
+    /// \[s\] Shortest step over all of the range to the side.
+    pub side_duration: f64,
+}
+
+impl CommandLimits {
+    /// \[1\] How much of the ranges a step of this length, side and turn \[m, m, rad\] in `duration` \[s\] uses; it can be walked
+    /// up to 1.
+    ///
+    /// A range holds for steps that do nothing else. Length, side and turn spread the feet in different directions and come out of
+    /// the same reach of legs, hips and ankles: the ranges are the half axes of an ellipsoid, not the edges of a box. A step to the
+    /// side accelerates the body by as much as it is far and by the square of its haste, so that short ones go less far.
+    pub fn used(&self, step: [f64; 3], duration: f64) -> f64 {
+        let haste = (self.side_duration / duration).max(1.0);
+        let parts = [step[0], step[1] * haste * haste, step[2]].into_iter();
+        let parts = parts.zip([self.length, self.side, self.turn]).map(|(x, [low, high])| {
+            // A range may be zero, as are side and turn of a walking pattern.
+            if x == 0.0 { 0.0 } else { x / if x < 0.0 { low } else { high } }
+        });
+        parts.map(|part| part * part).sum::<f64>().sqrt()
+    }
 }
 
 /// Steps over obstacles and onto platforms (thesis 4.3.3, 4.3.4).
@@ -263,7 +283,14 @@ impl Gait {
                 format!("first_length {} is above limits.length {most} m", step.first_length),
             );
         }
-        let swing = limits.duration[0] * (1.0 - step.double_support);
+        let [least, most] = limits.duration;
+        if limits.side_duration < least || limits.side_duration > most {
+            top.problem(
+                "limits",
+                format!("side_duration {} s lies outside of duration [{least}, {most}] s", limits.side_duration),
+            );
+        }
+        let swing = least * (1.0 - step.double_support);
         if step.swing_lag + step.swing_lead >= swing {
             let sum = step.swing_lag + step.swing_lead;
             top.problem(
@@ -394,6 +421,7 @@ impl CommandLimits {
             side: table.interval("side", "m", -1.0..=1.0),
             turn: table.interval("turn", "rad", -1.0..=1.0),
             duration: table.interval("duration", "s", 0.2..=20.0),
+            side_duration: table.number("side_duration", "s", 0.2..=20.0),
         }
     }
 }

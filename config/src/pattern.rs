@@ -192,7 +192,13 @@ impl Pattern {
     /// Commands that a pattern takes: straight on, no longer steps than its own.
     pub(crate) fn limits(&self) -> CommandLimits {
         let time = self.step_time;
-        CommandLimits { length: [0.0, self.length], side: [0.0; 2], turn: [0.0; 2], duration: [time, time] }
+        CommandLimits {
+            length: [0.0, self.length],
+            side: [0.0; 2],
+            turn: [0.0; 2],
+            duration: [time, time],
+            side_duration: time,
+        }
     }
 
     /// Where the torso stands: as low as it walks.

@@ -1,8 +1,9 @@
-//! Walking commands to step parameters, refused with the limit when out of `gait.limits` (thesis 4.6.1).
+//! Walking commands to step parameters, refused with the limit when out of `gait.limits` (thesis 4.6.1), shortened where
+//! their numbers together are more than can be walked.
 //!
 //! Every comparison is written so that NaN fails it.
 
-use crate::steps::StepParameters;
+use crate::steps::{ROUNDING, StepParameters};
 use config::Gait;
 use messages::Reason;
 use messages::command::{StepCommand, VelocityCommand};
@@ -37,10 +38,16 @@ pub(crate) fn from_step(c: &StepCommand, gait: &Gait) -> Result<StepParameters, 
     })
 }
 
+/// Steps in the direction of `p` that can be walked: `p` itself, or shorter ones.
+pub(crate) fn shortened(p: &StepParameters, gait: &Gait) -> StepParameters {
+    let used = gait.limits.used(p.way(), p.duration);
+    if used > 1.0 + ROUNDING { p.shortened(1.0 / used) } else { *p }
+}
+
 /// Step parameters for a velocity; `None` for a stop.
 ///
 /// The duration comes from the table of forward speeds. Each step shifts the feet by L_y = v_y T and turns them by
-/// w T; if one of them would be too much for a step, steps become shorter in time.
+/// w T; if one of them, or all together, would be too much for a step, steps become shorter in time.
 ///
 /// # Errors
 /// The component that the gait does not allow, with the velocities that it does.
@@ -59,34 +66,18 @@ pub(crate) fn from_velocity(c: &VelocityCommand, gait: &Gait) -> Result<Option<S
     for (field, (rate, limit)) in rates.into_iter().zip(fastest).enumerate() {
         within(rate, field as u8, limit)?;
     }
-    // The duration of forward walking, shortened where side or turn would be too much for one step.
-    let [_, mut duration] = by_speed(c.forward.abs(), table).ok_or(Reason::Limit {
+    // The duration of forward walking, shortened where length, side and turn would be too much for one step.
+    let [_, duration] = by_speed(c.forward.abs(), table).ok_or(Reason::Limit {
         field: 0,
         low: fastest[0][0],
         high: fastest[0][1],
     })?;
-    for (rate, limit) in rates.into_iter().zip(steps) {
-        let limit = if rate < 0.0 { limit[0] } else { limit[1] };
-        if rate != 0.0 {
-            duration = duration.min(limit / rate);
-        }
-    }
-    let p = StepParameters {
-        length: c.forward * duration,
-        side: c.left * duration,
-        turn: c.turn * duration,
-        duration,
-    };
-    // Rounding, and durations of the table that no step may have.
-    for (field, (x, limit)) in [p.length, p.side, p.turn].into_iter().zip(steps).enumerate() {
-        within(x, field as u8, limit).map_err(|_| Reason::Limit {
-            field: field as u8,
-            low: limit[0] / duration,
-            high: limit[1] / duration,
-        })?;
-    }
+    let shortest = if c.left == 0.0 { l.duration[0] } else { l.side_duration };
+    let used = l.used(rates.map(|rate| rate * duration), duration);
+    let duration = if used > 1.0 { (duration / used).max(shortest.min(duration)) } else { duration };
     within(duration, 0, l.duration).map_err(|_| Reason::NotNow)?;
-    Ok(Some(p))
+    let [length, side, turn] = rates.map(|rate| rate * duration);
+    Ok(Some(StepParameters { length, side, turn, duration }))
 }
 
 /// Length and duration of steps at `speed`, linear between the rows of the table; `None` beyond its end.

@@ -6,7 +6,7 @@ use crate::origin::PlanOrigin;
 use crate::pose::PlanarPose;
 use crate::reactive::Reactive;
 use crate::skills::{Script, Skill};
-use crate::steps::{Heights, MAX_STEPS, StepParameters, Stride, next_foothold, next_width, nu};
+use crate::steps::{Heights, MAX_STEPS, ROUNDING, StepParameters, Stride, next_foothold, next_width, nu};
 use crate::verdict::Blocked;
 use crate::walking_model::WalkingModel;
 use config::Gait;
@@ -168,6 +168,9 @@ impl Footsteps {
         let rest = StepParameters::on_the_spot(last.parameters.duration);
         let (wish, share) = if ending { (&rest, 1.0) } else { (&demand.wish, demand.share) };
         let mut parameters = last.parameters.towards(wish, step, share);
+        if model.limits.used(parameters.way(), parameters.duration) > 1.0 + ROUNDING {
+            parameters = last.parameters.straight_towards(wish, step, share);
+        }
         if n == 0 && demand.state == GaitState::Starting {
             // Feet that stand side by side have no step before: a step that ends a walk may be as long.
             let most = step.first_length * demand.share;

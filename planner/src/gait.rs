@@ -270,7 +270,14 @@ impl Planner {
         match taken {
             Ok((intent, parameters)) => {
                 self.intent = intent;
-                self.parameters = parameters.unwrap_or(self.parameters);
+                if let Some(asked) = parameters {
+                    let before = self.parameters;
+                    self.parameters = commands::shortened(&asked, &self.gait);
+                    // Who repeats a command is not told again.
+                    if self.parameters != asked && self.parameters != before {
+                        self.events.push(EventCode::CommandShortened, self.parameters.detail());
+                    }
+                }
                 Ok(())
             }
             Err(reason) => {

@@ -13,6 +13,7 @@
 use crate::pose::{PlanarPose, rotate};
 use crate::sole::Sole;
 use config::gait;
+use messages::Detail;
 
 /// Most steps a plan can hold: the plan's load factors have room for seven.
 pub(crate) const MAX_STEPS: usize = 7;
@@ -34,9 +35,26 @@ pub struct StepParameters {
 }
 
 impl StepParameters {
+    /// The same for an event.
+    pub(crate) fn detail(&self) -> Detail {
+        let thousandths = |x: f64| (x * 1e3).round();
+        let [length, side, turn] = self.way().map(|x| thousandths(x) as i16);
+        Detail::Steps { length, side, turn, duration: thousandths(self.duration) as u16 }
+    }
+
     /// Stepping on the spot.
     pub(crate) const fn on_the_spot(duration: f64) -> Self {
         Self { length: 0.0, side: 0.0, turn: 0.0, duration }
+    }
+
+    /// \[m, m, rad\] Length, side and turn.
+    pub fn way(&self) -> [f64; 3] {
+        [self.length, self.side, self.turn]
+    }
+
+    /// The same on `share` of its way, in the same time.
+    pub(crate) fn shortened(&self, share: f64) -> Self {
+        Self { length: self.length * share, side: self.side * share, turn: self.turn * share, ..*self }
     }
 
     /// The parameters nearest to `wish` that differ from these by at most `share` of the largest change per step.
@@ -48,6 +66,15 @@ impl StepParameters {
             turn: near(self.turn, wish.turn, step.change[2]),
             duration: near(self.duration, wish.duration, step.change_duration),
         }
+    }
+
+    /// The same, with length, side and turn on the straight line to `wish`: all between two steps that can be walked can be,
+    /// too, while one number that grows before another one shrinks may ask for more than both.
+    pub(crate) fn straight_towards(&self, wish: &Self, step: &gait::StepSettings, share: f64) -> Self {
+        let (now, to) = (self.way(), wish.way());
+        let most = (0..3).map(|i| step.change[i] * share / (to[i] - now[i]).abs()).fold(1.0, f64::min);
+        let [length, side, turn] = [0, 1, 2].map(|i| now[i] + most * (to[i] - now[i]));
+        Self { length, side, turn, ..self.towards(wish, step, share) }
     }
 }
 

@@ -11,6 +11,8 @@ pub(crate) struct WalkingModel {
     pub step: gait::StepSettings,
     /// The model the centre of gravity is planned with.
     pub model: gait::GaitModel,
+    /// Ranges of a step.
+    pub limits: gait::CommandLimits,
     /// Support rectangles: right, left.
     pub soles: [Sole; 2],
     /// Feet may be closed after a step of any length: nothing falls that moves slowly enough.
@@ -22,7 +24,14 @@ pub(crate) struct WalkingModel {
 impl WalkingModel {
     /// For feet with these support rectangles, with a cycle of 1 ms until it is set.
     pub(crate) fn new(gait: &Gait, soles: [Sole; 2]) -> Self {
-        Self { step: gait.step.clone(), model: gait.model, soles, closes_at_once: false, cycle_s: 1e-3 }
+        Self {
+            step: gait.step.clone(),
+            model: gait.model,
+            limits: gait.limits,
+            soles,
+            closes_at_once: false,
+            cycle_s: 1e-3,
+        }
     }
 
     /// Whole cycles nearest to `t` \[s\], at least one.

@@ -237,6 +237,10 @@ events! {
     StepAdapted = 73, Plan, "a foot is put down elsewhere than planned, to catch the body", "plan {n}", "";
     /// The same, but one step will not be enough, or its plan leaves the support. Detail: the plan's id.
     StepStretched = 74, Plan, "a foot is put down as far as it gets, to catch the body; one step may not be enough", "plan {n}", "";
+    /// A command was taken, but asks for more than steps can do at once, each number being in its range: its steps are shorter, all
+    /// in one proportion. Detail: the steps that are walked.
+    CommandShortened = 75, Steps, "a command asks for more at once than can be walked, and its steps are shortened", "now {steps}",
+        "less of length, side or turn leaves more for the others";
 }
 
 impl EventCode {

@@ -61,6 +61,17 @@ pub enum Detail {
     Newtons(u64),
     /// \[us\]
     Microseconds(u64),
+    /// Steps: their length, side and turn to the left, and duration.
+    Steps {
+        /// \[mm\] Forward.
+        length: i16,
+        /// \[mm\] To the left.
+        side: i16,
+        /// \[mrad\] To the left.
+        turn: i16,
+        /// \[ms\]
+        duration: u16,
+    },
 }
 
 /// Kind of detail that an event has; the place of the names that the table of events uses.
@@ -85,6 +96,7 @@ pub(crate) enum DetailKind {
     Millimetres,
     Newtons,
     Microseconds,
+    Steps,
 }
 
 /// Reason why tables of points are not played, in the detail of [`EventCode::TablesRefused`].
@@ -245,6 +257,10 @@ impl Detail {
             | Self::Newtons(n)
             | Self::Microseconds(n) => n,
             Self::Joint(i) | Self::Node(i) => i as u64,
+            Self::Steps { length, side, turn, duration } => {
+                let parts = [length as u16, side as u16, turn as u16, duration];
+                parts[0] as u64 | (parts[1] as u64) << 16 | (parts[2] as u64) << 32 | (parts[3] as u64) << 48
+            }
             // As people read numbers: 12004 is node 12 for 4 cycles.
             Self::NodeCycles(node, cycles) => {
                 1000 * node as u64 + if cycles < 999 { cycles as u64 } else { 999 }
@@ -282,6 +298,15 @@ impl Detail {
             DetailKind::Millimetres => Self::Millimetres(n),
             DetailKind::Newtons => Self::Newtons(n),
             DetailKind::Microseconds => Self::Microseconds(n),
+            DetailKind::Steps => {
+                let part = |k: u32| (n >> (16 * k)) as u16;
+                Self::Steps {
+                    length: part(0) as i16,
+                    side: part(1) as i16,
+                    turn: part(2) as i16,
+                    duration: part(3),
+                }
+            }
         }
     }
 

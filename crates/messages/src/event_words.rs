@@ -71,6 +71,16 @@ impl Words {
             Detail::Table { joint: j, point, fault } => {
                 format!("{}, from point {point} on: {}", joint(j), fault.text())
             }
+            Detail::Steps { length, side, turn, duration } => {
+                let m = |mm: i16| f64::from(mm) * 1e-3;
+                format!(
+                    "{} m forward, {} m to the left, {} rad to the left in {} s",
+                    m(length),
+                    m(side),
+                    m(turn),
+                    f64::from(duration) * 1e-3
+                )
+            }
             // A number that its kind does not have: of a later version.
             Detail::Number(n) if !says.contains("{n}") => {
                 format!("for reason {n}, which this version does not know")
@@ -125,6 +135,10 @@ mod tests {
         assert_eq!(stop.matches("system/reset").count(), 1, "{stop}");
         let stop = said(EventCode::SafeStop, 0);
         assert!(stop.starts_with("controlled stop; secure the robot"), "{stop}");
+        let steps = Detail::Steps { length: -120, side: 35, turn: -7, duration: 900 };
+        let shortened = said(EventCode::CommandShortened, steps.pack());
+        let now = "now -0.12 m forward, 0.035 m to the left, -0.007 rad to the left in 0.9 s";
+        assert!(shortened.contains(now), "{shortened}");
         // Details by the names of the robot's parts.
         assert!(said(EventCode::FollowingError, 1).contains("target: knee;"));
         assert!(

@@ -55,6 +55,7 @@ pub fn gait() -> Gait {
             side: [-0.2, 0.2],
             turn: [-0.35, 0.35],
             duration: [0.65, 1.3],
+            side_duration: 0.65,
         },
         obstacles: Some(Obstacles {
             distance: 0.04,
