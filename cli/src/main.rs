@@ -210,13 +210,16 @@ enum GangwerkTask {
     },
     /// Faults F1 to F40 against a walking robot: expected, observed, time. Exit code 1 if one is not as expected.
     Faults(fault_table::FaultTableArguments),
-    /// Draw the walking pattern of a gait on a robot, without masses: stick figures, trajectories, joint angles, and what cannot be walked.
+    /// Draw the walk of a gait on a robot that does as it is told: stick figures, trajectories, joint angles, and what cannot be walked.
     Preview {
-        /// Name of a gait, for example archie_static, or path of a gait file; it has a section `pattern`.
+        /// Name of a gait, for example archie_static or lola, or path of a gait file.
         gait: PathBuf,
         /// Name of the robot.
         #[arg(long, default_value = "archie")]
         robot: String,
+        /// Speed [m/s] of a balanced gait; default: its longest steps.
+        #[arg(long)]
+        speed: Option<f64>,
         /// Where the pictures go.
         #[arg(long, value_name = "DIR", default_value = "preview")]
         out: PathBuf,
@@ -392,8 +395,8 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             Ok(ExitCode::SUCCESS)
         }
         GangwerkTask::Faults(arguments) => fault_table::run(&arguments),
-        GangwerkTask::Preview { gait, robot, out } => {
-            let preview = cli::preview::of_files(&config()?, &gait, &robot, &out)?;
+        GangwerkTask::Preview { gait, robot, speed, out } => {
+            let preview = cli::preview::of_files(&config()?, &gait, &robot, speed, &out)?;
             preview.files.iter().for_each(|file| println!("{}", file.display()));
             match preview.fault {
                 None => Ok(ExitCode::SUCCESS),

@@ -1,4 +1,4 @@
-//! `gangwerk preview`: a pattern as pictures, before any mass moves (Daniali 2013, 4.3, 4.4, 6.2).
+//! `gangwerk preview`: a walk as pictures, before any mass moves (Daniali 2013, 4.3, 4.4, 6.2).
 //!
 //! | picture | figures |
 //! |---|---|
@@ -7,14 +7,17 @@
 //! | `trajectories.png`: feet and torso over time | 4.11-4.17, 6.11-6.16 |
 //! | `planes.png`: their ways in three planes | 4.18-4.23, 6.17-6.19 |
 //! | `joints.png`: angles of the joints | 4.24-4.29, 6.20-6.25 |
+//!
+//! The walk is a pattern, solved in closed form, or a balanced gait, whose plans the controller follows.
+
+mod closed_form;
+mod followed;
 
 use config::{Gait, Robot};
 use drawing::color::{BLACK, BLUE, GREEN, VERMILION};
 use drawing::{Chart, Color, Figure, Point};
 use messages::{LEFT, RIGHT};
-use nalgebra::{Matrix3, Rotation3, Vector3};
-use planner::Planner;
-use planner::pattern_check::{PatternFault, WalkedPlan, walk_of};
+use nalgebra::Vector3;
 use std::path::{Path, PathBuf};
 
 /// Instants of a stride at which curves are drawn.
@@ -25,53 +28,54 @@ const APART: f64 = 0.7;
 const COLORS: [Color; 2] = [BLUE, VERMILION];
 const SIDES: [&str; 2] = ["right", "left"];
 
-/// Pictures of a pattern, and what it breaks.
+/// Pictures of a walk, and what it breaks.
 pub struct Preview {
     /// Files that were written.
     pub files: Vec<PathBuf>,
     /// First rule that is broken, if the robot cannot walk it.
-    pub fault: Option<PatternFault>,
+    pub fault: Option<String>,
 }
 
-/// Draws the pattern of a gait, a name or the path of a file, on a robot of the configuration `root`; see [`preview`].
+/// Draws the walk of a gait, a name or the path of a file, on a robot of the configuration `root`; see [`preview`].
 ///
 /// # Errors
 /// As there, and files that cannot be read.
-pub fn of_files(root: &Path, gait: &Path, robot: &str, out: &Path) -> Result<Preview, String> {
+pub fn of_files(
+    root: &Path,
+    gait: &Path,
+    robot: &str,
+    speed: Option<f64>,
+    out: &Path,
+) -> Result<Preview, String> {
     let file =
         if gait.is_file() { gait.to_owned() } else { root.join("gaits").join(gait).with_extension("toml") };
-    let pattern = Gait::load(&file).map_err(|e| e.to_string())?;
+    let of_gait = Gait::load(&file).map_err(|e| e.to_string())?;
     let of = Robot::load(&root.join("robots").join(robot)).map_err(|e| e.to_string())?;
-    preview(&pattern, &of, &format!("{}, {robot}", gait.display()), out)
+    preview(&of_gait, &of, speed, &format!("{}, {robot}", gait.display()), out)
 }
 
-/// Draws the pattern of `gait` on `robot` into the directory `out`.
+/// Draws the walk of `gait` on `robot` into the directory `out`: at `speed` \[m/s\], or with the gait's longest steps.
 ///
 /// # Errors
-/// The gait has no pattern, the robot no legs in closed form, or a file cannot be written.
-pub fn preview(gait: &Gait, robot: &Robot, about: &str, out: &Path) -> Result<Preview, String> {
-    let plans = walk_of(gait, robot).map_err(|fault| fault.to_string())?;
-    let fault = Planner::of(gait, robot).err();
-    let pattern = gait.pattern.ok_or("no pattern")?;
-    let stride = Stride { robot, plans: &plans[plans.len() - 2..], step: pattern.step_time };
+/// The gait is a pattern and the robot has no legs in closed form, there are no steps for the speed, or a file cannot be
+/// written.
+pub fn preview(
+    gait: &Gait,
+    robot: &Robot,
+    speed: Option<f64>,
+    about: &str,
+    out: &Path,
+) -> Result<Preview, String> {
+    let (stride, fault) = match (&gait.pattern, speed) {
+        (None, _) => followed::stride(gait, robot, speed)?,
+        (Some(_), None) => closed_form::stride(gait, robot).map_err(|fault| fault.to_string())?,
+        (Some(_), Some(_)) => return Err("a pattern has a speed of its own: leave out --speed".to_owned()),
+    };
     let note = fault.as_ref().map_or_else(|| about.to_owned(), |fault| format!("{about}. {fault}"));
     std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
-    let (double, step) = (pattern.double_support, pattern.step_time);
-    let middle = 0.5 * (double + step);
-    let instants = [
-        0.0,
-        0.5 * double,
-        double,
-        middle,
-        step,
-        step + 0.5 * double,
-        step + double,
-        step + middle,
-        2.0 * step,
-    ];
     let mut files = Vec::new();
     for (name, figure) in [
-        ("sticks.png", stride.sticks(&instants, &note)),
+        ("sticks.png", stride.sticks(&note)),
         ("legs.png", stride.legs(&note)),
         ("trajectories.png", stride.trajectories(&note)),
         ("planes.png", stride.planes(&note)),
@@ -86,14 +90,16 @@ pub fn preview(gait: &Gait, robot: &Robot, about: &str, out: &Path) -> Result<Pr
 
 /// The periodic stride: right foot first, its frame where that foot leaves.
 struct Stride<'a> {
-    robot: &'a Robot,
-    /// One plan for each of its steps.
-    plans: &'a [WalkedPlan],
-    /// \[s\] Time of a step.
-    step: f64,
+    /// Double support, single support and end of each of its steps \[s\].
+    steps: [[f64; 3]; 2],
+    /// Names of the joints that are drawn.
+    joints: Vec<String>,
+    /// The robot at a time \[s\].
+    pose: Box<dyn Fn(f64) -> Pose + 'a>,
 }
 
 /// The robot at an instant. Positions in the frame of the stride \[m\].
+#[derive(Clone)]
 struct Pose {
     /// Ankles.
     ankles: [Vector3<f64>; 2],
@@ -102,65 +108,30 @@ struct Pose {
     torso: Vector3<f64>,
     /// Heel, toe, then the chain from the ankle to the torso; NaN where a leg cannot take its pose.
     chains: [Vec<Vector3<f64>>; 2],
-    /// \[rad\] Angles of the thesis, from the foot on.
-    theta: [[f64; 6]; 2],
+    /// \[rad\] Angles of the joints that are drawn, of each side; NaN where there is none.
+    angles: [Vec<f64>; 2],
 }
 
 impl Stride<'_> {
-    /// At `t` \[s\], 0 to two steps.
-    fn pose(&self, t: f64) -> Pose {
-        let (walked, t) = if t < self.step { (&self.plans[0], t) } else { (&self.plans[1], t - self.step) };
-        let plan = &walked.plan;
-        // The stride begins where the swing foot of its first plan stands.
-        let first = &self.plans[0].plan;
-        let begin = first.feet[RIGHT].sample(0.0).position;
-        let shift = Vector3::new(
-            plan.origin[0] - first.origin[0] - begin[0],
-            plan.origin[1] - first.origin[1] - begin[1],
-            0.0,
-        );
-        let body = Vector3::from(plan.body.sample(t).position);
-        let upright = Matrix3::identity();
-        let mut pose = Pose {
-            ankles: [Vector3::zeros(); 2],
-            pitch: [0.0; 2],
-            torso: body + shift,
-            chains: [Vec::new(), Vec::new()],
-            theta: [[f64::NAN; 6]; 2],
-        };
-        for foot in [RIGHT, LEFT] {
-            let [rear, front, ..] = self.robot.feet[foot].support;
-            let ankle = -self.robot.feet[foot].sole[2];
-            let (sole, pitch) = plan.sole(foot, t, [rear, front]);
-            let [x, y, z, _] = sole.position;
-            let turned = Rotation3::from_axis_angle(&Vector3::y_axis(), pitch.position[0]);
-            let (at, of) = (Vector3::new(x, y, z), |p: Vector3<f64>| turned * p);
-            pose.ankles[foot] = at + of(Vector3::new(0.0, 0.0, ankle)) + shift;
-            pose.pitch[foot] = pitch.position[0];
-            let mut chain =
-                vec![at + of(Vector3::new(rear, 0.0, 0.0)), at + of(Vector3::new(front, 0.0, 0.0)), at];
-            if let Some(leg) = self.robot.legs.as_ref().map(|legs| &legs[foot]) {
-                match leg.angles((turned.matrix(), &at), (&upright, &body)) {
-                    Ok(q) => {
-                        pose.theta[foot] = leg.theta(&q);
-                        chain.extend(leg.chain_in_sole(&q).map(|p| at + of(p)));
-                    }
-                    Err(_) => chain.extend([Vector3::repeat(f64::NAN); 7]),
-                }
-            }
-            pose.chains[foot] = chain.into_iter().map(|p| p + shift).collect();
-        }
-        pose
+    /// \[s\] Its end.
+    fn end(&self) -> f64 {
+        self.steps[1][2]
+    }
+
+    /// Begin, middle and end of the double supports, middle and end of the single ones.
+    fn instants(&self) -> [f64; 9] {
+        let [[a, b, c], [d, e, f]] = self.steps;
+        [a, 0.5 * (a + b), b, 0.5 * (b + c), d, 0.5 * (d + e), e, 0.5 * (e + f), f]
     }
 
     /// Poses of a fine grid, with their times.
     fn all(&self) -> Vec<(f64, Pose)> {
-        let at = |i: usize| 2.0 * self.step * i as f64 / POINTS as f64;
-        (0..POINTS).map(|i| (at(i), self.pose(at(i)))).collect()
+        let at = |i: usize| self.end() * i as f64 / POINTS as f64;
+        (0..POINTS).map(|i| (at(i), (self.pose)(at(i)))).collect()
     }
 
     /// Stick figures side by side, in three planes and in space.
-    fn sticks(&self, instants: &[f64], note: &str) -> Figure {
+    fn sticks(&self, note: &str) -> Figure {
         type View = fn(Vector3<f64>) -> Point;
         let views: [(&str, &str, &str, View); 4] = [
             ("From the side", "x [m], each instant moved on", "z [m]", |p| [p.x, p.z]),
@@ -171,8 +142,8 @@ impl Stride<'_> {
         let mut figure = Figure::new("Nine instants of a stride", note);
         for (title, x, y, view) in views {
             let mut chart = Chart::new(title, x, y).equal();
-            for (k, &t) in instants.iter().enumerate() {
-                let pose = self.pose(t);
+            for (k, t) in self.instants().into_iter().enumerate() {
+                let pose = (self.pose)(t);
                 let centre = view(pose.torso)[0];
                 let place = |p: Vector3<f64>| {
                     let [a, b] = view(p);
@@ -199,7 +170,7 @@ impl Stride<'_> {
         for foot in [RIGHT, LEFT] {
             let mut chart = Chart::new(&format!("The {} leg", SIDES[foot]), "x [m]", "z [m]").equal();
             for k in 0..=40 {
-                let pose = self.pose(2.0 * self.step * f64::from(k) / 40.0);
+                let pose = (self.pose)(self.end() * f64::from(k) / 40.0);
                 chart.line(
                     "",
                     pose.chains[foot].iter().map(|p| [p.x, p.z]).collect(),
@@ -263,18 +234,17 @@ impl Stride<'_> {
         figure
     }
 
-    /// Joint angles in the signs of the thesis; gaps where a leg cannot take its pose.
+    /// Joint angles; gaps where a leg cannot take its pose.
     fn joints(&self, note: &str) -> Figure {
         let all = self.all();
         let mut figure = Figure::new("Joint angles", note);
-        let names =
-            ["ankle adduction", "ankle flexion", "knee", "hip flexion", "hip adduction", "hip rotation"];
-        for (k, name) in names.into_iter().enumerate() {
-            let title = format!("theta {}: {name}", k + 1);
-            let mut chart = Chart::new(&title, "time [s]", "angle [deg]").at_least(1.0);
-            for foot in [RIGHT, LEFT] {
-                let points = all.iter().map(|(t, p)| [*t, p.theta[foot][k].to_degrees()]).collect();
-                chart.line(SIDES[foot], points, COLORS[foot]);
+        for (k, name) in self.joints.iter().enumerate() {
+            let mut chart = Chart::new(name, "time [s]", "angle [deg]").at_least(1.0);
+            let of = |foot: usize| all.iter().map(move |(t, p)| [*t, p.angles[foot][k].to_degrees()]);
+            let bends = [RIGHT, LEFT].map(|foot| of(foot).any(|p| p[1].is_finite()));
+            for foot in [RIGHT, LEFT].into_iter().filter(|&foot| bends[foot]) {
+                let name = if bends[1 - foot] { SIDES[foot] } else { "" };
+                chart.line(name, of(foot).collect(), COLORS[foot]);
             }
             figure = figure.with(chart);
         }

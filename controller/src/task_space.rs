@@ -111,6 +111,12 @@ impl TaskSpace {
         self.place(&self.soles[foot])
     }
 
+    /// \[m\] Origins of the joints from a sole up to the torso.
+    pub fn chain(&self, foot: usize) -> impl Iterator<Item = Vector3<f64>> + '_ {
+        let joints = std::iter::successors(self.soles[foot].joint(), |&joint| self.model.parent_joint(joint));
+        joints.map(|joint| self.model.joint_position(&self.data, joint))
+    }
+
     /// \[m\], \[m/rad\] Centre of gravity of all that a joint carries, and how the joint moves it.
     pub fn limb(&self, joint: usize) -> (Vector3<f64>, Vector3<f64>) {
         self.model.carried_cog(&self.data, joint)

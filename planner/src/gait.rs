@@ -332,7 +332,12 @@ impl Planner {
         // The foot on the side to which the robot goes or turns swings first.
         let p = self.parameters;
         let left_first = if p.side == 0.0 { p.turn >= 0.0 } else { p.side > 0.0 };
-        let from = self.at_rest(if left_first { RIGHT } else { LEFT });
+        let mut from = self.at_rest(if left_first { RIGHT } else { LEFT });
+        if let Some(pattern) = &self.gait.pattern {
+            // From a narrow stand the first foot lands w_s beside the other one too: otherwise the next step would be wider than
+            // those of the walk that was checked.
+            from.width = from.width.max(pattern.width);
+        }
         self.intent = Intent::Walk;
         if !self.tasks.begin(&from, &self.gait, &self.builder.model.soles[from.stance])
             || !self.walk(&from, GaitState::Starting)

@@ -15,7 +15,7 @@
 use crate::planned_walk::{LEAD, Margins};
 use crate::pose::rotate;
 use crate::segment::Horizon;
-use crate::steps::nu;
+use crate::steps::{Stride, nu};
 use crate::torso;
 use crate::two_quartics::TwoQuartics;
 use crate::walking_model::WalkingModel;
@@ -29,6 +29,8 @@ use std::sync::Arc;
 
 /// \[s\] Knots nearer to one another are one.
 const SAME: f64 = 1e-9;
+/// \[m\] Footholds nearer to one another are the same.
+const ALIKE: f64 = 1e-9;
 /// Instants of a plan at which reach is looked at.
 const POINTS: u32 = 200;
 
@@ -40,6 +42,8 @@ pub(crate) struct PatternTrajectories {
     ankle: f64,
     /// Height of the torso at the begin of a step, at `T_min` and at `T_max`: value, velocity, acceleration.
     heights: [Sample<1>; 3],
+    /// \[m\] Length of the steps of a walk that was looked at as a whole: at first that of the pattern.
+    known: f64,
     robot: Arc<Robot>,
 }
 
@@ -50,6 +54,7 @@ impl PatternTrajectories {
             pattern: *pattern,
             ankle: -robot.feet[0].sole[2],
             heights: torso_heights(pattern),
+            known: pattern.length,
             robot: Arc::new(robot.clone()),
         }
     }
@@ -63,12 +68,34 @@ impl PatternTrajectories {
         }
     }
 
-    /// True if the legs can take all poses of a plan. One that begins where the robot was found standing is not the walk that
-    /// was checked before.
-    pub(crate) fn is_in_reach(&self, plan: &Plan) -> bool {
+    /// True if the legs can take all poses of a plan. Only what is not alike a walk that was looked at before is looked at: the
+    /// first step out of standing, whose foot comes from where the robot was found, and steps of another length.
+    pub(crate) fn is_in_reach(&mut self, horizon: &Horizon<'_>, plan: &Plan) -> bool {
+        let strides = horizon.strides;
+        let Some(last) = strides.iter().rposition(|s| !self.is_alike(s, self.known)) else { return true };
+        let whole = last + 1 == strides.len();
+        let until = if whole { plan.end() } else { strides[last].end };
+        let points = (f64::from(POINTS) * until / plan.end()).ceil();
         let mut angles = [0.0; MAX_JOINTS];
-        let at = |i: u32| plan.end() * f64::from(i) / f64::from(POINTS);
-        (0..=POINTS).all(|i| self.robot.angles_of_plan(plan, at(i), &mut angles).is_ok())
+        let at = |i: u32| until * f64::from(i) / points;
+        let reached =
+            (0..=points as u32).all(|i| self.robot.angles_of_plan(plan, at(i), &mut angles).is_ok());
+        let length = strides[0].parameters.length;
+        if reached && whole && strides.len() > 1 && strides.iter().all(|s| self.is_alike(s, length)) {
+            self.known = length;
+        }
+        reached
+    }
+
+    /// True if a step, or one that closes the feet, follows one of `length` \[m\] and is as long.
+    fn is_alike(&self, s: &Stride, length: f64) -> bool {
+        let [takeoff, landing] = [s.takeoff, s.landing].map(|pose| s.foothold.relative(&pose));
+        let wide = |y: f64| (y.abs() - self.pattern.width).abs() < ALIKE;
+        let ahead = s.parameters.length;
+        (takeoff.x + length).abs() < ALIKE
+            && (ahead == 0.0 || (ahead - length).abs() < ALIKE)
+            && wide(takeoff.y)
+            && wide(landing.y)
     }
 
     /// Writes the motion of feet and torso over the steps of `horizon`.

@@ -111,8 +111,8 @@ impl Builder {
         match &mut self.trajectories {
             Trajectories::Pattern(pattern) => {
                 pattern.lay(model, &horizon, plan);
-                let unsound = state == GaitState::Starting && !pattern.is_in_reach(plan);
-                out.verdict = if unsound { PlanVerdict::OutOfReach } else { PlanVerdict::Sound };
+                let reached = pattern.is_in_reach(&horizon, plan);
+                out.verdict = if reached { PlanVerdict::Sound } else { PlanVerdict::OutOfReach };
                 (out.margin, out.divergent) = (0.0, false);
             }
             Trajectories::Balanced(parts) => {

@@ -48,12 +48,16 @@ struct Walker {
 impl Walker {
     /// Standing nearly straight, the feet `width` \[m\] apart.
     fn new(width: f64) -> Self {
+        Self::with(&gait(), width)
+    }
+
+    fn with(gait: &Gait, width: f64) -> Self {
         let robot = archie();
         let mut state = ControllerState::empty();
         state.feet = [[0.0, -0.5 * width, 0.0, 0.0], [0.0, 0.5 * width, 0.0, 0.0]];
         state.torso = [0.0, 0.0, 0.65];
         Self {
-            planner: Planner::of(&gait(), &robot).unwrap(),
+            planner: Planner::of(gait, &robot).unwrap(),
             robot,
             tick: 0,
             state,
@@ -345,4 +349,59 @@ fn plans_leave_time_for_their_tables() {
     let tables = r.robot.tables.as_ref().unwrap();
     let least = tables.plan_lead(&r.robot.layout, CYCLE, 512);
     assert!(r.plans.len() > 4 && r.plans.iter().all(|plan| plan.start_tick - plan.header.tick >= least));
+}
+
+/// True if the legs can take all poses of a plan, on a finer grid than the planner's.
+fn is_in_reach(robot: &Robot, plan: &Plan) -> bool {
+    let mut angles = [0.0; MAX_JOINTS];
+    let at = |i: u32| plan.end() * f64::from(i) / 3000.0;
+    (0..=3000).all(|i| robot.angles_of_plan(plan, at(i), &mut angles).is_ok())
+}
+
+/// A walk out of feet nearer to one another than w_s left the legs' reach in its third plan: its second step was as much wider
+/// than w_s as the stand was narrower, and no plan but the first was looked at.
+#[test]
+fn accepted_patterns_stay_in_reach_from_any_stand() {
+    let mut state = 7_u64;
+    let mut random = |low: f64, high: f64| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let robot = archie();
+    let (mut accepted, mut walks) = (0, 0);
+    while accepted < 24 {
+        let (time, length) = (random(8.0, 16.0), random(0.2, 0.29));
+        let double = time * random(0.3, 0.45);
+        let set = Pattern {
+            step_time: time,
+            double_support: double,
+            over_time: 0.7 * time,
+            low_time: 0.08 * time,
+            high_time: 0.7 * time,
+            pitch_times: [0.0, time, time + double],
+            length,
+            over_length: length,
+            width: random(0.15, 0.2),
+            heights: [0.54, random(0.55, 0.58)],
+            ..pattern()
+        };
+        if verdict(&robot, set).is_err() {
+            continue;
+        }
+        accepted += 1;
+        for (width, share) in [(0.15, 0.999_999), (0.16, 0.9), (0.17, 0.999_999), (0.2, 0.999_999)] {
+            let mut r = Walker::with(&Gait::from(set), width);
+            r.step(&[Command::Stand]);
+            r.run(3.0);
+            r.step(&[forward(share * length / time)]);
+            r.run(4.5 * time);
+            r.step(&[Command::Stop]);
+            r.run(2.0 * time);
+            for (k, plan) in r.plans.iter().enumerate() {
+                assert!(is_in_reach(&robot, plan), "plan {k}, feet {width} m apart: {set:?}");
+            }
+            walks += usize::from(r.plans.len() >= 7);
+        }
+    }
+    assert!(walks > 80, "{walks} walks of five steps and a stop");
 }

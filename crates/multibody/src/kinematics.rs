@@ -118,6 +118,11 @@ impl Model {
         (p.r + p.a * frame.r).into()
     }
 
+    /// \[m\] Origin of a joint in the world, after [`Model::forward_kinematics`].
+    pub fn joint_position(&self, data: &Data, joint: usize) -> Vector3<f64> {
+        data.places[joint + 1].r.into()
+    }
+
     /// Velocity of a frame's origin and its angular velocity (2.1), (2.3), after [`Model::forward_motion`].
     pub fn frame_velocity(&self, data: &Data, frame: &Frame) -> Twist {
         let m = &data.motions[frame.body];
