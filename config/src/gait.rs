@@ -149,9 +149,9 @@ impl CommandLimits {
     /// \[1\] How much of the ranges a step of this length, side and turn \[m, m, rad\] in `duration` \[s\] uses; it can be walked
     /// up to 1.
     ///
-    /// A range holds for steps that do nothing else. Length, side and turn spread the feet in different directions and come out of
-    /// the same reach of legs, hips and ankles: the ranges are the half axes of an ellipsoid, not the edges of a box. A step to the
-    /// side accelerates the body by as much as it is far and by the square of its haste, so that short ones go less far.
+    /// A range holds for steps that do nothing else. Length, side and turn come out of the same reach of legs, hips and ankles: what
+    /// one of them uses is not left to the others, so shares add up. A step to the side accelerates the body by as much as it
+    /// is far and by the square of its haste, so that short ones go less far.
     pub fn used(&self, step: [f64; 3], duration: f64) -> f64 {
         let haste = (self.side_duration / duration).max(1.0);
         let parts = [step[0], step[1] * haste * haste, step[2]].into_iter();
@@ -159,7 +159,7 @@ impl CommandLimits {
             // A range may be zero, as are side and turn of a walking pattern.
             if x == 0.0 { 0.0 } else { x / if x < 0.0 { low } else { high } }
         });
-        parts.map(|part| part * part).sum::<f64>().sqrt()
+        parts.sum()
     }
 }
 

@@ -121,3 +121,28 @@ impl Hull {
 pub fn double_support_margin(a: (&Sole, &PlanarPose), b: (&Sole, &PlanarPose), p: [f64; 2]) -> f64 {
     Hull::of(a, b).margin(p)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On the spot the reference stays about the middle of the sole; steps that lead on leave it all of the length.
+    #[test]
+    fn a_zero_moment_point_between_soles_stays_out_of_their_corners() {
+        let sole = Sole::new([-0.1, 0.16, -0.05, 0.05]);
+        let (here, beside) = (PlanarPose::new(0.0, 0.0, 0.0), PlanarPose::new(0.0, 0.21, 0.0));
+        let still = sole.between(&here, [&beside, &beside]);
+        let corner = [0.16, 0.05];
+        let [x, y] = still.nearest(&here, corner);
+        assert!(x < sole.center[0] + 0.3 * sole.half[0] && y == corner[1], "{x}, {y}");
+        // Inside of both it stays where it is, wherever the feet stand and head.
+        let at = PlanarPose::new(1.0, -2.0, 0.7);
+        let near = at.point([sole.center[0] + 0.2 * sole.half[0], 0.04]);
+        let turned = sole.between(&at, [&at.compose(&beside), &at.compose(&beside)]);
+        assert_eq!(turned.nearest(&at, near), near);
+        // Steps forward: all of the sole, its corner included.
+        let ahead = PlanarPose::new(0.3, 0.21, 0.0);
+        assert_eq!(sole.between(&here, [&ahead, &ahead]), sole);
+        assert_eq!(sole.between(&here, [&beside, &ahead]).nearest(&here, corner), corner);
+    }
+}

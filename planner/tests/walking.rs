@@ -106,9 +106,9 @@ fn walks_sideways() {
 
 #[test]
 fn walks_curves() {
-    let (_, v) = walk(step(0.4, 0.0, 0.2, 0.9));
+    let (_, v) = walk(step(0.4, 0.0, 0.13, 0.9));
     within(v[0], 0.4 / 0.9, 0.01);
-    within(v[2], 0.2 / 0.9, 0.01);
+    within(v[2], 0.13 / 0.9, 0.01);
     let (_, v) = walk(Command::Velocity(VelocityCommand { forward: 0.4, left: 0.0, turn: -0.2 }));
     within(v[0], 0.4, 0.01);
     within(v[2], -0.2, 0.01);

@@ -2,14 +2,14 @@
 //!
 //! A timeline is 20 to 40 s of velocities, steps and stops drawn from the whole range of the gait, each number by itself, at
 //! random times; the last command is held for `HELD`. Walked means: to the end, with the supply on, and then as fast in
-//! each direction as the last accepted command said.
+//! each direction as the last accepted command said, or the planner if it said that it shortens the steps.
 
 use chain::ending::{Ending, WalkEnd};
 use chain::{Chain, parallel};
 use config::Setup;
 use config::gait::CommandLimits;
 use messages::command::{StepCommand, VelocityCommand};
-use messages::{Command, EventCode, GaitState, Process};
+use messages::{Command, Detail, EventCode, GaitState, Process};
 use serde::Serialize;
 
 use crate::random::Random;
@@ -32,6 +32,7 @@ const COLUMNS: &[Column] = &[
     plain("/timelines", "timelines"),
     plain("/accepted", "commands accepted"),
     plain("/refused", "refused"),
+    plain("/shortened", "shortened"),
     plain("/fell", "fell"),
     plain("/stopped", "supply lost or stopped"),
     plain("/not_as_told", "not as told at the end"),
@@ -62,6 +63,7 @@ struct Row {
     timelines: u64,
     accepted: u64,
     refused: u64,
+    shortened: u64,
     fell: u64,
     stopped: u64,
     not_as_told: u64,
@@ -73,6 +75,7 @@ struct Walked {
     seed: u64,
     accepted: u64,
     refused: u64,
+    shortened: u64,
     end: WalkEnd,
     as_told: bool,
 }
@@ -113,6 +116,7 @@ fn summed(depth: u8, walked: &[Walked]) -> Row {
         timelines: walked.len() as u64,
         accepted: walked.iter().map(|w| w.accepted).sum(),
         refused: walked.iter().map(|w| w.refused).sum(),
+        shortened: walked.iter().map(|w| w.shortened).sum(),
         fell: count(&|w| w.end == WalkEnd::Fell),
         stopped: count(&|w| !matches!(w.end, WalkEnd::Fell | WalkEnd::Done)),
         not_as_told: count(&|w| w.end == WalkEnd::Done && !w.as_told),
@@ -141,6 +145,13 @@ impl Told {
         }
     }
 
+    /// The planner said that it walks these steps instead.
+    fn shorten(&mut self, detail: Detail) {
+        if let Detail::Steps { length, side, turn, duration } = detail {
+            self.speeds = [length, side, turn].map(|x| f64::from(x) / f64::from(duration));
+        }
+    }
+
     fn is_near(&self, speeds: [f64; 3]) -> bool {
         let told = if self.walks { self.speeds } else { [0.0; 3] };
         (0..3).all(|i| (speeds[i] - told[i]).abs() <= OFF[i] + 0.05 * told[i].abs())
@@ -154,7 +165,8 @@ fn walk(setup: &Setup, seed: u64) -> Result<Walked, String> {
     let end = commands.last().map_or(BEGIN, |(time, _)| *time) + HELD;
     let mut chain = Chain::new(setup).map_err(|e| e.to_string())?;
     let (mut ending, mut told) = (Ending::default(), Told::default());
-    let (mut accepted, mut refused, mut next) = (0, 0, commands.iter().peekable());
+    let (mut accepted, mut refused, mut shortened) = (0, 0, 0);
+    let mut next = commands.iter().peekable();
     let (mut way, mut watched) = (Way::default(), 0.0);
     for tick in 1..=(end / chain.cycle()) as u64 {
         let (time, cycle) = (tick as f64 * chain.cycle(), chain.cycle());
@@ -173,6 +185,10 @@ fn walk(setup: &Setup, seed: u64) -> Result<Walked, String> {
                 accepted += 1;
                 told.take(command);
             }
+            for &(_, _, detail) in c.events.iter().filter(|e| e.1 == EventCode::CommandShortened) {
+                shortened += 1;
+                told.shorten(detail);
+            }
         }
         // How it ends, and how fast the robot is then, in its own axes.
         c.events.iter().for_each(|&(_, code, detail)| ending.tell(time, code, detail));
@@ -189,6 +205,7 @@ fn walk(setup: &Setup, seed: u64) -> Result<Walked, String> {
         seed,
         accepted,
         refused,
+        shortened,
         end: ending.end().0,
         as_told: told.is_near(way.gone.map(|x| x / watched)),
     })
