@@ -287,7 +287,10 @@ impl Gait {
         if limits.side_duration < least || limits.side_duration > most {
             top.problem(
                 "limits",
-                format!("side_duration {} s lies outside of duration [{least}, {most}] s", limits.side_duration),
+                format!(
+                    "side_duration {} s lies outside of duration [{least}, {most}] s",
+                    limits.side_duration
+                ),
             );
         }
         let swing = least * (1.0 - step.double_support);

@@ -285,7 +285,7 @@ fn top_speed_is_reached_with_the_fourth_step_and_left_within_four() {
 fn shipped_gait_walks() {
     let gait = shipped("lola.toml");
     for command in
-        [forward(1.0), forward(2.0), forward(-0.5), step(0.0, 0.2, 0.0, 1.0), step(0.4, 0.0, 0.2, 0.9)]
+        [forward(1.0), forward(2.0), forward(-0.5), step(0.0, 0.2, 0.0, 1.0), step(0.4, 0.0, 0.13, 0.9)]
     {
         let mut r = Robot::new(&gait);
         r.stand();
