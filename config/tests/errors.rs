@@ -116,7 +116,7 @@ fn nan_and_infinity() {
         text(&copy.gait()),
         "lola.toml: 2 problems\n  \
          line 23: model.com_height: NaN is not allowed; it takes a number from 0.1 to 3 m\n  \
-         line 39: control.height_p: inf is not allowed; it takes a number of at least 0 N/m"
+         line 40: control.height_p: inf is not allowed; it takes a number of at least 0 N/m"
     );
 }
 
@@ -135,7 +135,7 @@ fn all_problems_at_once_in_the_order_of_lines() {
          line 12: step.change: has 2 entries; it takes 3 numbers, each a number above 0 m, m, rad\n  \
          line 22: model.friction: missing; it takes a number above 0\n  \
          line 32: limits.side: its lower end 0.2 must lie below its upper end -0.2 m\n  \
-         line 52: control.force_filter: is of type boolean; it takes a number from 0 to 1 s"
+         line 53: control.force_filter: is of type boolean; it takes a number from 0 to 1 s"
     );
 }
 

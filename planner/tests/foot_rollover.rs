@@ -59,7 +59,7 @@ fn angles_grow_with_the_step_and_are_clamped() {
 
 #[test]
 fn paths_are_smooth_and_plans_join() {
-    for (length, turn) in [(0.5, 0.0), (0.5, 0.2), (0.6, -0.1), (0.4, 0.0)] {
+    for (length, turn) in [(0.5, 0.0), (0.37, 0.14), (0.5, -0.08), (0.4, 0.0)] {
         let r = walk(&rolling(), length, turn);
         for p in &r.plans {
             for i in 0..2 {
@@ -79,7 +79,7 @@ fn paths_are_smooth_and_plans_join() {
 /// The ground can be felt with the toe segment or an edge alone only while the foot hands its load over, or takes it.
 #[test]
 fn a_foot_that_carries_alone_lies_flat() {
-    let r = walk(&rolling(), 0.55, 0.1);
+    let r = walk(&rolling(), 0.49, 0.08);
     for p in &r.plans {
         for s in &p.steps[..p.step_count as usize] {
             let stance = s.stance as usize;
