@@ -9,7 +9,7 @@ use messages::{Command, Detail, EventCode};
 /// \[s\] The command, and the end of the walk.
 const TIMES: [f64; 2] = [3.0, 13.0];
 
-/// \[m/s, m/s, rad/s\] Drawn from the corners of the ranges of Lola's gait; each of them was accepted and felled her.
+/// \[m/s, m/s, rad/s\] Drawn from the corners of the ranges of Lola's gait; all were accepted, and all but one felled her.
 const VELOCITIES: [[f64; 3]; 8] = [
     [-0.249, -0.137, 0.0],
     [0.389, -0.173, 0.314],

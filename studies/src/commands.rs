@@ -167,7 +167,7 @@ fn walk(setup: &Setup, seed: u64) -> Result<Walked, String> {
     let (mut ending, mut told) = (Ending::default(), Told::default());
     let (mut accepted, mut refused, mut shortened) = (0, 0, 0);
     let mut next = commands.iter().peekable();
-    let (mut way, mut watched) = (Way::default(), 0.0);
+    let (mut way, mut gone, mut watched) = (Way::default(), [0.0; 3], 0.0);
     for tick in 1..=(end / chain.cycle()) as u64 {
         let (time, cycle) = (tick as f64 * chain.cycle(), chain.cycle());
         let command = next.next_if(|(due, _)| *due <= time).map(|(_, command)| command);
@@ -196,9 +196,13 @@ fn walk(setup: &Setup, seed: u64) -> Result<Walked, String> {
         if c.sim_state.fallen == 1 {
             break;
         }
+        // Weighed by a triangle: what she sways to the sides, over a time that is no whole stride, is no speed.
         if time > end - WATCHED {
+            let before = way.gone;
             way.add(&c.sim_state, cycle);
-            watched += cycle;
+            let weight = 1.0 - (2.0 * (end - time) / WATCHED - 1.0).abs();
+            watched += weight * cycle;
+            gone = std::array::from_fn(|i| gone[i] + weight * (way.gone[i] - before[i]));
         }
     }
     Ok(Walked {
@@ -207,7 +211,7 @@ fn walk(setup: &Setup, seed: u64) -> Result<Walked, String> {
         refused,
         shortened,
         end: ending.end().0,
-        as_told: told.is_near(way.gone.map(|x| x / watched)),
+        as_told: told.is_near(gone.map(|x| x / watched)),
     })
 }
 
