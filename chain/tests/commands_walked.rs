@@ -60,3 +60,19 @@ fn velocities_at_the_corners_of_the_ranges_are_walked_or_taken_back() {
         assert!(off < 2e-3, "{velocity:?}: {walks:?}");
     }
 }
+
+/// Velocities drawn from the whole ranges, each number by itself, from a seed that nothing was tuned with: all of them are walked.
+#[test]
+fn velocities_drawn_at_random_are_walked() {
+    let limits = Setup::load(&root(None), "walk_2kmh_sensors").unwrap().gait.limits;
+    let mut seed = 9001_u64;
+    let mut within = |[low, high]: [f64; 2]| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (low + (high - low) * (seed >> 11) as f64 / (1u64 << 53) as f64) / limits.duration[1]
+    };
+    let drawn: Vec<_> = (0..20).map(|_| [limits.length, limits.side, limits.turn].map(&mut within)).collect();
+    let walked = parallel::map(drawn.len(), |k| walk(drawn[k]));
+    for (velocity, (fell, told)) in drawn.iter().zip(walked) {
+        assert!(!fell, "{velocity:?}, steps {told:?}");
+    }
+}

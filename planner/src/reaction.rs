@@ -29,10 +29,11 @@ impl Planner {
             self.calm = tick;
             return false;
         };
-        if ((tick - self.calm) as f64) * cycle_s < PERSISTS {
+        if tick.saturating_sub(self.calm) as f64 * cycle_s < PERSISTS {
             return false;
         }
         self.calm = tick;
+        // From where she will be when the plan begins.
         let t = (start - self.active.plan.start_tick) as f64 * cycle_s;
         let ahead = (start - state.header.tick) as f64 * cycle_s;
         let cycles = self.builder.model.cycles(landing.rest);

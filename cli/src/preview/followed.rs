@@ -182,6 +182,7 @@ impl<'a> Obedient<'a> {
         if out.answers.iter().any(Result::is_err) {
             return Err("the gait has no steps for this speed".to_owned());
         }
+        // Plans that are less than what was asked are faults of the gait.
         let mut plan_fault = None;
         for (code, detail) in out.events.drain() {
             if matches!(code, EventCode::PlanKept | EventCode::StepsUnchanged | EventCode::PlanRefused) {
@@ -204,6 +205,7 @@ impl<'a> Obedient<'a> {
             origin: state.origin,
             torso: state.torso,
         });
+        // The robot does as it is told, and its feet carry what they are planned to.
         (self.sensors.joint_angle, self.sensors.joint_speed) = (targets.angle, targets.speed);
         let left = state.load_left * self.robot.weight();
         self.sensors.foot_wrench[RIGHT].force[2] = self.robot.weight() - left;
@@ -219,7 +221,7 @@ impl<'a> Obedient<'a> {
         Ok(())
     }
 
-    /// What is not where it is planned, and the first joint that is held at a limit.
+    /// Sole or centre of gravity that is not where it is planned, and the first joint that is held at a limit.
     fn beyond(&mut self) -> Option<String> {
         let state = &self.state;
         let apart = |a: &[f64], b: &[f64]| (0..3).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>().sqrt();
@@ -240,6 +242,7 @@ impl<'a> Obedient<'a> {
             off(&what, far, 1e3 * OFF, "mm").or_else(|| off(&what, tilt(foot), TILT.to_degrees(), "deg"))
         });
         let body = || off("centre of gravity", 1e3 * apart(&state.com, &state.com_desired), 1e3 * OFF, "mm");
+        // A joint at a limit is mostly why.
         let held = || {
             self.robot.joints.iter().enumerate().find_map(|(j, joint)| {
                 let (angle, speed) = (self.sensors.joint_angle[j], self.sensors.joint_speed[j].abs());
@@ -277,6 +280,7 @@ impl<'a> Obedient<'a> {
                 vec![Command::Step(StepCommand { length, side: 0.0, turn: 0.0, duration }), Command::Start]
             }
         })?;
+        // Looked at where a step of the left foot's stance begins: two steps before are alike the two before them.
         for _ in 0..(LONGEST / CYCLE) as u64 {
             self.step(&[])?;
             if let [.., a, b, c, d, next] = self.steps[..]

@@ -70,7 +70,7 @@ pub struct Push {
     /// Sensors instead of the scene's.
     #[arg(long, value_delimiter = ',', value_enum)]
     pub sensors: Vec<SensorChoice>,
-    /// How far above the torso's own centre of gravity the pushes act (m).
+    /// Height of the pushes above the torso's own centre of gravity (m).
     #[arg(long, value_delimiter = ',', default_values_t = [0.0], value_parser = cases::number)]
     pub height: Vec<f64>,
     /// How many instants of a stride are tried.
