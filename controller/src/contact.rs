@@ -40,6 +40,8 @@ pub(crate) struct FootContact {
     pub felt: f64,
     /// The foot has come and its load has not: until then it keeps the ground with the upper force of `force_blend`.
     pub waits: bool,
+    /// It has touched the ground since it swung.
+    pub touched: bool,
 }
 
 impl FootContact {
@@ -60,6 +62,7 @@ impl FootContact {
             _ if felt || !loading => ContactPhase::Stance,
             _ => ContactPhase::Late,
         };
+        self.touched = self.phase != ContactPhase::Swing && (self.touched || felt);
         self.waits = self.phase == ContactPhase::Early
             || (self.phase == ContactPhase::Stance && loading && now < HALF);
     }
@@ -133,6 +136,21 @@ mod tests {
         assert!(!waits([0.1, 0.2], 0.0, 0.0), "lost the ground: searches for it");
         assert!(!waits([0.7, 0.8], 0.0, 400.0), "carries");
         assert!(!waits([0.2, 0.1], 0.0, 100.0), "its load goes");
+    }
+
+    #[test]
+    fn a_foot_has_touched_the_ground_until_it_swings() {
+        let mut c = FootContact::default();
+        let mut touched = |load, rise, force| {
+            after(&mut c, load, rise, force);
+            c.touched
+        };
+        assert!(!touched([0.0, 0.01], 0.0, 0.0), "late");
+        assert!(touched([0.1, 0.2], 0.0, 100.0));
+        assert!(touched([0.2, 0.3], 0.0, 0.0), "bounced off");
+        assert!(!touched([0.0; 2], 0.1, 0.0), "swings");
+        assert!(touched([0.0; 2], -0.1, 60.0), "early");
+        assert!(touched([0.0; 2], -0.1, 0.0), "bounced off");
     }
 
     #[test]

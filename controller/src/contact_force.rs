@@ -34,6 +34,8 @@ pub struct Support {
     pub sensor: Vector3<f64>,
     /// \[1\] Load factor rho.
     pub load: f64,
+    /// \[1\] Whether the foot is felt to be on the ground, whatever its load.
+    pub felt: f64,
     /// \[m\] @I axes, from the sensor: rectangle of the sole, x back, x front, y right, y left, in the foot's heading.
     pub sole: [f64; 4],
     /// \[m\] Height of the sensor above the sole.
@@ -84,7 +86,8 @@ pub(crate) fn distribute(
         FootWrench { force: f * rho_0 + Vector3::z() * delta, moment: rest * rho_0 }, // (5.15), (5.17)
         FootWrench { force: f * rho_1 - Vector3::z() * delta, moment: rest * rho_1 }, // (5.16), (5.18)
     ];
-    limit_to_soles(&mut wrenches, feet);
+    let lack = limit_to_soles(&mut wrenches, feet);
+    lean_on(&mut wrenches, feet, lack);
     wrenches
 }
 
@@ -97,26 +100,42 @@ fn shift_normal_force(
     feet: &[Support; 2],
 ) -> (f64, Vector3<f64>) {
     let f_max = FORCE_MAX * weight;
-    let r = feet[0].sensor - feet[1].sensor; // Delta r_ref,01
-    let d = r.xy().norm();
     let [rho_0, rho_1] = [feet[0].load, feet[1].load];
     let low = (-rho_0 * f_z).max(rho_1 * (f_z - f_max)); // (5.12)
     let high = (rho_0 * (f_max - f_z)).min(rho_1 * f_z);
-    if d < 0.05 || !(low < high) {
-        return (0.0, t);
-    }
-    let axis = Vector3::new(r.y / d, -r.x / d, 0.0); // x axis of frame N (5.11)
+    let Some((axis, d)) = shift_axis(feet).filter(|_| low < high) else { return (0.0, t) };
     let delta = gains.force_shift * (t.dot(&axis) / d).clamp(low, high); // (5.13), (5.14)
     (delta, t - axis * (delta * d)) // (5.19)
 }
 
-/// Keeps each centre of pressure in its sole and offers what one foot cannot carry to the other.
-fn limit_to_soles(wrenches: &mut [FootWrench; 2], feet: &[Support; 2]) {
+/// Keeps each centre of pressure in its sole and offers what one foot cannot carry to the other. Returns the moment that
+/// neither can.
+fn limit_to_soles(wrenches: &mut [FootWrench; 2], feet: &[Support; 2]) -> Vector3<f64> {
     let over_0 = limit(&mut wrenches[0], &feet[0]);
     wrenches[1].moment += over_0;
     let over_1 = limit(&mut wrenches[1], &feet[1]);
     wrenches[0].moment += over_1;
-    limit(&mut wrenches[0], &feet[0]);
+    limit(&mut wrenches[0], &feet[0])
+}
+
+/// Moves normal force to the foot on whose side the moment `lack` is missing, if it is felt to be on the ground: one that has
+/// come before its load may carry what the other cannot.
+fn lean_on(wrenches: &mut [FootWrench; 2], feet: &[Support; 2], lack: Vector3<f64>) {
+    let Some((axis, d)) = shift_axis(feet) else { return };
+    let wanted = lack.dot(&axis) / d;
+    let to = usize::from(wanted < 0.0);
+    let most = wrenches[1 - to].force.z.max(0.0) * feet[to].felt;
+    let moved = wanted.abs().min(most);
+    wrenches[to].force.z += moved;
+    wrenches[1 - to].force.z -= moved;
+}
+
+/// Axis of the moment that normal force shifted between the feet makes: x axis of frame N (5.11), and their distance \[m\]; none
+/// if they are too near.
+fn shift_axis(feet: &[Support; 2]) -> Option<(Vector3<f64>, f64)> {
+    let r = feet[0].sensor - feet[1].sensor; // Delta r_ref,01
+    let d = r.xy().norm();
+    (d >= 0.05).then(|| (Vector3::new(r.y / d, -r.x / d, 0.0), d))
 }
 
 /// Moves the centre of pressure to the nearest point of the sole; returns the moment taken away.
@@ -153,6 +172,7 @@ mod tests {
         std::array::from_fn(|i| Support {
             sensor: r[i],
             load: rho[i],
+            felt: 0.0,
             sole: [-10.0, 10.0, -10.0, 10.0],
             height: 0.0,
             heading: 0.0,
@@ -226,6 +246,23 @@ mod tests {
             &single,
         );
         assert_eq!(w[1].force.z, 0.0);
+    }
+
+    /// What lies beyond the sole that carries goes to a foot that has come before its load, as normal force, if it is there.
+    #[test]
+    fn a_foot_that_touches_carries_what_the_other_cannot() {
+        let mut feet = feet([1.0, 0.0], [Vector3::new(0.0, -0.1, 0.0), Vector3::new(0.0, 0.1, 0.0)]);
+        feet[0].sole = [-0.08, 0.22, -0.05, 0.05];
+        let carried = |feet: &[Support; 2]| {
+            let force = (Vector3::z() * 588.6, Vector2::new(0.0, -0.1), Vector3::new(0.0, -0.1, 0.8));
+            // Towards the left by 0.1 m: half of it in the right sole.
+            distribute(&gains(), 588.6, force, (Vector3::x() * 58.86, 0.0), feet)
+        };
+        assert_eq!(carried(&feet)[1].force.z, 0.0, "nobody is there");
+        feet[1].felt = 1.0;
+        let [right, left] = carried(&feet);
+        assert!((left.force.z - 0.05 / 0.2 * 588.6).abs() < 1e-9, "{}", left.force.z);
+        assert!((right.force.z + left.force.z - 588.6).abs() < 1e-9);
     }
 
     #[test]

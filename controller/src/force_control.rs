@@ -40,13 +40,15 @@ pub fn contact_stiffness(
 }
 
 /// \[m/s\] Speed at which a foot is lowered that finds no ground at its time ...
-const SEARCH_SPEED: f64 = 0.15;
+const SEARCH_SPEED: f64 = 0.4;
 /// \[m\] ... and how far.
-const SEARCH_DEPTH: f64 = 0.04;
+const SEARCH_DEPTH: f64 = 0.06;
 /// \[m\] A residue below this one is none.
 const NOTHING: f64 = 1e-6;
-/// \[s\] Ramp-up time of the ground-search speed: what a foot misses is mostly just below it.
-const HASTE: f64 = 0.05;
+/// \[m/s^2\] Acceleration of a foot that searches the ground, up to this speed \[m/s\], and beyond it: what it misses is mostly
+/// just below it.
+const GENTLE: (f64, f64) = (3.0, 0.15);
+const HASTE: f64 = 12.0;
 
 /// Compliance of a foot's contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -187,7 +189,8 @@ pub(crate) fn modify(
     next.fade(control.position_gain, dt);
     for (i, (compliance, reference)) in feet.iter().enumerate() {
         let value = last.value.fixed_rows::<3>(3 * i).into_owned();
-        let fall = search_speed(value[0], -last.rate[3 * i] - reference.rise, dt);
+        let most = if reference.contact.touched { GENTLE.1 } else { SEARCH_SPEED };
+        let fall = search_speed(value[0], -last.rate[3 * i] - reference.rise, dt).min(most);
         let rate =
             force_part.fixed_rows::<3>(3 * i) + free_part(control, compliance, reference, &value, fall);
         for c in 0..3 {
@@ -223,7 +226,8 @@ fn free_part(
 /// \[m/s\] Speed of a foot that goes down to search for the ground, whose modification is `height` \[m\] and that went down
 /// at `last` \[m/s\].
 fn search_speed(height: f64, last: f64, dt: f64) -> f64 {
-    let faster = last.max(0.0) + SEARCH_SPEED * dt / HASTE;
+    let last = last.max(0.0);
+    let faster = last + dt * if last < GENTLE.1 { GENTLE.0 } else { HASTE };
     if height > -SEARCH_DEPTH { SEARCH_SPEED.min(faster) } else { 0.0 }
 }
 
@@ -347,16 +351,24 @@ mod tests {
         let mut m = Modification::default();
         m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
         assert!((m.rate[0] + feet[0].1.rise).abs() < 1e-12, "does not go on down");
-        assert!((m.rate[3] + SEARCH_SPEED * 1e-3 / HASTE).abs() < 1e-12, "begins gently");
-        for _ in 0..50 {
+        assert!((m.rate[3] + GENTLE.0 * 1e-3).abs() < 1e-12, "begins gently");
+        for _ in 0..100 {
             m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
         }
-        assert!((m.rate[3] + SEARCH_SPEED).abs() < 1e-12);
+        assert!((m.rate[3] + SEARCH_SPEED.min(control.modification_rate[0])).abs() < 1e-12);
         for _ in 0..1000 {
             m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
         }
         let lowest = SEARCH_DEPTH.min(control.modification_limit[0]);
         assert!((m.value[3] + lowest).abs() < 1e-3, "{}", m.value[3]);
+
+        // One that has been on the ground bounced off: it strikes the harder the faster it follows.
+        feet[1].1.contact.touched = true;
+        let mut m = Modification::default();
+        for _ in 0..100 {
+            m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
+            assert!(m.rate[3] >= -GENTLE.1 - 1e-12, "{}", m.rate[3]);
+        }
     }
 
     #[test]

@@ -32,12 +32,13 @@ pub(super) fn force_targets(cycle: &ControlCycle<'_>, footing: &Footing) -> Foot
     // A foot that finds no ground has no load: the targets are those of the feet that are felt.
     let contacts = footing.contacts();
     let felt = |at: &Desired| felt_load(at.load, &contacts);
-    let mut wrenches = foot_forces(cycle, now, felt(now), stabilizing);
+    let touch = contacts.map(|c| c.felt * c.force_share());
+    let mut wrenches = foot_forces(cycle, now, (felt(now), touch), stabilizing);
     keep_ground(&mut wrenches, &contacts, control.force_blend[1]);
 
     // The feed forward is the rate of the plan alone; stabilizing it would feed noise forward.
     let nothing = (Vector3::zeros(), 0.0);
-    let planned = |at: &Desired, load| force_coordinates(&foot_forces(cycle, at, load, nothing));
+    let planned = |at: &Desired, load| force_coordinates(&foot_forces(cycle, at, (load, [0.0; 2]), nothing));
     let desired_rate = (planned(end, felt(end)) - planned(now, felt(now))) / cycle.dt;
     let deformation = if control.planned_deformation > 0.0 {
         let forces = [now, end].map(|at| planned(at, at.load));
@@ -56,17 +57,18 @@ pub(super) fn force_targets(cycle: &ControlCycle<'_>, footing: &Footing) -> Foot
     }
 }
 
-/// lambda_d1 in the sensor frames, whose axes are those of the flat soles (5.20), (5.21).
+/// lambda_d1 in the sensor frames, whose axes are those of the flat soles (5.20), (5.21), of feet with this load, as far as each is
+/// felt to touch.
 fn foot_forces(
     cycle: &ControlCycle<'_>,
     at: &Desired,
-    load: [f64; 2],
+    (load, touch): ([f64; 2], [f64; 2]),
     stabilizing: (Vector3<f64>, f64),
 ) -> [FootWrench; 2] {
     let mass = cycle.kinematics.mass();
     let com = Vector3::from(at.body.position);
     let force = (Vector3::from(at.body.acceleration) - multibody::GRAVITY) * mass;
-    let supports: [Support; 2] = std::array::from_fn(|i| support(cycle, at, load[i], i));
+    let supports: [Support; 2] = std::array::from_fn(|i| support(cycle, at, (load[i], touch[i]), i));
     let wrenches = distribute(
         cycle.control,
         mass * multibody::GRAVITY_ACCELERATION,
@@ -81,7 +83,7 @@ fn foot_forces(
 }
 
 /// Support of a foot, as planned.
-fn support(cycle: &ControlCycle<'_>, at: &Desired, load: f64, foot: usize) -> Support {
+fn support(cycle: &ControlCycle<'_>, at: &Desired, (load, felt): (f64, f64), foot: usize) -> Support {
     let offset = cycle.sensor_from_sole(foot);
     let [x, y, z, heading] = at.feet[foot].position;
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), heading);
@@ -90,6 +92,7 @@ fn support(cycle: &ControlCycle<'_>, at: &Desired, load: f64, foot: usize) -> Su
     Support {
         sensor: Vector3::new(x, y, z) + turn * tilted,
         load,
+        felt,
         sole: [back - offset.x, front - offset.x, right - offset.y, left - offset.y],
         height: offset.z,
         heading,

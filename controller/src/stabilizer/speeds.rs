@@ -118,13 +118,14 @@ impl JointSpeeds {
 }
 
 /// As planned; a toe that is to lie flat and is bent by more than [`YIELD`], as on the edge of a board, gives way.
-/// One that moves as planned lags behind as far, and must not. `angle` \[rad\] is its target, `bent` \[rad\] how far it is
-/// from there.
+/// One that moves as planned lags behind as far, and must not; one that is ahead of that does not lag. `angle` \[rad\] is its
+/// target, `bent` \[rad\] how far that is from where it is.
 fn toe_speed(plan: &Sample<1>, angle: f64, bent: f64, drift: f64) -> f64 {
     let over = bent - bent.clamp(-YIELD, YIELD);
     let back = (plan.position[0] - angle) * drift;
     let moving = plan.velocity[0] != 0.0 || plan.acceleration[0] != 0.0;
-    if over == 0.0 || moving {
+    let ahead = over * plan.velocity[0] < 0.0;
+    if over == 0.0 || moving && !ahead {
         plan.velocity[0] + back.clamp(-SETTLE.speed, SETTLE.speed)
     } else {
         -over * drift
