@@ -189,7 +189,7 @@ fn the_demonstration_on_types_2_and_3() {
             trouble.extend(c.events.iter().filter(|(_, code, _)| is_trouble(*code)));
         }
         let f = gatherer.figures(&setup, 0.0, None);
-        assert!(!f.fell && trouble.is_empty() && f.steps == 25, "type {depth}: {trouble:?} {f:?}");
+        assert!(!f.fell && trouble.is_empty() && f.steps == 33, "type {depth}: {trouble:?} {f:?}");
         assert_eq!(chain.robot().state().power, 1, "type {depth}");
         assert!(f.peak_normal_force_n < 1.6 * 597.3, "type {depth}: {} N", f.peak_normal_force_n);
     }

@@ -30,6 +30,8 @@ fn deserved(trial: &StallTrial, code: EventCode) -> bool {
         ("watchdog" | "lowlevel", true) => &[PowerOff],
         ("sim-backend", false) => &[FramesLost, NodeHeld, NodeBack],
         ("sim-backend", true) => &[FramesLost, NodeHeld, NodeBack, BusSilent, NodeStopped, DriveTripped],
+        // What was held for some cycles is caught up, no faster than a joint may.
+        ("controller", false) => &[TargetLimited],
         ("controller", true) => &[TargetsStale, PlanRefused],
         _ => &[],
     };

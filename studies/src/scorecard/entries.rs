@@ -1,7 +1,10 @@
 //! What is walked, and what is demanded of it: the one table of the scorecard.
 //!
-//! A scene is walked with the type of model and the bus cycle that stand here, whatever its file says. A speed that
-//! stands here takes the place of the one in the file. "G": appendix G of the thesis, with motor-side sensing.
+//! A scene is walked with the type of model and the bus cycle that stand here, whatever its file says. Commands that
+//! stand here take the place of those to walk in the file. "G": appendix G of the thesis, with motor-side sensing.
+
+use messages::Command;
+use messages::command::{StepCommand, VelocityCommand};
 
 use super::demand::{Demand, What};
 
@@ -11,8 +14,8 @@ pub(super) struct ScorecardEntry {
     pub(super) name: &'static str,
     /// File in `scenes/`.
     pub(super) scene: &'static str,
-    /// \[km/h\] Forward, instead of what the scene says.
-    pub(super) forward: Option<f64>,
+    /// Commands to walk, instead of those of the scene if there are any.
+    pub(super) told: &'static [Command],
     /// Type of the model.
     pub(super) depth: u8,
     /// \[s\] Bus cycles with which it is walked.
@@ -55,7 +58,21 @@ const fn turn(rad: f64) -> Demand {
 }
 
 const fn lola(name: &'static str, scene: &'static str, demands: &'static [Demand]) -> ScorecardEntry {
-    ScorecardEntry { name, scene, forward: None, depth: 3, cycles: LOLA, demands }
+    ScorecardEntry { name, scene, told: &[], depth: 3, cycles: LOLA, demands }
+}
+
+/// Steps of appendix G, which are not those that the gait takes at this speed by itself.
+const fn of_appendix_g(
+    name: &'static str,
+    scene: &'static str,
+    told: &'static [Command],
+    demands: &'static [Demand],
+) -> ScorecardEntry {
+    ScorecardEntry { told, ..lola(name, scene, demands) }
+}
+
+const fn steps(length: f64, duration: f64) -> Command {
+    Command::Step(StepCommand { length, side: 0.0, turn: 0.0, duration })
 }
 
 /// To the end of its way, which only who gets over what lies on it reaches.
@@ -71,19 +88,27 @@ const fn johnnie(name: &'static str, depth: u8) -> ScorecardEntry {
         UPRIGHT,
         NO_PEAK,
     ];
-    ScorecardEntry { name, scene: "johnnie_25kmh", forward: None, depth, cycles: JOHNNIE, demands: DEMANDS }
+    ScorecardEntry { name, scene: "johnnie_25kmh", told: &[], depth, cycles: JOHNNIE, demands: DEMANDS }
 }
 
 const fn fastest(name: &'static str, demands: &'static [Demand]) -> ScorecardEntry {
-    ScorecardEntry { name, scene: "walk_3kmh", forward: Some(3.34), depth: 3, cycles: LOLA, demands }
+    const TOLD: &[Command] =
+        &[Command::Velocity(VelocityCommand { forward: 3.34 / 3.6, left: 0.0, turn: 0.0 })];
+    ScorecardEntry { name, scene: "walk_3kmh", told: TOLD, depth: 3, cycles: LOLA, demands }
 }
 
 /// Walks, in the order of the table.
 pub(super) const ENTRIES: &[ScorecardEntry] = &[
-    lola("0 km/h", "walk_in_place", &[duration(1.2, "G: 1.2 s"), UPRIGHT, TRACKS, NO_PEAK]),
-    lola(
+    of_appendix_g(
+        "0 km/h",
+        "walk_in_place",
+        &[steps(0.0, 1.2), Command::Start],
+        &[duration(1.2, "G: 1.2 s"), UPRIGHT, TRACKS, NO_PEAK],
+    ),
+    of_appendix_g(
         "1 km/h",
         "walk_1kmh",
+        &[steps(0.34, 1.2), Command::Start],
         &[
             speed(1.02, "G: 1.0"),
             length(0.34, "G: 34 cm"),
@@ -93,9 +118,10 @@ pub(super) const ENTRIES: &[ScorecardEntry] = &[
             NO_PEAK,
         ],
     ),
-    lola(
+    of_appendix_g(
         "2 km/h",
         "walk_2kmh",
+        &[steps(0.5, 0.9), Command::Start],
         &[
             speed(2.0, "G: 2.0"),
             length(0.5, "G: 50 cm"),
@@ -143,9 +169,9 @@ pub(super) const ENTRIES: &[ScorecardEntry] = &[
     lola(
         "curve, 1.1 m in radius",
         "walk_curve",
-        &[speed(0.72, "none"), turn(0.216), UPRIGHT, TRACKS, NO_PEAK],
+        &[speed(0.72, "none"), turn(0.144), UPRIGHT, TRACKS, NO_PEAK],
     ),
-    lola("turning on the spot", "walk_turn", &[turn(0.24), UPRIGHT, TRACKS, NO_PEAK]),
+    lola("turning on the spot", "walk_turn", &[turn(0.16), UPRIGHT, TRACKS, NO_PEAK]),
     lola(
         "fixed distance of 3 m",
         "distance",
@@ -162,7 +188,7 @@ pub(super) const ENTRIES: &[ScorecardEntry] = &[
     ScorecardEntry {
         name: "Archie's own walk, open loop",
         scene: "archie_static",
-        forward: None,
+        told: &[],
         depth: 3,
         cycles: ARCHIE,
         demands: &[

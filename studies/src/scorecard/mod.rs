@@ -132,7 +132,7 @@ pub fn run(order: &ScorecardOptions<'_>, progress: Progress<'_>) -> Result<Score
 pub fn pictured(order: &ScorecardOptions<'_>) -> Result<Vec<Setup>> {
     let chosen = ENTRIES.iter().filter(|entry| PICTURED.contains(&entry.name));
     let asked = chosen.filter(|entry| order.only.is_none_or(|only| entry.name.contains(only)));
-    asked.map(|entry| walk::set_up(order, entry.scene, entry.depth, entry.cycles[0])).collect()
+    asked.map(|entry| walk::of_entry(order, entry, entry.cycles[0])).collect()
 }
 
 fn tasks<'a>(order: &'a ScorecardOptions<'a>) -> Vec<ScorecardTask<'a>> {

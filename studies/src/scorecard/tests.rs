@@ -43,7 +43,7 @@ fn a_fall_is_shown() {
     let entry = entries::ScorecardEntry {
         name: "too slow a controller",
         scene: "walk_2kmh",
-        forward: None,
+        told: &[],
         depth: 3,
         cycles: &[0.02],
         demands: DEMANDS,

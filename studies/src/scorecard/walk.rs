@@ -4,12 +4,11 @@ use ::drives::Sampling;
 use config::Setup;
 use config::method::Integrator;
 use config::method::Method;
-use messages::{EventCode, Process};
+use messages::{Command, EventCode, Process};
 use realtime::clock::thread_time;
 
 use super::entries::ScorecardEntry;
 use super::{Result, ScorecardOptions, ScorecardRow};
-use crate::undisturbed::walk_at;
 use chain::Chain;
 use chain::figures::{Figures, Gatherer};
 
@@ -80,17 +79,33 @@ fn end(who: Process, code: EventCode, time: f64) -> Option<String> {
     Some(format!("{what} at {time:.1} s ({})", who.name()))
 }
 
+/// The walk of an entry with this bus cycle \[s\].
+pub(super) fn of_entry(order: &ScorecardOptions<'_>, entry: &ScorecardEntry, cycle: f64) -> Result<Setup> {
+    let mut setup = set_up(order, entry.scene, entry.depth, cycle)?;
+    tell(&mut setup.scene.commands, entry.told);
+    Ok(setup)
+}
+
+/// Puts `told` in the place of the first command to walk; the others to walk are left out. Without any, nothing changes.
+fn tell(commands: &mut Vec<(f64, Command)>, told: &[Command]) {
+    let walks = |c: &Command| matches!(c, Command::Start | Command::Step(_) | Command::Velocity(_));
+    if told.is_empty() {
+        return;
+    }
+    if let Some(first) = commands.iter().position(|(_, c)| walks(c)) {
+        let time = commands[first].0;
+        commands.retain(|(_, c)| !walks(c));
+        commands.splice(first..first, told.iter().map(|c| (time, *c)));
+    }
+}
+
 /// All rows of an entry with one bus cycle.
 pub(super) fn rows(
     order: &ScorecardOptions<'_>,
     entry: &ScorecardEntry,
     cycle: f64,
 ) -> Result<Vec<ScorecardRow>> {
-    let mut setup = set_up(order, entry.scene, entry.depth, cycle)?;
-    if let Some(kmh) = entry.forward {
-        walk_at(&mut setup, kmh);
-    }
-    let walked = walk(&setup)?;
+    let walked = walk(&of_entry(order, entry, cycle)?)?;
     let f = &walked.figures;
     let row = |demand: &super::demand::Demand| {
         let ours = walked.well().then(|| demand.what.of(f));
