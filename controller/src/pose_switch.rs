@@ -15,16 +15,17 @@ pub(crate) fn take_up(modification: &mut Modification, before: &Desired, now: &D
     let (Some(old), Some(new)) = (old, new) else { return };
     for foot in 0..2 {
         let m = modification.value.fixed_rows::<3>(3 * foot).into_owned();
-        let place = |at: &Desired, rotation: &Matrix3<f64>| {
+        let place = |at: &Desired, rotation: &Matrix3<f64>, height: f64| {
             let [x, y, z, _] = at.feet[foot].position;
-            rotation.transpose() * (Vector3::new(x, y, z + m[0]) - Vector3::from(at.body.position))
+            rotation.transpose() * (Vector3::new(x, y, z + height) - Vector3::from(at.body.position))
         };
         let axes = |at: &Desired, rotation: &Matrix3<f64>| {
             let heading = Rotation3::from_axis_angle(&Vector3::z_axis(), at.feet[foot].position[3]);
             let pitch = Rotation3::from_axis_angle(&Vector3::y_axis(), at.pitch[foot].position[0]);
             rotation.transpose() * (heading * pitch).matrix()
         };
-        modification.residue[foot] += place(before, &old) - place(now, &new);
+        modification.residue[foot] += place(before, &old, m[0]) - place(now, &new, 0.0);
+        modification.value[3 * foot] = 0.0;
         // Pitch after roll, as the task has it; what turns about the vertical is left to the task.
         let tilt = Rotation3::from_axis_angle(&Vector3::y_axis(), m[2])
             * Rotation3::from_axis_angle(&Vector3::x_axis(), m[1]);

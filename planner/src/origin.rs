@@ -3,6 +3,7 @@
 use crate::planned_walk::PlannedWalk;
 use crate::pose::{PlanarPose, rotate};
 use crate::steps::{StepParameters, Stride};
+use crate::touchdown::lowered;
 use curves::Sample;
 use messages::{BodyPoint, ControllerState, LEFT, RIGHT};
 use multibody::GRAVITY_ACCELERATION as GRAVITY;
@@ -196,6 +197,7 @@ impl PlanOrigin {
         from.zmp = frame.local(zmp);
         from.torso = torso;
         from.torso.position[2] -= frame.heading;
+        from.height += lowered(state, s.stance);
         let relative = |pose: &PlanarPose| frame.relative(pose);
         let mut heights = s.heights;
         for z in [&mut heights.foothold, &mut heights.takeoff, &mut heights.landing] {

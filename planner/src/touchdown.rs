@@ -101,7 +101,7 @@ fn found(state: &ControllerState, foot: usize, planned: f64) -> f64 {
 }
 
 /// \[m\] Offset by which the stabilizer has put the sole of the stance foot lower (negative) or higher than planned.
-fn lowered(state: &ControllerState, stance: usize) -> f64 {
+pub(crate) fn lowered(state: &ControllerState, stance: usize) -> f64 {
     let by = state.modification[stance][0];
     if by.abs() > NOTICED { by } else { 0.0 }
 }
