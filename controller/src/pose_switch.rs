@@ -2,7 +2,7 @@
 //!
 //! Seen from the torso, soles are where they were a cycle before. What the new plan has elsewhere is taken up: turns
 //! about the horizontal axes by the modification of each foot, distances by its residue. Both fade, or are
-//! force controlled, as everything is that the stabilizer has modified.
+//! force controlled, as everything is that the stabilizer has modified. Modified heights end here: the measured pose has them.
 
 use crate::force_control::Modification;
 use crate::plan_follower::Desired;
@@ -88,5 +88,19 @@ mod tests {
         let same = m;
         take_up(&mut m, &now, &now);
         assert!((m.value - same.value).norm() < 1e-12 && (m.residue[0] - same.residue[0]).norm() < 1e-12);
+    }
+
+    /// A foot that was put 40 mm lower, and a plan that has measured the body that much higher above it: nothing is left to
+    /// fade, and no leg gets longer.
+    #[test]
+    fn the_height_of_a_lowered_foot_is_handed_over() {
+        let mut m = Modification::default();
+        m.value[3] = -0.04;
+        let (before, now) = (pose([0.0; 2], [0.0, 0.1, 0.77], 0.0), pose([0.0; 2], [0.0, 0.1, 0.81], 0.0));
+        let (was, other) = (led(&m, &before, 1).0, led(&m, &before, 0).0);
+        take_up(&mut m, &before, &now);
+        assert_eq!(m.value[3], 0.0);
+        assert!(m.residue[1].norm() < 1e-12 && (led(&m, &now, 1).0 - was).norm() < 1e-12);
+        assert!((led(&m, &now, 0).0 - other).norm() < 1e-12, "the other foot stays where it is");
     }
 }
