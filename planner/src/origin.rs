@@ -146,6 +146,7 @@ impl PlanOrigin {
     ///
     /// A robot whose joints are led errs by turning about its stance sole: the upper body leans, and everything else with it.
     /// So the plan begins leaning; joints go on where they are.
+    /// Seen from the stance foot she has the height that it was put lower by: the plan lies that much lower.
     pub(crate) fn inside(
         walk: &PlannedWalk,
         (k, t): (usize, f64),
