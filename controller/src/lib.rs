@@ -24,6 +24,7 @@ pub mod daemon;
 pub mod estimate;
 pub mod force_control;
 pub mod gaze;
+mod inclination_trim;
 pub mod inverse_kinematics;
 mod open_loop;
 pub mod plan_follower;

@@ -12,8 +12,8 @@ use config::gait::StabilizerGains;
 use config::parameters::STABILIZER;
 use config::{Gait, Robot};
 use messages::{
-    Command, ControllerState, Detail, EventCode, EventQueue, Header, JointTables, JointTargets, MAX_JOINTS,
-    Parameters, Plan, Reason, Sensors, StartUp, Verdict,
+    Command, ControllerState, Detail, EventCode, EventQueue, GaitState, Header, JointTables, JointTargets,
+    MAX_JOINTS, Parameters, Plan, Reason, Sensors, StartUp, Verdict,
 };
 use multibody::ModelError;
 use nalgebra::Vector3;
@@ -22,6 +22,7 @@ use std::f64::consts::FRAC_PI_2;
 use crate::contact_force::FootWrench;
 use crate::estimate::TaskEstimate;
 use crate::force_control::{Modification, modify};
+use crate::inclination_trim::InclinationTrim;
 use crate::open_loop::{OpenLoop, encoders_only};
 use crate::plan_follower::{Desired, PlanFollower};
 use crate::pose_switch;
@@ -57,6 +58,7 @@ pub struct Controller {
     measured: TaskSpace,
     desired: TaskSpace,
     contacts: FootContacts,
+    trim: InclinationTrim,
     modification: Modification,
     speeds: JointSpeeds,
     joints: JointState,
@@ -81,6 +83,7 @@ impl Controller {
             measured,
             desired,
             contacts: FootContacts::new(),
+            trim: InclinationTrim::default(),
             modification: Modification::default(),
             joints: JointState::new(),
             open_loop: gait.pattern.map(|pattern| OpenLoop::new(robot, &pattern, dt)),
@@ -145,7 +148,8 @@ impl Controller {
         self.plan.update(oldest, newest, &mut self.telemetry.events);
         let own = self.open_loop.as_ref().map(|_| encoders_only(sensors));
         let sensors = own.as_ref().unwrap_or(sensors);
-        let (sensors, failed) = self.watch.admit(sensors, self.robot.joints.len());
+        let (mut sensors, failed) = self.watch.admit(sensors, self.robot.joints.len());
+        self.trim.correct(&mut sensors.imu.orientation);
         if failed {
             self.telemetry.events.push(EventCode::SensorNotFinite, Detail::Nothing);
         }
@@ -165,6 +169,10 @@ impl Controller {
             wrenches = self.follow(sensors, &lag, past).wrenches.or(wrenches);
         }
         let Followed { now, estimate, wrenches: new } = self.follow(sensors, &lag, tick);
+        if new.is_some() && self.plan.plan().state == GaitState::Standing as u64 {
+            let carried: f64 = sensors.foot_wrench.iter().map(|w| w.force[2]).sum();
+            self.trim.learn(&estimate, carried / self.robot.weight(), self.clock.dt);
+        }
         self.fill_tables(&sensors.header);
         let com = match &self.open_loop {
             Some(_) => self.com_of_targets(&now),
@@ -181,6 +189,7 @@ impl Controller {
             com,
             now: &now,
             estimate: &estimate,
+            trim: self.trim.angles(),
         };
         self.telemetry.report(sensors, &self.clock, &outcome);
         (&self.telemetry.targets, &self.telemetry.state)
@@ -264,6 +273,7 @@ impl Controller {
     /// Stands still where the joints are: while the supply is off the targets follow the measured angles.
     fn start_from(&mut self, sensors: &Sensors) {
         self.watch.reset();
+        self.trim = InclinationTrim::default();
         self.contacts.reset(measured_forces(&self.measured, sensors));
         self.modification.reset();
         self.speeds.reset();

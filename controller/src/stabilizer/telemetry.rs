@@ -56,6 +56,8 @@ pub(super) struct CycleOutcome<'a> {
     pub(super) com: [f64; 3],
     pub(super) now: &'a Desired,
     pub(super) estimate: &'a TaskEstimate,
+    /// \[rad\] Roll and pitch that are taken away from what the IMU reads.
+    pub(super) trim: [f64; 2],
 }
 
 impl Telemetry {
@@ -111,6 +113,7 @@ impl Telemetry {
         s.load_left = now.load[1];
         s.tracking_error.copy_from_slice(outcome.lag);
         estimate.report(now, s);
+        s.inclination_trim = outcome.trim;
         if plan.id() == 0 || plan.plan().leads != BodyPoint::CentreOfGravity as u64 {
             s.dcm_error = [f64::NAN; 2];
         }

@@ -45,6 +45,8 @@ record! {
         inclination_error: [f64; 2],
         /// \[rad/s\] Its rate.
         inclination_rate_error: [f64; 2],
+        /// \[rad\] Roll and pitch that the IMU is taken to read too much: measured inclinations are without them.
+        inclination_trim: [f64; 2],
         /// \[m\] Planned zero-moment point.
         zmp_desired: [f64; 2],
         /// \[m\] Zero-moment point of the measured foot wrenches. @invalid NaN while no foot carries load
