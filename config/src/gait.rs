@@ -191,6 +191,8 @@ pub struct Reaction {
     pub swing: f64,
     /// \[s\] ... and shortest rest of one, whose foothold is free no more below it.
     pub rest: f64,
+    /// \[s\] By how much a swing may last longer, until a body that was pushed over its stance foot comes back.
+    pub wait: f64,
     /// \[m/s\] Fastest mean speed of the swing foot over the ground.
     pub speed: f64,
     /// \[m\] Least error of the divergent component to which a step reacts.
@@ -449,6 +451,7 @@ impl Reaction {
             width: table.interval("width", "m", POSITIVE),
             swing: table.number("swing", "s", POSITIVE),
             rest: table.number("rest", "s", POSITIVE),
+            wait: table.number("wait", "s", NOT_NEGATIVE),
             speed: table.number("speed", "m/s", POSITIVE),
             error: table.number("error", "m", POSITIVE),
             tolerance: table.numbers("tolerance", "m, m", POSITIVE),

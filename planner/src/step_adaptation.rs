@@ -2,7 +2,8 @@
 //! (Khadiv et al. 2016, Griffin et al. 2017).
 //!
 //! The divergent component xi = c + c'/w of a linear pendulum leaves a resting zero-moment point p as e^(w t). Up to the
-//! landing p may be moved within the sole; what remains is met by a landing elsewhere, and earlier.
+//! landing p may be moved within the sole; what remains is met by a landing elsewhere, and earlier, or later if the body was pushed
+//! over its stance foot and first has to come back.
 //!
 //! ```text
 //! Variables    u   landing                                                     [m]  stance foot
@@ -23,7 +24,7 @@ use config::gait;
 
 /// Weight of the offset b.
 const OFFSET: f64 = 30.0;
-/// \[m^2/s^2\] Weight of a shorter swing.
+/// \[m^2/s^2\] Weight of a shorter or longer swing.
 const HASTE: f64 = 0.01;
 /// Share of the sole, about its middle, in which the zero-moment point is counted on.
 const COUNTED: f64 = 0.8;
@@ -114,12 +115,17 @@ pub(crate) fn adapt(
         split(r).iter().map(|[u, b]| u * u + OFFSET * b * b).sum::<f64>() + late
     };
     let shortest = rules.rest.max(rules.swing - (t - s.lift)).min(rest);
-    let r = least(shortest, rest, cost);
-    let [[x, left_x], [y, left_y]] = split(r);
+    let catches = |r: f64| split(r).iter().zip(rules.tolerance).all(|([_, left], most)| left.abs() <= most);
+    let mut r = least(shortest, rest, cost);
+    // A body that was pushed over its stance foot may come back if the foot waits for it.
+    if -nu(s.stance) * axes[1].error > rules.error && !catches(r) {
+        let late = least(rest, rest + rules.wait, cost);
+        r = if catches(late) { late } else { r };
+    }
+    let [x, y] = split(r).map(|[moved, _]| moved);
     let local = s.foothold.relative(&s.landing);
     let pose = s.foothold.compose(&PlanarPose { x: local.x + x, y: local.y + y, ..local });
-    let catches = left_x.abs() <= rules.tolerance[0] && left_y.abs() <= rules.tolerance[1];
-    Some(Landing { pose, rest: r, catches })
+    Some(Landing { pose, rest: r, catches: catches(r) })
 }
 
 /// Both axes of the stance foot.
