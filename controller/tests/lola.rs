@@ -59,7 +59,8 @@ impl Rig {
     fn plan(&mut self, shift: [f64; 3]) -> Plan {
         let (_, state) = self.cycle(None);
         let mut plan = Plan { id: 1, start_tick: self.sensors.header.tick + 1, ..Plan::default() };
-        plan.state = GaitState::Standing as u64;
+        // Standing, the stabilizer would learn its inclination from forces that do not move this robot.
+        plan.state = GaitState::Walking as u64;
         let to = std::array::from_fn(|d| state.com[d] + shift[d]);
         plan.body = Path::resting(0.0, state.com);
         assert!(plan.body.push(&Sample::rest(state.com), &Sample::rest(to), 1.5));

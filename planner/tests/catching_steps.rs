@@ -13,6 +13,7 @@ const RULES: Reaction = Reaction {
     width: [0.15, 0.45],
     swing: 0.45,
     rest: 0.12,
+    wait: 0.4,
     speed: 1.6,
     error: 0.022,
     tolerance: [0.06, 0.06],
