@@ -17,10 +17,11 @@ use crate::estimate::TaskEstimate;
 
 /// \[s\]
 const TIME_CONSTANT: f64 = 1.0;
-/// \[m\] Largest distance between the two that is taken for an error of the inclination.
-const BELIEVED: f64 = 0.03;
+/// \[m\] Largest distance, forward or to the side, that is taken for an error of the inclination: half of what a push of 15 N
+/// makes.
+const BELIEVED: f64 = 0.016;
 /// \[rad\] Largest trim about each axis.
-const LARGEST: f64 = 0.05;
+const LARGEST: f64 = 0.02;
 /// \[1\] Share of the weight that the feet carry at least.
 const CARRIED: f64 = 0.7;
 
@@ -50,15 +51,17 @@ impl InclinationTrim {
 
     /// Learns from a cycle of `dt` \[s\] of standing, in which the feet carry `share` \[1\] of the weight.
     pub(crate) fn learn(&mut self, estimate: &TaskEstimate, share: f64, dt: f64) {
-        let off = estimate.zmp - estimate.com.xy();
-        if !(share > CARRIED && off.norm() < BELIEVED) {
+        if share < CARRIED {
             return;
         }
+        let off = estimate.zmp - estimate.com.xy();
         let (s, c) = estimate.angles.z.sin_cos();
         let [forward, left] = [c * off.x + s * off.y, c * off.y - s * off.x];
+        // Who is pushed by something is not mounted askew.
+        let believed = |off: f64| if off.abs() < BELIEVED { off } else { 0.0 };
         let height = estimate.com.z - estimate.feet[0][2].min(estimate.feet[1][2]);
         // Roll brings the centre of gravity to the right, pitch to the front.
-        let b = self.b + Vector2::new(left, -forward) * (dt / (TIME_CONSTANT * height));
+        let b = self.b + Vector2::new(believed(left), -believed(forward)) * (dt / (TIME_CONSTANT * height));
         self.b = b.map(|x| x.clamp(-LARGEST, LARGEST));
     }
 }

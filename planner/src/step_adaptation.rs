@@ -115,17 +115,20 @@ pub(crate) fn adapt(
         split(r).iter().map(|[u, b]| u * u + OFFSET * b * b).sum::<f64>() + late
     };
     let shortest = rules.rest.max(rules.swing - (t - s.lift)).min(rest);
-    let catches = |r: f64| split(r).iter().zip(rules.tolerance).all(|([_, left], most)| left.abs() <= most);
+    let caught = |r: f64| {
+        let [[_, x], [_, y]] = split(r);
+        [x.abs() <= rules.tolerance[0], y.abs() <= rules.tolerance[1]]
+    };
     let mut r = least(shortest, rest, cost);
-    // A body that was pushed over its stance foot may come back if the foot waits for it.
-    if -nu(s.stance) * axes[1].error > rules.error && !catches(r) {
+    // A body that was pushed over its stance foot, and no more than that, may come back if the foot waits for it.
+    if -nu(s.stance) * axes[1].error > rules.error && caught(r) == [true, false] {
         let late = least(rest, rest + rules.wait, cost);
-        r = if catches(late) { late } else { r };
+        r = if caught(late) == [true; 2] { late } else { r };
     }
     let [x, y] = split(r).map(|[moved, _]| moved);
     let local = s.foothold.relative(&s.landing);
     let pose = s.foothold.compose(&PlanarPose { x: local.x + x, y: local.y + y, ..local });
-    Some(Landing { pose, rest: r, catches: catches(r) })
+    Some(Landing { pose, rest: r, catches: caught(r) == [true; 2] })
 }
 
 /// Both axes of the stance foot.
