@@ -15,7 +15,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector2, Vector3};
 
 use crate::estimate::TaskEstimate;
 
-/// \[s\]
+/// \[s\] T.
 const TIME_CONSTANT: f64 = 1.0;
 /// \[m\] Largest distance, forward or to the side, that is taken for an error of the inclination: half of what a push of 15 N
 /// makes.

@@ -169,6 +169,7 @@ impl Controller {
             wrenches = self.follow(sensors, &lag, past).wrenches.or(wrenches);
         }
         let Followed { now, estimate, wrenches: new } = self.follow(sensors, &lag, tick);
+        // Standing on its feet, the robot learns what its inclination reads too much.
         if new.is_some() && self.plan.plan().state == GaitState::Standing as u64 {
             let carried: f64 = sensors.foot_wrench.iter().map(|w| w.force[2]).sum();
             self.trim.learn(&estimate, carried / self.robot.weight(), self.clock.dt);
