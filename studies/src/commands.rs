@@ -291,7 +291,7 @@ mod tests {
     }
 
     /// Timelines that nobody chose, with an IMU up to three times as askew as the thesis's: none ends in a fall or a stop. Without the
-    /// trim that is learned while she stands half of them do.
+    /// trim that is learned while she stands 2 of the 12 do.
     #[test]
     fn timelines_are_walked_with_an_imu_that_is_askew() {
         let setup = of_type(Setup::load(&root(None), "walk_2kmh_sensors").unwrap(), 1);
