@@ -277,6 +277,7 @@ impl Gait {
 
     /// Rules between tables.
     fn check(&self, top: &Section<'_, '_>) {
+        // Steps and their times within what may be commanded.
         let (step, limits) = (&self.step, &self.limits);
         if step.first_length > limits.length[1] {
             let [_, most] = limits.length;
@@ -303,6 +304,7 @@ impl Gait {
                 format!("swing_lag + swing_lead = {sum} s leave nothing of a swing of {swing:.3} s"),
             );
         }
+        // Tables that exclude or need one another.
         if self.reaction.is_some() && self.heel_strike.is_some() {
             top.problem(
                 "reaction",
@@ -310,7 +312,6 @@ impl Gait {
             );
         }
         if let Some(o) = &self.obstacles {
-            let [least, most] = limits.duration;
             if o.duration < least || o.duration > most {
                 top.problem(
                     "obstacles",
@@ -329,6 +330,7 @@ impl Gait {
                 ),
             );
         }
+        // Rows of speeds: within the limits, and of the speed that they say.
         for (i, [speed, length, duration]) in step.by_speed.iter().enumerate() {
             if *length < limits.length[0] || *length > limits.length[1] {
                 top.problem(
@@ -379,6 +381,7 @@ impl StepSettings {
         if by_speed.windows(2).any(|pair| pair[0][0] >= pair[1][0]) {
             table.problem("by_speed", "its speeds must ascend");
         }
+        // Each number in its own range, and then the two widths.
         let step = Self {
             width: table.number("width", "m", POSITIVE),
             width_min: table.number("width_min", "m", POSITIVE),

@@ -170,7 +170,8 @@ impl Controller {
         }
         let Followed { now, estimate, wrenches: new } = self.follow(sensors, &lag, tick);
         // Standing on its feet, the robot learns what its inclination reads too much.
-        if new.is_some() && self.plan.plan().state == GaitState::Standing as u64 {
+        let gait = self.plan.gait(self.plan.time(tick, self.clock.dt));
+        if new.is_some() && gait == GaitState::Standing {
             let carried: f64 = sensors.foot_wrench.iter().map(|w| w.force[2]).sum();
             self.trim.learn(&estimate, carried / self.robot.weight(), self.clock.dt);
         }

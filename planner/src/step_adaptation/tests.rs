@@ -38,6 +38,7 @@ fn walk() -> (PlannedWalk, Reaction, Sole) {
         early: None,
         inside: None,
     };
+    // Out of standing, the left foot first.
     let mut walk = PlannedWalk::new();
     let wish = StepParameters::on_the_spot(1.2);
     let demand = StepDemand {
@@ -185,6 +186,7 @@ fn the_search_finds_the_best_landing() {
             (0..2).map(|d| moved[d].powi(2) + OFFSET * off[d].powi(2)).sum::<f64>() + HASTE * late * late
         };
         let best = cost(&found);
+        // Landings, and times that are shorter than planned: waiting catches none of these errors.
         for k in 0..21 * 21 * 21 {
             let at = |n: i32| f64::from(k / n % 21) / 20.0;
             let reach = rules.speed * (s.end - t);
