@@ -4,6 +4,7 @@ use chain::Chain;
 use config::{Setup, root};
 use messages::command::PushCommand;
 use messages::{EventCode, GaitState};
+use std::f64::consts::PI;
 
 /// \[s\] Length of a push, and how long she is watched after it.
 const PUSH: f64 = 0.1;
@@ -17,17 +18,21 @@ fn setup(scene: &str, reacts: bool) -> Setup {
     setup
 }
 
-/// Walks on for [`WATCHED`] after a push of `impulse` \[N s\] at `time` \[s\]; `None` if she falls or stops, otherwise how many
-/// steps were changed.
+/// Walks, or stands, as before [`WATCHED`] after a push of `impulse` \[N s\] at `time` \[s\]; `None` if she does not, otherwise how
+/// many steps were changed.
 fn pushed(setup: &Setup, time: f64, impulse: [f64; 2]) -> Option<usize> {
     let mut chain = Chain::new(setup).unwrap();
-    let (cycle, mut adapted) = (chain.cycle(), 0);
+    let (cycle, mut adapted, mut gait) = (chain.cycle(), 0, GaitState::Idle);
+    let at = (time / cycle) as u64;
     for tick in 0..((time + PUSH + WATCHED) / cycle) as u64 {
-        if tick == (time / cycle) as u64 {
+        if tick == at {
             let [x, y] = impulse.map(|i| i / PUSH);
             chain.push(&PushCommand { force: [x, y, 0.0], duration: PUSH });
         }
         let c = chain.step();
+        if tick < at {
+            gait = GaitState::from(c.controller_state.gait);
+        }
         let changes = |code| matches!(code, EventCode::StepAdapted | EventCode::StepStretched);
         adapted += c.events.iter().filter(|(_, code, _)| changes(*code)).count();
         if c.sim_state.fallen == 1 {
@@ -35,17 +40,20 @@ fn pushed(setup: &Setup, time: f64, impulse: [f64; 2]) -> Option<usize> {
         }
     }
     let c = chain.step();
-    let walks = GaitState::from(c.controller_state.gait) == GaitState::Walking && c.power.on == 1;
-    walks.then_some(adapted)
+    let as_before = GaitState::from(c.controller_state.gait) == gait && c.power.on == 1;
+    as_before.then_some(adapted)
+}
+
+/// Numbers from 0 to 1, drawn from a seed.
+fn draw(seed: u64) -> impl Iterator<Item = f64> {
+    let next =
+        |x: &u64| Some(x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407));
+    std::iter::successors(Some(seed), next).skip(1).map(|x| (x >> 11) as f64 / (1u64 << 53) as f64)
 }
 
 /// Instants \[s\] of a stride of 1.6 s, drawn from a seed.
-fn instants(mut seed: u64, count: usize) -> Vec<f64> {
-    let mut draw = || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1u64 << 53) as f64
-    };
-    (0..count).map(|_| 8.0 + 1.6 * draw()).collect()
+fn instants(seed: u64, count: usize) -> Vec<f64> {
+    draw(seed).take(count).map(|x| 8.0 + 1.6 * x).collect()
 }
 
 /// 0.15 N s/kg to either side, at any time of a stride: more than footholds and times that are fixed bear.
@@ -65,6 +73,27 @@ fn pushes_to_the_side_are_caught_by_steps() {
     }
     assert_eq!(caught, 12, "{adapted} of them with steps that were changed");
     assert!(fell >= 3 && adapted >= fell, "{fell} fall without reaction, {adapted} needed one");
+}
+
+/// 0.55 N s/kg forward and 0.4 backward, up to 10 degrees to either side: more than her soles can hold while she stands. She steps
+/// out, and stands again. What they can hold, from anywhere, moves no foot.
+#[test]
+fn a_standing_robot_that_is_pushed_steps_out() {
+    let [with, without] = [true, false].map(|reacts| setup("stand", reacts));
+    let push = |per_kg: f64, angle: f64| {
+        [angle.cos(), angle.sin()].map(|share| share * per_kg * with.robot.total_mass)
+    };
+    let (mut caught, mut fell) = (0, 0);
+    for (k, x) in draw(5).take(12).enumerate() {
+        let (per_kg, ahead) = if k % 2 == 0 { (0.55, 0.0) } else { (0.4, PI) };
+        let impulse = push(per_kg, ahead + (2.0 * x - 1.0) * 0.17);
+        caught += usize::from(pushed(&with, 6.0, impulse).is_some_and(|steps| steps > 0));
+        fell += usize::from(pushed(&without, 6.0, impulse).is_none());
+    }
+    assert_eq!((caught, fell), (12, 12));
+    for x in draw(6).take(8) {
+        assert_eq!(pushed(&with, 6.0, push(0.2, 2.0 * PI * x)), Some(0));
+    }
 }
 
 /// Nobody pushes: bit for bit the same walk, whether she would react or not. Ideal and erring sensors, types 1 and 3.

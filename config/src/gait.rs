@@ -180,7 +180,7 @@ pub struct Obstacles {
     pub duration: f64,
 }
 
-/// Room for steps that react to a push (Khadiv et al. 2016): boxes of the landing and of its time.
+/// Room for steps that react to a push (Khadiv et al. 2016), out of standing too: boxes of the landing and of its time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Reaction {
     /// \[m\] Landing forward of the stance foot.

@@ -24,11 +24,11 @@ pub(crate) struct TaskEstimate {
     pub rotation: Matrix3<f64>,
     /// \[m\] Torso's origin.
     pub torso: Vector3<f64>,
-    /// \[m/s\] @torso Velocity of the torso's origin, the anchor foot being at rest.
+    /// \[m/s\] @torso Velocity of the torso's origin, the anchor foot being at rest where it presses.
     pub torso_velocity: Vector3<f64>,
     /// \[m\] Centre of gravity.
     pub com: Vector3<f64>,
-    /// \[m/s\] Its velocity, the anchor foot being at rest.
+    /// \[m/s\] Its velocity, the anchor foot being at rest where it presses.
     pub com_velocity: Vector3<f64>,
     /// \[m, rad\] Sole frames: x, y, z, heading.
     pub feet: [[f64; 4]; 2],
@@ -66,6 +66,8 @@ impl TaskEstimate {
         let rotation = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), turn).matrix() * imu.matrix();
         let torso = Vector3::new(planned[0], planned[1], planned[2]) - rotation * sole.position;
         let omega = rotation * Vector3::from(sensors.imu.angular_velocity);
+        // A sole that turns does so about the place where it presses: that is at rest.
+        let still = &pressed(robot, sensors, measured, anchor);
         // Everything else hangs on that pose.
         let mut estimate = Self {
             angles: torso::angles(&rotation),
@@ -73,9 +75,9 @@ impl TaskEstimate {
             turn,
             rotation,
             torso,
-            torso_velocity: measured.torso_velocity(anchor),
+            torso_velocity: measured.torso_velocity(anchor, still),
             com: torso + rotation * measured.com(),
-            com_velocity: rotation * measured.com_velocity(anchor),
+            com_velocity: rotation * measured.com_velocity(anchor, still),
             feet: std::array::from_fn(|i| {
                 let s = measured.sole(i);
                 let (p, r) = (torso + rotation * s.position, rotation * s.rotation);
@@ -150,6 +152,20 @@ impl TaskEstimate {
     }
 }
 
+/// \[m\] @sole Where a foot presses, within its sole; the origin without load.
+fn pressed(robot: &Robot, sensors: &Sensors, measured: &TaskSpace, foot: usize) -> Vector3<f64> {
+    let (sole, sensor) = (measured.sole(foot), measured.sensor(foot));
+    let wrench = &sensors.foot_wrench[foot];
+    let turn = sole.rotation.transpose();
+    let [force, moment] = [wrench.force, wrench.moment].map(|v| turn * sensor.rotation * Vector3::from(v));
+    if force.z <= LOADED * robot.weight() {
+        return Vector3::zeros();
+    }
+    let about = moment + (turn * (sensor.position - sole.position)).cross(&force);
+    let [back, front, right, left] = robot.feet[foot].support;
+    Vector3::new((-about.y / force.z).clamp(back, front), (about.x / force.z).clamp(right, left), 0.0)
+}
+
 /// Distance of `p` to the nearest edge of the convex hull of `points`, negative outside (then the largest distance to
 /// a violated edge line).
 fn depth_in_hull(points: &[Vector2<f64>], p: &Vector2<f64>) -> f64 {
@@ -174,6 +190,7 @@ fn depth_in_hull(points: &[Vector2<f64>], p: &Vector2<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan_follower::PlanFollower;
 
     #[test]
     fn depth_in_a_square_and_in_the_hull_of_two() {
@@ -183,5 +200,33 @@ mod tests {
         assert!((depth_in_hull(&square(0.0), &Vector2::new(-0.2, 0.5)) + 0.2).abs() < 1e-12);
         let both: Vec<_> = square(0.0).into_iter().chain(square(3.0)).collect();
         assert!((depth_in_hull(&both, &Vector2::new(2.0, 0.1)) - 0.1).abs() < 1e-12, "between the feet");
+    }
+
+    /// A robot that turns as a whole about a corner of its sole, on which it stands: its centre of gravity moves about that corner,
+    /// wherever the sole frame is.
+    #[test]
+    fn a_robot_that_turns_about_a_corner_moves_about_it() {
+        let robot = Robot::load(&config::root(None).join("robots/lola")).unwrap();
+        let mut measured = TaskSpace::new(&robot).unwrap();
+        let omega = Vector3::new(0.3, -0.5, 0.8);
+        let joints = vec![0.0; robot.joints.len()];
+        measured.update_motion(&joints, &joints, &omega.into());
+        let [back, front, right, left] = robot.feet[0].support;
+        let desired = PlanFollower::new([[back, front]; 2]).sample(0.0);
+        assert_eq!(desired.load, [1.0, 0.0]);
+        for corner in [[back, right], [back, left], [front, right], [front, left]] {
+            let (sole, sensor) = (measured.sole(0), measured.sensor(0));
+            let at = sole.position + sole.rotation * Vector3::new(corner[0], corner[1], 0.0);
+            let up = Vector3::new(0.0, 0.0, robot.weight());
+            let back = sensor.rotation.transpose();
+            let mut sensors = Sensors::default();
+            sensors.imu.orientation = [0.0, 0.0, 0.0, 1.0];
+            sensors.foot_wrench[0].force = (back * up).into();
+            sensors.foot_wrench[0].moment = (back * (at - sensor.position).cross(&up)).into();
+            let estimate = TaskEstimate::new(&robot, &sensors, &measured, &desired);
+            let expected = omega.cross(&(measured.com() - at));
+            let turned = estimate.rotation * expected;
+            assert!((estimate.com_velocity - turned).norm() < 1e-9, "{corner:?}: {}", estimate.com_velocity);
+        }
     }
 }

@@ -95,10 +95,10 @@ impl TaskSpace {
         self.model.motion(&mut self.data, &self.v);
     }
 
-    /// \[m/s\] @torso Velocity of the centre of gravity against the sole of `foot`, after
+    /// \[m/s\] @torso Velocity of the centre of gravity, the place `at` @sole of the sole of `foot` being at rest, after
     /// [`TaskSpace::update_motion`].
-    pub(crate) fn com_velocity(&self, foot: usize) -> Vector3<f64> {
-        self.model.cog_motion(&self.data).0 - self.model.frame_velocity(&self.data, &self.soles[foot]).linear
+    pub(crate) fn com_velocity(&self, foot: usize, at: &Vector3<f64>) -> Vector3<f64> {
+        self.model.cog_motion(&self.data).0 + self.torso_velocity(foot, at)
     }
 
     /// \[m\] Centre of gravity.
@@ -135,10 +135,11 @@ impl TaskSpace {
         Ok(self.place(&self.model.frame(name, [0.0; 3])?))
     }
 
-    /// \[m/s\] @torso Velocity of the torso's origin, the sole of `foot` being at rest, after
+    /// \[m/s\] @torso Velocity of the torso's origin, the place `at` @sole of the sole of `foot` being at rest, after
     /// [`TaskSpace::update_motion`].
-    pub(crate) fn torso_velocity(&self, foot: usize) -> Vector3<f64> {
-        -self.model.frame_velocity(&self.data, &self.soles[foot]).linear
+    pub(crate) fn torso_velocity(&self, foot: usize, at: &Vector3<f64>) -> Vector3<f64> {
+        let sole = self.model.frame_velocity(&self.data, &self.soles[foot]);
+        -sole.linear - sole.angular.cross(&(self.sole(foot).rotation * at))
     }
 
     /// Sensor frame of a foot.

@@ -111,7 +111,7 @@ impl FootTrajectories {
         for foot in 0..2 {
             stand(&mut plan.feet[foot], 0.0, &from.feet[foot], from.heights[foot]);
         }
-        let running = from.inside.map_or(0, |inside| {
+        let running = from.swinging().map_or(0, |inside| {
             let s = &strides[0];
             land(&mut plan.feet[1 - s.stance], &s.swing(&model.step), &inside.swing, s);
             1

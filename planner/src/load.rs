@@ -147,7 +147,7 @@ pub(crate) fn lay<const N: usize>(
     path.restart(0.0, [load]);
     let mut least = f64::INFINITY;
     // A step that is running has handed its load over.
-    let running = usize::from(horizon.from.inside.is_some());
+    let running = usize::from(horizon.from.swinging().is_some());
     if running > 0 {
         hold(path, load, horizon.strides[0].end);
     }

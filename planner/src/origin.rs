@@ -41,11 +41,11 @@ pub struct PlanOrigin {
     /// \[s, m\] By how much the stance foot has touched early, and where the zero-moment point shall be then: the first
     /// double support is that much longer.
     pub early: Option<(f64, [f64; 2])>,
-    /// The step in whose single support the plan begins; none: it begins with a double support.
+    /// The step that the plan begins with, if it is given; none: it begins with a double support, and steps are free.
     pub inside: Option<RunningStep>,
 }
 
-/// A step whose foot swings.
+/// A step whose landing is decided.
 #[derive(Clone, Copy, Debug)]
 pub struct RunningStep {
     /// The step; what of it lies before the begin of the plan has negative times.
@@ -156,24 +156,9 @@ impl PlanOrigin {
     ) -> Self {
         let (plan, s) = (&*walk.plan, &walk.strides[k]);
         let swing = 1 - s.stance;
-        // Body: a pendulum over the measured zero-moment point until then.
-        let ground = s.heights.foothold;
-        let w2 = GRAVITY / (state.com[2] - ground);
-        let mut body = Sample { position: state.com, velocity: state.com_velocity, acceleration: [0.0; 3] };
-        for d in 0..2 {
-            body.acceleration[d] = w2 * (state.com[d] - zmp[d]);
-        }
-        for d in 0..3 {
-            body.position[d] += ahead * (body.velocity[d] + 0.5 * ahead * body.acceleration[d]);
-            body.velocity[d] += ahead * body.acceleration[d];
-        }
-        // Upper body: leans as it is measured, and goes on leaning.
-        let mut torso = plan.torso.sample(t);
-        let (lean, rate) = (state.inclination_error, state.inclination_rate_error);
-        for i in 0..2 {
-            torso.position[i] -= lean[i] + ahead * rate[i];
-            torso.velocity[i] -= rate[i];
-        }
+        let body = fallen_on(state, zmp, s.heights.foothold, ahead);
+        let torso = leaning(state, &plan.torso.sample(t), ahead);
+        let rate = state.inclination_rate_error;
         // Swing foot: displaced as it is measured, and turned about the stance foot with everything else.
         let foot = plan.feet[swing].sample(t);
         let arm: [f64; 3] = std::array::from_fn(|d| state.feet[swing][d] - state.feet[s.stance][d]);
@@ -235,6 +220,59 @@ impl PlanOrigin {
         from.inside = Some(RunningStep { stride, swing });
         from
     }
+
+    /// The robot as it is measured, on the feet of the active plan `walk` that has ended, `ahead` \[s\] after the measurement `state`
+    /// with the zero-moment point at `zmp`, and the step with which it goes on, seen from below its stance foot.
+    pub(crate) fn standing(
+        walk: &PlannedWalk,
+        cycle_s: f64,
+        (state, zmp, ahead): (&ControllerState, [f64; 2], f64),
+        step: &Stride,
+    ) -> Self {
+        let stance = step.stance;
+        let mut from = Self::at_rest(walk, cycle_s, stance, step.parameters.duration);
+        let sole = walk.soles(walk.end_cycle as f64 * cycle_s)[stance];
+        let frame = PlanarPose::new(sole[0], sole[1], sole[3]);
+        from.body = seen(&frame, sole[2], &fallen_on(state, zmp, sole[2], ahead));
+        from.zmp = frame.local(zmp);
+        from.torso = leaning(state, &from.torso, ahead);
+        // Feet carry what lies over them.
+        let [right, left] = [from.feet[RIGHT].y, from.feet[LEFT].y];
+        from.load_left = ((from.zmp[1] - right) / (left - right)).clamp(0.0, 1.0);
+        let (at, z) = (from.feet[1 - stance], from.heights[1 - stance]);
+        from.inside = Some(RunningStep { stride: *step, swing: Sample::rest([at.x, at.y, z, at.heading]) });
+        from
+    }
+
+    /// The step whose foot swings at the begin of the plan, if one does.
+    pub(crate) fn swinging(&self) -> Option<&RunningStep> {
+        self.inside.as_ref().filter(|running| running.stride.lift <= 0.0)
+    }
+}
+
+/// Centre of gravity `ahead` \[s\] after its measurement: a pendulum over the measured zero-moment point until then.
+fn fallen_on(state: &ControllerState, zmp: [f64; 2], ground: f64, ahead: f64) -> Sample<3> {
+    let w2 = GRAVITY / (state.com[2] - ground);
+    let mut body = Sample { position: state.com, velocity: state.com_velocity, acceleration: [0.0; 3] };
+    for d in 0..2 {
+        body.acceleration[d] = w2 * (state.com[d] - zmp[d]);
+    }
+    for d in 0..3 {
+        body.position[d] += ahead * (body.velocity[d] + 0.5 * ahead * body.acceleration[d]);
+        body.velocity[d] += ahead * body.acceleration[d];
+    }
+    body
+}
+
+/// Upper body, planned as `torso`, `ahead` \[s\] after the measurement: it leans as it is measured, and goes on leaning.
+fn leaning(state: &ControllerState, torso: &Sample<3>, ahead: f64) -> Sample<3> {
+    let (lean, rate) = (state.inclination_error, state.inclination_rate_error);
+    let mut torso = *torso;
+    for i in 0..2 {
+        torso.position[i] -= lean[i] + ahead * rate[i];
+        torso.velocity[i] -= rate[i];
+    }
+    torso
 }
 
 /// A motion seen from a frame on the ground \[m\].

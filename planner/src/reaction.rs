@@ -1,5 +1,5 @@
-//! Reaction to pushes: in single support, a plan from where the robot is, whose foot lands where it catches the body
-//! ([`crate::step_adaptation`]). Where the stabilizer alone can make good for an error, nothing happens.
+//! Reaction to pushes: in single support, and out of standing, a plan from where the robot is, whose foot lands where it
+//! catches the body ([`crate::step_adaptation`]). Where the stabilizer alone can make good for an error, nothing happens.
 
 use crate::commands::Intent;
 use crate::footsteps::StepDemand;
@@ -8,79 +8,150 @@ use crate::origin::PlanOrigin;
 use crate::pose::PlanarPose;
 use crate::skills::{Script, Skill};
 use crate::sole::Sole;
-use crate::step_adaptation::{self, Divergence, Landing};
-use crate::steps::{ROUNDING, StepParameters};
+use crate::step_adaptation::{self, Divergence, Toppling};
+use crate::steps::{Heights, ROUNDING, StepParameters, Stride};
 use crate::verdict::PlanVerdict;
-use messages::{ControllerState, Detail, EventCode, GaitState};
+use messages::{ControllerState, Detail, EventCode, GaitState, LEFT, RIGHT};
 use multibody::GRAVITY_ACCELERATION as GRAVITY;
 
-/// \[s\] So long must a step be needed before it is changed: a bent frame on the bus jolts the body for 20 ms.
+/// \[s\] Time for which another step must be needed before it is made: a bent frame on the bus jolts the body for 20 ms.
 const PERSISTS: f64 = 0.03;
-/// \[rad\] A robot that leans farther is not caught by a step.
+/// \[rad\] Lean of a robot that no step catches.
 const LOST: f64 = 0.35;
+/// \[m\] Distance of the divergent component to the edge of the soles, at which a standing robot steps out.
+const EDGE: f64 = 0.015;
+/// \[s\] Time in which one foot takes all of the load, when she steps out.
+const LOADING: f64 = 0.1;
+
+/// The plan that catches the body.
+struct Catch {
+    from: PlanOrigin,
+    /// Its first landing is enough.
+    enough: bool,
+}
 
 impl Planner {
-    /// Plans on from inside the present step, if the body has to be caught; `true` if there is such a plan.
+    /// Plans on from inside the present step, or out of standing, if the body has to be caught; `true` if there is such a plan.
     pub(crate) fn react(&mut self, tick: u64, state: &ControllerState, gait: GaitState) -> bool {
         let start = tick + LEAD_MIN;
-        let cycle_s = self.builder.model.cycle_s;
-        let needed = self.catch(start, state, gait);
-        let Some((k, zmp, landing)) = needed else {
+        let catch = match gait {
+            GaitState::Starting | GaitState::Walking | GaitState::Stopping => {
+                self.step_elsewhere(start, state)
+            }
+            GaitState::Standing => self.step_out(start, state),
+            GaitState::Idle | GaitState::Fallen | GaitState::Halted => None,
+        };
+        let Some(Catch { from, enough }) = catch else {
             self.calm = tick;
             return false;
         };
-        if tick.saturating_sub(self.calm) as f64 * cycle_s < PERSISTS {
+        if tick.saturating_sub(self.calm) as f64 * self.builder.model.cycle_s < PERSISTS {
             return false;
         }
         self.calm = tick;
-        // From where she will be when the plan begins.
-        let t = (start - self.active.plan.start_tick) as f64 * cycle_s;
-        let ahead = (start - state.header.tick) as f64 * cycle_s;
-        let cycles = self.builder.model.cycles(landing.rest);
-        let from =
-            PlanOrigin::inside(&self.active, (k, t), (state, zmp, ahead), &landing.pose, (cycles, cycle_s));
         let to = if self.intent == Intent::Walk { GaitState::Walking } else { GaitState::Stopping };
-        if !self.walk_on(&from, to, landing.catches) {
+        if !self.walk_on(&from, to, enough) {
             return false;
         }
-        let sound = landing.catches && self.next.verdict == PlanVerdict::Sound;
+        let sound = enough && self.next.verdict == PlanVerdict::Sound;
         let code = if sound { EventCode::StepAdapted } else { EventCode::StepStretched };
         self.events.push(code, Detail::Plan(self.last_id + 1));
         self.publish(start, tick)
     }
 
-    /// Step of the active plan that runs at the tick `start`, the zero-moment point, and the landing that it needs instead of
-    /// its own.
-    fn catch(
-        &self,
-        start: u64,
-        state: &ControllerState,
-        gait: GaitState,
-    ) -> Option<(usize, [f64; 2], Landing)> {
+    /// Whether a plan that begins at the tick `start` can begin at the state `state`: it is one of the active plan, and none is
+    /// under way. A skill knows its steps, and knows of heights that others do not.
+    fn may_react(&self, start: u64, state: &ControllerState) -> bool {
+        let plan = &self.active.plan;
+        let known = state.plan_id == plan.id && start > plan.start_tick && self.next.plan.id == 0;
+        known && self.tasks.active == Skill::Walk && state.inclination_error.iter().all(|x| x.abs() < LOST)
+    }
+
+    /// From inside the step that runs at the tick `start`, to another landing than its own.
+    fn step_elsewhere(&self, start: u64, state: &ControllerState) -> Option<Catch> {
         let rules = self.gait.reaction.as_ref()?;
-        let walks = matches!(gait, GaitState::Starting | GaitState::Walking | GaitState::Stopping);
         let (walk, model) = (&self.active, &self.builder.model);
-        let known = state.plan_id == walk.plan.id && start > walk.plan.start_tick && self.next.plan.id == 0;
-        // A skill knows its steps, and knows of heights that others do not.
-        if !walks || !known || self.tasks.active != Skill::Walk {
+        if !self.may_react(start, state) {
             return None;
         }
         let t = (start - walk.plan.start_tick) as f64 * model.cycle_s;
         let k = walk.steps().iter().position(|s| t < s.end)?;
         let s = &walk.strides[k];
-        // Ground that was felt to be higher or lower goes on as it is; what is known to lie there may not.
-        let level = (s.heights.landing - s.heights.foothold).abs() < ROUNDING && !s.is_high(&model.step);
-        let level = level || self.builder.footsteps.sees_nothing();
-        let lean = state.inclination_error;
-        if t < s.lift || !level || !lean.iter().all(|x| x.abs() < LOST) {
+        // Where nothing is known to lie it may land elsewhere.
+        if t < s.lift || s.is_high(&model.step) && !self.builder.footsteps.sees_nothing() {
             return None;
         }
         let foot = state.feet[1 - s.stance];
         let sole = &model.soles[s.stance];
-        let zmp = zmp_in_sole(state, &s.foothold, sole);
+        let zmp = zmp_within(state, &s.foothold, sole);
         let body = divergence(state, zmp, s.heights.foothold, start, model.cycle_s)?;
         let landing = step_adaptation::adapt(rules, walk, (k, t), &body, [foot[0], foot[1]], sole)?;
-        Some((k, zmp, landing))
+        // From where she will be when the plan begins.
+        let ahead = (start - state.header.tick) as f64 * model.cycle_s;
+        let cycles = (model.cycles(landing.rest), model.cycle_s);
+        let from = PlanOrigin::inside(walk, (k, t), (state, zmp, ahead), &landing.pose, cycles);
+        Some(Catch { from, enough: landing.catches })
+    }
+
+    /// Out of standing, if her divergent component leaves the soles: neither ankles nor hips could bring it back.
+    fn step_out(&self, start: u64, state: &ControllerState) -> Option<Catch> {
+        let rules = self.gait.reaction.as_ref()?;
+        let (walk, model) = (&self.active, &self.builder.model);
+        let stands = start >= walk.plan.start_tick + walk.end_cycle && state.contact == [1; 2];
+        if !stands || !self.may_react(start, state) {
+            return None;
+        }
+        // Both soles as one, seen from the right foot.
+        let soles = walk.soles(walk.end_cycle as f64 * model.cycle_s);
+        let feet = soles.map(|p| PlanarPose::new(p[0], p[1], p[3]));
+        let apart = feet[RIGHT].relative(&feet[LEFT]).y;
+        let mut both = model.soles[RIGHT];
+        both.center[1] += 0.5 * apart;
+        both.half[1] += 0.5 * apart;
+        let at = &feet[RIGHT];
+        let w = pendulum(state, soles[RIGHT][2]);
+        let xi = [0, 1].map(|d| state.com[d] + state.com_velocity[d] / w);
+        let level = (soles[LEFT][2] - soles[RIGHT][2]).abs() < ROUNDING;
+        if !(level && both.margin(at, xi) < EDGE) {
+            return None;
+        }
+        // The foot on whose side the body is carries it, and takes its load with the zero-moment point at the edge.
+        let stance = if at.local(xi)[1] > 0.5 * apart { LEFT } else { RIGHT };
+        let sole = &model.soles[stance];
+        let edge = both.nearest(at, xi);
+        let loaded = sole.nearest(&feet[stance], edge);
+        let growth = (w * LOADING).exp();
+        let toppling = [0, 1].map(|d| {
+            let p = 0.5 * (edge[d] + loaded[d]);
+            p + (xi[d] - p) * growth
+        });
+        let body = Toppling { w, xi: toppling, ahead: model.model.com_forward };
+        let parameters = StepParameters::on_the_spot(self.parameters.duration);
+        let swing = parameters.duration * (1.0 - model.step.double_support);
+        let [foothold, takeoff] = [&feet[stance], &feet[1 - stance]];
+        let carried = (stance, sole);
+        let width = model.step.width;
+        let landing = step_adaptation::step_out(rules, &body, carried, [foothold, takeoff], (width, swing));
+        // The step, seen from its stance foot.
+        let lift = model.cycles(LOADING);
+        let end_cycle = lift + model.cycles(landing.rest);
+        let step = Stride {
+            parameters,
+            stance,
+            width,
+            begin: 0.0,
+            lift: lift as f64 * model.cycle_s,
+            end: end_cycle as f64 * model.cycle_s,
+            end_cycle,
+            foothold: PlanarPose::default(),
+            takeoff: foothold.relative(takeoff),
+            landing: foothold.relative(&landing.pose),
+            heights: Heights { lift: model.step.swing_height, ..Heights::default() },
+        };
+        let ahead = (start - state.header.tick) as f64 * model.cycle_s;
+        let measured = (state, zmp_within(state, at, &both), ahead);
+        let from = PlanOrigin::standing(walk, model.cycle_s, measured, &step);
+        Some(Catch { from, enough: landing.catches })
     }
 
     /// The plan from there: as commanded or, if that leaves the support or one step is not enough, with steps on the spot.
@@ -110,12 +181,17 @@ impl Planner {
 
 /// \[m\] Measured zero-moment point, or the nearest place in the sole at `foothold`: that of a foot which bounces, and does not
 /// press for a cycle, is metres away. The desired one without a measurement.
-fn zmp_in_sole(state: &ControllerState, foothold: &PlanarPose, sole: &Sole) -> [f64; 2] {
-    if !state.zmp.iter().all(|x| x.is_finite()) {
-        return state.zmp_desired;
+fn zmp_within(state: &ControllerState, foothold: &PlanarPose, sole: &Sole) -> [f64; 2] {
+    if state.zmp.iter().all(|x| x.is_finite()) {
+        sole.nearest(foothold, state.zmp)
+    } else {
+        state.zmp_desired
     }
-    let p = foothold.local(state.zmp);
-    foothold.point([0, 1].map(|d| p[d].clamp(sole.center[d] - sole.half[d], sole.center[d] + sole.half[d])))
+}
+
+/// \[1/s\] Rate of a pendulum as high over the ground as the measured centre of gravity.
+fn pendulum(state: &ControllerState, ground: f64) -> f64 {
+    (GRAVITY / (state.com[2] - ground)).sqrt()
 }
 
 /// Divergent component at the tick `start`, the zero-moment point staying at `zmp`; none without a measurement.
@@ -126,7 +202,7 @@ fn divergence(
     start: u64,
     cycle_s: f64,
 ) -> Option<Divergence> {
-    let w = (GRAVITY / (state.com[2] - ground)).sqrt();
+    let w = pendulum(state, ground);
     let growth = w * (start - state.header.tick) as f64 * cycle_s;
     let error = [0, 1].map(|d| {
         let shift = zmp[d] - state.zmp_desired[d];

@@ -140,7 +140,7 @@ pub(crate) fn knot_spacing(model: &WalkingModel, horizon: &Horizon<'_>) -> [f64;
     let mut first = Marks::from(0.0);
     mark(&mut first, &model.step, &strides[..head]);
     first.add(&standing_shape(0.0, strides[0].lift).corners());
-    if horizon.from.inside.is_some() {
+    if horizon.from.swinging().is_some() {
         first.add(&running_shape(strides[0].end).corners());
     }
     let mut rest = Marks::from(strides[head].begin.max(0.0));
@@ -174,7 +174,7 @@ fn shape(step: &gait::StepSettings, s: &Stride) -> Trapezoid {
 /// Shape during the first step; one out of standing modifies its double support only, one that is running what is left
 /// of it.
 fn first_shape(step: &gait::StepSettings, horizon: &Horizon<'_>, s: &Stride) -> Trapezoid {
-    if horizon.from.inside.is_some() {
+    if horizon.from.swinging().is_some() {
         return running_shape(s.end);
     }
     if horizon.state == GaitState::Starting { standing_shape(0.0, s.lift) } else { shape(step, s) }

@@ -102,33 +102,102 @@ pub(crate) fn adapt(
         return None;
     }
     let axes = |counted: f64| axes(rules, walk, (k, t), body, foot, (sole, counted));
-    let growth = |r: f64| (body.w * r).exp();
-    let stays = |(a, most): (Axis, f64)| a.error.abs() <= rules.error || a.missed(growth(rest)).abs() <= most;
+    let growth = (body.w * rest).exp();
+    let stays = |(a, most): (Axis, f64)| a.error.abs() <= rules.error || a.missed(growth).abs() <= most;
     if axes(1.0).into_iter().zip(rules.tolerance).all(stays) {
         return None;
     }
-    let axes = axes(COUNTED);
-    // The objective is convex in r where boxes do not bind, and has one valley where they do.
-    let split = |r: f64| axes.map(|a| a.split(growth(r), rules.speed * r));
-    let cost = |r: f64| {
-        let late = HASTE * (rest - r) * (rest - r);
-        split(r).iter().map(|[u, b]| u * u + OFFSET * b * b).sum::<f64>() + late
-    };
+    let problem = Problem { rules, w: body.w, axes: axes(COUNTED), planned: rest };
     let shortest = rules.rest.max(rules.swing - (t - s.lift)).min(rest);
-    let caught = |r: f64| {
-        let [[_, x], [_, y]] = split(r);
-        [x.abs() <= rules.tolerance[0], y.abs() <= rules.tolerance[1]]
-    };
-    let mut r = least(shortest, rest, cost);
+    let mut r = problem.best(shortest, rest);
     // A body that was pushed over its stance foot, and no more than that, may come back if the foot waits for it.
-    if -nu(s.stance) * axes[1].error > rules.error && caught(r) == [true, false] {
-        let late = least(rest, rest + rules.wait, cost);
-        r = if caught(late) == [true; 2] { late } else { r };
+    let outward = -nu(s.stance) * problem.axes[1].error > rules.error;
+    if outward && problem.caught(r) == [true, false] {
+        let late = problem.best(rest, rest + rules.wait);
+        r = if problem.caught(late) == [true; 2] { late } else { r };
     }
-    let [x, y] = split(r).map(|[moved, _]| moved);
-    let local = s.foothold.relative(&s.landing);
-    let pose = s.foothold.compose(&PlanarPose { x: local.x + x, y: local.y + y, ..local });
-    Some(Landing { pose, rest: r, catches: caught(r) == [true; 2] })
+    Some(problem.landing(r, &s.foothold, &s.landing))
+}
+
+/// A body that is about to leave a stand.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Toppling {
+    /// \[1/s\] Rate of the pendulum.
+    pub(crate) w: f64,
+    /// \[m\] @planning frame Its divergent component when the swing begins.
+    pub(crate) xi: [f64; 2],
+    /// \[m\] By how much it is ahead of a foot on which it rests.
+    pub(crate) ahead: f64,
+}
+
+/// Landing of the first step out of a stand that catches `body`: `stance` carries it, at the pose `foothold`; the other foot
+/// comes from `takeoff`, and would land `width` \[m\] beside it after a swing of `swing` \[s\].
+pub(crate) fn step_out(
+    rules: &gait::Reaction,
+    body: &Toppling,
+    (stance, sole): (usize, &Sole),
+    [foothold, takeoff]: [&PlanarPose; 2],
+    (width, swing): (f64, f64),
+) -> Landing {
+    let (xi, foot) = (foothold.local(body.xi), foothold.local([takeoff.x, takeoff.y]));
+    let home = PlanarPose::new(0.0, nu(stance) * width, 0.0);
+    let side = beside(rules, stance);
+    let axes = [0, 1].map(|d| {
+        let landing = [home.x, home.y][d];
+        let half = COUNTED * sole.half[d];
+        Axis {
+            xi: xi[d],
+            end: landing + [body.ahead, 0.0][d],
+            zmp: sole.center[d],
+            landing,
+            error: 0.0,
+            shift: [-half, half],
+            room: [rules.length, side][d],
+            foot: foot[d],
+        }
+    });
+    let problem = Problem { rules, w: body.w, axes, planned: swing };
+    problem.landing(problem.best(rules.swing.min(swing), swing), foothold, &foothold.compose(&home))
+}
+
+/// Both axes, and what may be changed.
+struct Problem<'a> {
+    rules: &'a gait::Reaction,
+    /// \[1/s\] Rate of the pendulum.
+    w: f64,
+    axes: [Axis; 2],
+    /// \[s\] Planned rest of the swing.
+    planned: f64,
+}
+
+impl Problem<'_> {
+    /// Change of the landing, and of the offset, of both axes if the foot lands after `r` \[s\].
+    fn split(&self, r: f64) -> [[f64; 2]; 2] {
+        self.axes.map(|a| a.split((self.w * r).exp(), self.rules.speed * r))
+    }
+
+    /// Which axes are caught then.
+    fn caught(&self, r: f64) -> [bool; 2] {
+        let [[_, x], [_, y]] = self.split(r);
+        [x.abs() <= self.rules.tolerance[0], y.abs() <= self.rules.tolerance[1]]
+    }
+
+    /// The best rest of the swing between two ends. The objective is convex in it where boxes do not bind, and has one valley
+    /// where they do.
+    fn best(&self, low: f64, high: f64) -> f64 {
+        least(low, high, |r| {
+            let late = HASTE * (self.planned - r) * (self.planned - r);
+            self.split(r).iter().map(|[u, b]| u * u + OFFSET * b * b).sum::<f64>() + late
+        })
+    }
+
+    /// The landing after `r` \[s\], planned at `landing`.
+    fn landing(&self, r: f64, foothold: &PlanarPose, landing: &PlanarPose) -> Landing {
+        let [x, y] = self.split(r).map(|[moved, _]| moved);
+        let local = foothold.relative(landing);
+        let pose = foothold.compose(&PlanarPose { x: local.x + x, y: local.y + y, ..local });
+        Landing { pose, rest: r, catches: self.caught(r) == [true; 2] }
+    }
 }
 
 /// Both axes of the stance foot.
@@ -151,8 +220,7 @@ fn axes(
     let landing = at.relative(&s.landing);
     let error = crate::pose::rotate(-at.heading, body.error);
     let foot = at.local(foot);
-    let [near, far] = rules.width;
-    let side = if nu(s.stance) > 0.0 { [near, far] } else { [-far, -near] };
+    let side = beside(rules, s.stance);
     [0, 1].map(|d| {
         let zmp = (end[d] - now[d] * growth) / (1.0 - growth);
         let half = counted * sole.half[d];
@@ -170,6 +238,12 @@ fn axes(
             foot: foot[d],
         }
     })
+}
+
+/// \[m\] Where the swing foot may land beside the foot `stance`.
+fn beside(rules: &gait::Reaction, stance: usize) -> [f64; 2] {
+    let [near, far] = rules.width;
+    if nu(stance) > 0.0 { [near, far] } else { [-far, -near] }
 }
 
 /// Minimum of `cost` between two ends, if it has one valley: by golden section.

@@ -28,7 +28,7 @@ record! {
         com_desired: [f64; 3],
         /// \[m\] Measured centre of gravity.
         com: [f64; 3],
-        /// \[m/s\] Its velocity, the foot it is anchored at being at rest.
+        /// \[m/s\] Its velocity, the foot it is anchored at being at rest where it presses.
         com_velocity: [f64; 3],
         /// \[m\] Measured divergent component of its motion: `c + c'/w`, `w` that of a linear pendulum of its height. @invalid NaN
         /// where it is not above the feet

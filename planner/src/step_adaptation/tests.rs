@@ -205,3 +205,53 @@ fn the_search_finds_the_best_landing() {
         }
     }
 }
+
+/// Out of standing, the pendulum walks in steps of 0.1 ms over the place of the stance sole that suits it best. Where it is said to
+/// be caught, it is at the landing as far ahead of the foot as it would rest, and over it, but for the tolerance; where not, no
+/// landing in the room of the reaction, at no time, would be better by more than the search leaves open.
+#[test]
+fn a_body_that_topples_is_caught_where_it_is_said_to_be() {
+    let (_, rules, sole) = walk();
+    let (width, ahead, swing) = (0.21, -0.13, 0.64);
+    let feet = [PlanarPose::default(), PlanarPose::new(0.0, 0.2, 0.0)];
+    // What is left over after landing at `at` after `r` seconds, with the best place for the zero-moment point.
+    let left_over = |xi: [f64; 2], at: [f64; 2], r: f64| {
+        [0, 1].map(|d| {
+            let goal = at[d] + [ahead, 0.0][d];
+            let ends = [-1.0, 1.0].map(|side| {
+                let p = sole.center[d] + side * COUNTED * sole.half[d];
+                let mut x = xi[d];
+                (0..(r * 1e4) as usize).for_each(|_| x += 1e-4 * W * (x - p));
+                x - goal
+            });
+            0.0f64.clamp(ends[0].min(ends[1]), ends[0].max(ends[1]))
+        })
+    };
+    let (mut caught, mut lost) = (0, 0);
+    for k in 0..60 {
+        let xi = [-0.45 + 0.013 * f64::from(k), 0.08 + 0.001 * f64::from(k % 20)];
+        let body = Toppling { w: W, xi, ahead };
+        let found = step_out(&rules, &body, (RIGHT, &sole), [&feet[0], &feet[1]], (width, swing));
+        let enough = |rest: [f64; 2], more: f64| (0..2).all(|d| rest[d].abs() <= rules.tolerance[d] + more);
+        let at = [found.pose.x, found.pose.y];
+        assert!((rules.swing..=swing).contains(&found.rest), "{k}: {}", found.rest);
+        assert!(at[0] >= rules.length[0] && at[0] <= rules.length[1], "{k}: {at:?}");
+        assert!(at[1] >= rules.width[0] && at[1] <= rules.width[1], "{k}: {at:?}");
+        if found.catches {
+            caught += 1;
+            assert!(enough(left_over(xi, at, found.rest), 2e-3), "{k}");
+        } else {
+            lost += 1;
+            let any = (0..20 * 20).any(|n| {
+                let [u, v] = [n % 20, n / 20].map(|i| f64::from(i) / 19.0);
+                let at = [
+                    rules.length[0] + u * (rules.length[1] - rules.length[0]),
+                    rules.width[0] + v * (rules.width[1] - rules.width[0]),
+                ];
+                enough(left_over(xi, at, rules.swing), -2e-3)
+            });
+            assert!(!any, "{k}: {xi:?} could be caught");
+        }
+    }
+    assert!(caught > 15 && lost > 15, "{caught} caught, {lost} lost");
+}
