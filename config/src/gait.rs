@@ -311,13 +311,9 @@ impl Gait {
                 "a foot that is to land on its heel lands nowhere else: leave out [heel_strike], or this",
             );
         }
-        if let Some(o) = &self.obstacles {
-            if o.duration < least || o.duration > most {
-                top.problem(
-                    "obstacles",
-                    format!("duration {} s lies outside of limits.duration", o.duration),
-                );
-            }
+        if let Some(o) = self.obstacles.filter(|o| o.duration < least || o.duration > most) {
+            let duration = o.duration;
+            top.problem("obstacles", format!("duration {duration} s lies outside of limits.duration"));
         }
         let leg_mass = self.model.leg_mass;
         if self.model.cog_method == CogMethod::ClosedForm && (leg_mass > 0.0 || self.obstacles.is_some()) {
