@@ -2,12 +2,15 @@
 //!
 //! A push of 0.1 s at the torso's own centre of gravity, or above it. Survived: 6 s later the robot has not fallen, no
 //! process has stopped it, and over the next stride it goes as far, as far sideways and as much round as it did before. The
-//! way it walks repeats with every stride of two steps, so the instants are drawn from one stride.
+//! way it walks repeats with every stride of two steps, so the instants are drawn from one stride. Beside it stands what a linear
+//! pendulum with the same soles, reach and timing would be caught from in one step.
 
+mod bound;
 mod cases;
 mod instants;
 mod picture;
 
+use std::f64::consts::FRAC_PI_4;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -19,6 +22,7 @@ pub(crate) use instants::{Instant, at_instants, largest};
 
 use crate::sheet::{Column, fixed, plain};
 use crate::{Error, Given, Sheet, Study};
+use bound::Pendulum;
 use cases::Case;
 use instants::{DURATION, largest_above};
 
@@ -44,6 +48,7 @@ const COLUMNS: &[Column] = &[
     plain("/direction", "push"),
     fixed("/always_n_s", "always [N s]", 2),
     fixed("/always_n_s_per_kg", "[N s/kg]", 3),
+    fixed("/bound_always_n_s_per_kg", "pendulum [N s/kg]", 3),
     fixed("/median_n_s_per_kg", "median [N s/kg]", 3),
     fixed("/impulse_n_s", "at each instant [N s]", 2),
 ];
@@ -99,6 +104,9 @@ struct Row {
     impulse_n_s: Vec<f64>,
     always_n_s: f64,
     always_n_s_per_kg: f64,
+    /// \[N s/kg\] Bound of a pendulum at each instant, and the least one; none of a gait without steps that react.
+    bound_n_s_per_kg: Vec<f64>,
+    bound_always_n_s_per_kg: Option<f64>,
     median_n_s_per_kg: f64,
 }
 
@@ -113,6 +121,9 @@ impl Study for Push {
             let (mass, found) = case.pushes(self, given)?;
             sheet.fact("mass_kg", mass);
             pictures.push((format!("push_{k}.png"), picture::polar(&found, mass)));
+            if found.iter().any(|row| row.bound_always_n_s_per_kg.is_some()) {
+                pictures.push((format!("push_bound_{k}.png"), picture::beside_bound(&found, mass)));
+            }
             rows.extend(found);
         }
         sheet.fact("push_duration_s", DURATION);
@@ -134,14 +145,20 @@ impl Case {
         let instants = starts.len();
         // Every direction at every instant is a search of its own.
         let (searches, done) = (DIRECTIONS.len() * instants, AtomicUsize::new(0));
+        let direction = |k: usize| {
+            let (sin, cos) = (FRAC_PI_4 * k as f64).sin_cos();
+            [cos, sin]
+        };
         let impulses = parallel::map(searches, |k| {
-            let turn = std::f64::consts::FRAC_PI_4 * (k / instants) as f64;
-            let found = largest_above(&starts[k % instants], [turn.cos(), turn.sin()], self.above);
+            let found = largest_above(&starts[k % instants], direction(k / instants), self.above);
             (given.progress)(done.fetch_add(1, Ordering::Relaxed), searches, &self.walk);
             found
         });
         let impulses = impulses.into_iter().collect::<Result<Vec<f64>, _>>()?;
-        let row = |(direction, each): (&&'static str, &[f64])| {
+        let pendulums: Option<Vec<_>> = starts.iter().map(|start| Pendulum::of(&self.setup, start)).collect();
+        let row = |(k, each): (usize, &[f64])| {
+            let bounds = pendulums.iter().flatten().map(|pendulum| pendulum.bound(direction(k)));
+            let bounds: Vec<f64> = bounds.collect();
             let mut sorted = each.to_vec();
             sorted.sort_by(f64::total_cmp);
             Row {
@@ -150,14 +167,16 @@ impl Case {
                 cycle_s: self.setup.scene.cycle,
                 sensors: self.sensors.clone(),
                 above_m: self.above,
-                direction,
+                direction: DIRECTIONS[k],
                 share: starts.iter().map(|start| start.share).collect(),
                 impulse_n_s: each.to_vec(),
                 always_n_s: sorted[0],
                 always_n_s_per_kg: sorted[0] / mass,
+                bound_always_n_s_per_kg: bounds.iter().copied().reduce(f64::min),
+                bound_n_s_per_kg: bounds,
                 median_n_s_per_kg: sorted[instants / 2] / mass,
             }
         };
-        Ok((mass, DIRECTIONS.iter().zip(impulses.chunks(instants)).map(row).collect()))
+        Ok((mass, impulses.chunks(instants).enumerate().map(row).collect()))
     }
 }

@@ -19,6 +19,29 @@ const PENS: [(Color, bool); 8] = [
     (SKY, true),
 ];
 
+/// One case beside the bound of the pendulum, forward, backward and to the sides; of a robot of this mass \[kg\].
+pub(super) fn beside_bound(rows: &[Row], mass: f64) -> Figure {
+    let mut chart = Chart::new("", "share of the stride", "[N s/kg]").at_least(0.2);
+    for (row, (color, _)) in rows.iter().zip(PENS).step_by(2) {
+        let line = |impulses: &[f64], by: f64| {
+            row.share.iter().zip(impulses).map(|(share, x)| [*share, x / by]).collect::<Vec<_>>()
+        };
+        let survived = line(&row.impulse_n_s, mass);
+        chart.dots("", survived.clone(), 3.5, color);
+        chart.line(row.direction, survived, color);
+        chart.dashed(&format!("{}, pendulum", row.direction), line(&row.bound_n_s_per_kg, 1.0), color);
+    }
+    Figure::new("Impulse survived, and what a pendulum is caught from in one step", &about(rows)).with(chart)
+}
+
+/// The case, in words.
+fn about(rows: &[Row]) -> String {
+    rows.first().map_or(String::new(), |row| {
+        let (walk, depth, cycle) = (&row.walk, row.depth, 1e3 * row.cycle_s);
+        format!("{walk}, type {depth}, cycle {cycle} ms, sensors {}, {} m above", row.sensors, row.above_m)
+    })
+}
+
 /// One case, all directions; of a robot of this mass \[kg\].
 pub(super) fn polar(rows: &[Row], mass: f64) -> Figure {
     let mut chart = Chart::new("", "[N s/kg]", "[N s/kg]").equal();
@@ -43,12 +66,6 @@ pub(super) fn polar(rows: &[Row], mass: f64) -> Figure {
         line.extend(line.first().copied());
         chart.styled(row.direction, line, Pen { color, width: 2.5, dashed });
     }
-    let about = rows.first().map_or(String::new(), |row| {
-        let (walk, depth, cycle) = (&row.walk, row.depth, 1e3 * row.cycle_s);
-        format!(
-            "{walk}, type {depth}, cycle {cycle} ms, sensors {}, {} m above; angle: share of the stride, from the right foot's load on",
-            row.sensors, row.above_m
-        )
-    });
+    let about = format!("{}; angle: share of the stride, from the right foot's load on", about(rows));
     Figure::new("Impulse survived over the stride, by direction", &about).with(chart)
 }
