@@ -16,6 +16,7 @@ pub mod components;
 pub mod cycles;
 pub mod figures_of_thesis;
 pub mod ground;
+pub mod hours;
 mod joint_bench;
 pub mod limits;
 pub mod lines;
@@ -82,6 +83,8 @@ macro_rules! studies {
 studies! {
     /// Which impulse the walking robot survives.
     Push: push::Push,
+    /// How often random pushes fell the walking robot in so many hours.
+    Hours: hours::Hours,
     /// How often the robot walks over ground that it was not told of, and as a robot that differs from what it was told.
     Ground: ground::GroundStudy,
     /// How many random timelines of commands the robot walks to their ends.

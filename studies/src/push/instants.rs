@@ -10,7 +10,7 @@ use crate::search::{Width, border};
 use crate::undisturbed::{AFTER, Stride, ended, standing, stride, walk_on};
 
 /// \[s\] Length of a push.
-pub(super) const DURATION: f64 = 0.1;
+pub(crate) const DURATION: f64 = 0.1;
 /// \[s\] When the stride that is disturbed begins at the earliest: the gait is periodic by then.
 const SETTLED: f64 = 8.0;
 /// \[N s\] Bisection ends with brackets this narrow.

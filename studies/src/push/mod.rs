@@ -18,13 +18,13 @@ use chain::parallel;
 use serde::Serialize;
 
 pub use cases::SensorChoice;
-pub(crate) use instants::{Instant, at_instants, largest};
+pub(crate) use instants::{DURATION, Instant, at_instants, largest};
 
 use crate::sheet::{Column, fixed, plain};
 use crate::{Error, Given, Sheet, Study};
 use bound::Pendulum;
 use cases::Case;
-use instants::{DURATION, largest_above};
+use instants::largest_above;
 
 /// Directions of the pushes, counterclockwise from the world's x axis, along which scenes walk.
 const DIRECTIONS: [&str; 8] = [

@@ -1,0 +1,206 @@
+//! Hours of random pushes: how often does the walking robot fall?
+//!
+//! Pushes of 0.1 s at the torso's own centre of gravity come from all sides after exponentially distributed times (a Poisson
+//! process); their impulses are exponentially distributed, too, so that some are larger than any that is survived. A robot that fell
+//! or was stopped begins anew with the undisturbed walk.
+
+use chain::{Chain, parallel};
+use config::Setup;
+use messages::command::PushCommand;
+use serde::Serialize;
+use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::push::DURATION;
+use crate::random::Random;
+use crate::sheet::{Column, fixed, plain};
+use crate::undisturbed::{STEP, ended, on_type, walk_at, walk_on};
+use crate::{Error, Given, Sheet, Study};
+
+/// \[s\] When she walks as she will go on.
+const SETTLED: f64 = 8.0;
+
+const COLUMNS: &[Column] = &[
+    plain("/depth", "type"),
+    plain("/kmh", "speed [km/h]"),
+    fixed("/hours", "hours", 2),
+    plain("/pushes", "pushes"),
+    plain("/falls", "falls"),
+    fixed("/falls_in_10_hours", "in 10 hours", 1),
+    fixed("/least_fatal_n_s_per_kg", "least that felled her [N s/kg]", 3),
+    fixed("/beyond", "larger ones survived", 2),
+];
+
+/// The study's arguments.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Hours {
+    /// Scene whose robot, gait and sensors they are; it walks straight on from a velocity command.
+    #[arg(long, default_value = "walk_1kmh")]
+    pub scene: String,
+    /// Speeds (km/h).
+    #[arg(long, value_delimiter = ',', default_values_t = [1.0, 2.0])]
+    pub speeds: Vec<f64>,
+    /// Simulation types.
+    #[arg(long, value_delimiter = ',', default_values_t = [1], value_parser = clap::value_parser!(u8).range(1..=5))]
+    pub types: Vec<u8>,
+    /// Length of each walk (h).
+    #[arg(long, default_value_t = 1.0)]
+    pub hours: f64,
+    /// How many walks of each type and speed.
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub walks: u64,
+    /// Seed of the first walk; the others count on.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Mean time between pushes (s).
+    #[arg(long, default_value_t = 10.0)]
+    pub every: f64,
+    /// Mean impulse (N s/kg).
+    #[arg(long, default_value_t = 0.1)]
+    pub mean: f64,
+}
+
+#[derive(Serialize)]
+struct Row {
+    depth: u8,
+    kmh: f64,
+    hours: f64,
+    pushes: usize,
+    falls: usize,
+    falls_in_10_hours: f64,
+    /// \[N s/kg\] None if she never fell.
+    least_fatal_n_s_per_kg: Option<f64>,
+    /// \[1\] Share of the pushes at least as large as that, from any side, that were survived.
+    beyond: Option<f64>,
+}
+
+/// A push, and whether it was the last one before a fall or a stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pushed {
+    /// \[N s/kg\]
+    impulse: f64,
+    fatal: bool,
+}
+
+impl Study for Hours {
+    fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        if !(positive(self.hours) && positive(self.every) && positive(self.mean)) {
+            return Err("--hours, --every and --mean take numbers above 0".into());
+        }
+        let mut rows = Vec::new();
+        let (walks, done) = (self.walks as usize, AtomicUsize::new(0));
+        let all = walks * self.types.len() * self.speeds.len();
+        for &depth in &self.types {
+            for &kmh in &self.speeds {
+                let (start, mass) = self.walking(given, depth, kmh)?;
+                let pushes = parallel::map(walks, |k| {
+                    let pushes = self.walk(&start, mass, self.seed + k as u64);
+                    (given.progress)(done.fetch_add(1, Ordering::Relaxed), all, &format!("{kmh} km/h"));
+                    pushes
+                });
+                rows.push(self.row(depth, kmh, &pushes.concat()));
+            }
+        }
+        let mut sheet = Sheet::titled(format!(
+            "Random pushes of {DURATION} s: every {} s, {} N s/kg on average, seeds from {}",
+            self.every, self.mean, self.seed
+        ));
+        sheet.rows("rows", COLUMNS, &rows);
+        Ok(sheet)
+    }
+}
+
+impl Hours {
+    /// The undisturbed walk, and the mass \[kg\] of the robot.
+    fn walking(&self, given: &Given<'_>, depth: u8, kmh: f64) -> Result<(Chain, f64), Error> {
+        let mut setup = Setup::load(given.config, &self.scene)?;
+        on_type(&mut setup, depth, if depth == 1 { 1e-3 } else { STEP });
+        walk_at(&mut setup, kmh);
+        walk_on(&mut setup, SETTLED);
+        let mut chain = Chain::new(&setup)?;
+        for _ in 0..(SETTLED / chain.cycle()) as u64 {
+            if ended(chain.step()) {
+                return Err(format!("scene {}: the robot falls without a push", self.scene).into());
+            }
+        }
+        Ok((chain, setup.robot.total_mass))
+    }
+
+    /// All pushes of one walk.
+    fn walk(&self, start: &Chain, mass: f64, seed: u64) -> Vec<Pushed> {
+        let mut random = Random(seed);
+        let drawn = |random: &mut Random, mean: f64| -mean * (1.0 - random.unit()).ln();
+        let (mut chain, cycle, mut pushes) = (start.clone(), start.cycle(), Vec::new());
+        let mut next = drawn(&mut random, self.every);
+        for k in 0..(3600.0 * self.hours / cycle) as u64 {
+            if k as f64 * cycle >= next {
+                next += drawn(&mut random, self.every).max(DURATION);
+                let impulse = drawn(&mut random, self.mean);
+                let (sin, cos) = (TAU * random.unit()).sin_cos();
+                let force = [cos, sin, 0.0].map(|share| share * impulse * mass / DURATION);
+                chain.push(&PushCommand { force, duration: DURATION });
+                pushes.push(Pushed { impulse, fatal: false });
+            }
+            if ended(chain.step()) {
+                if let Some(last) = pushes.last_mut() {
+                    last.fatal = true;
+                }
+                chain = start.clone();
+            }
+        }
+        pushes
+    }
+
+    fn row(&self, depth: u8, kmh: f64, pushes: &[Pushed]) -> Row {
+        let fatal = pushes.iter().filter(|push| push.fatal);
+        let falls = fatal.clone().count();
+        let least = fatal.map(|push| push.impulse).reduce(f64::min);
+        let hours = self.hours * self.walks as f64;
+        Row {
+            depth,
+            kmh,
+            hours,
+            pushes: pushes.len(),
+            falls,
+            falls_in_10_hours: 10.0 * falls as f64 / hours,
+            least_fatal_n_s_per_kg: least,
+            beyond: least.map(|least| {
+                let beyond = pushes.iter().filter(|push| push.impulse >= least);
+                1.0 - falls as f64 / beyond.count() as f64
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        hours: Hours,
+    }
+
+    /// A minute of small pushes are walked, of large ones not; the same seed is the same walk, and pushes come as often and are
+    /// as large as told.
+    #[test]
+    fn small_pushes_are_walked_and_large_ones_fell_her() {
+        let root = config::root(None);
+        let given = Given { config: &root, progress: &|_, _, _| () };
+        let of = |line: &str| Line::parse_from(line.split(' ')).hours;
+        let small = of("hours --hours 0.0167 --every 0.5 --mean 0.01");
+        let (start, mass) = small.walking(&given, 1, 1.0).unwrap();
+        let walked = small.walk(&start, mass, 3);
+        assert!(walked.iter().all(|push| !push.fatal) && walked.len() > 80 && walked.len() < 160);
+        let mean = walked.iter().map(|push| push.impulse).sum::<f64>() / walked.len() as f64;
+        assert!((mean - 0.01).abs() < 0.003, "{mean}");
+        let large = of("hours --hours 0.0167 --every 4 --mean 1");
+        let fell = large.walk(&start, mass, 3);
+        let row = large.row(1, 1.0, &fell);
+        assert!(row.falls > 3 && row.least_fatal_n_s_per_kg.unwrap() > 0.1, "{}", row.falls);
+        assert_eq!(fell, large.walk(&start, mass, 3));
+    }
+}
