@@ -152,7 +152,7 @@ impl TaskEstimate {
     }
 }
 
-/// \[m\] @sole Where a foot presses, within its sole; the origin without load.
+/// \[m\] @sole Pressure point of a foot, within its sole; the origin without load.
 fn pressed(robot: &Robot, sensors: &Sensors, measured: &TaskSpace, foot: usize) -> Vector3<f64> {
     let (sole, sensor) = (measured.sole(foot), measured.sensor(foot));
     let wrench = &sensors.foot_wrench[foot];

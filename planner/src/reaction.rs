@@ -45,6 +45,7 @@ impl Planner {
             self.calm = tick;
             return false;
         };
+        // A jolt is over before another step is needed for so long.
         if tick.saturating_sub(self.calm) as f64 * self.builder.model.cycle_s < PERSISTS {
             return false;
         }
@@ -59,8 +60,8 @@ impl Planner {
         self.publish(start, tick)
     }
 
-    /// Whether a plan that begins at the tick `start` can begin at the state `state`: it is one of the active plan, and none is
-    /// under way. A skill knows its steps, and knows of heights that others do not.
+    /// True if a plan from the tick `start` on can begin at `state`: that is one of the active plan, and no other plan is under
+    /// way. A skill knows its steps, and knows of heights that others do not.
     fn may_react(&self, start: u64, state: &ControllerState) -> bool {
         let plan = &self.active.plan;
         let known = state.plan_id == plan.id && start > plan.start_tick && self.next.plan.id == 0;

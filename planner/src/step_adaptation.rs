@@ -142,6 +142,7 @@ pub(crate) fn step_out(
     let (xi, foot) = (foothold.local(body.xi), foothold.local([takeoff.x, takeoff.y]));
     let home = PlanarPose::new(0.0, nu(stance) * width, 0.0);
     let side = beside(rules, stance);
+    // There is no plan to hold the body against: the zero-moment point begins in the middle of the sole, and all of xi is error.
     let axes = [0, 1].map(|d| {
         let landing = [home.x, home.y][d];
         let half = COUNTED * sole.half[d];
@@ -240,7 +241,7 @@ fn axes(
     })
 }
 
-/// \[m\] Where the swing foot may land beside the foot `stance`.
+/// \[m\] Room of a landing beside the foot `stance`: from, to.
 fn beside(rules: &gait::Reaction, stance: usize) -> [f64; 2] {
     let [near, far] = rules.width;
     if nu(stance) > 0.0 { [near, far] } else { [-far, -near] }

@@ -1,11 +1,12 @@
 //! Hours of random pushes: how often does the walking robot fall?
 //!
 //! Pushes of 0.1 s at the torso's own centre of gravity come from all sides after exponentially distributed times (a Poisson
-//! process); their impulses are exponentially distributed, too, so that some are larger than any that is survived. A robot that fell
-//! or was stopped begins anew with the undisturbed walk.
+//! process); their impulses are exponentially distributed, too, so that some are larger than any that is survived. A robot that
+//! fell, was stopped, or no longer walks begins anew with the undisturbed walk.
 
 use chain::{Chain, parallel};
 use config::Setup;
+use messages::GaitState;
 use messages::command::PushCommand;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -17,7 +18,7 @@ use crate::sheet::{Column, fixed, plain};
 use crate::undisturbed::{STEP, ended, on_type, walk_at, walk_on};
 use crate::{Error, Given, Sheet, Study};
 
-/// \[s\] When she walks as she will go on.
+/// \[s\] Time from which on she walks as she will go on.
 const SETTLED: f64 = 8.0;
 
 const COLUMNS: &[Column] = &[
@@ -43,10 +44,10 @@ pub struct Hours {
     /// Simulation types.
     #[arg(long, value_delimiter = ',', default_values_t = [1], value_parser = clap::value_parser!(u8).range(1..=5))]
     pub types: Vec<u8>,
-    /// Length of each walk (h).
-    #[arg(long, default_value_t = 1.0)]
+    /// Length of each walk (h); one of type 1 takes a core some 4 minutes per hour.
+    #[arg(long, default_value_t = 0.1)]
     pub hours: f64,
-    /// How many walks of each type and speed.
+    /// Number of walks of each type and speed.
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub walks: u64,
     /// Seed of the first walk; the others count on.
@@ -74,7 +75,7 @@ struct Row {
     beyond: Option<f64>,
 }
 
-/// A push, and whether it was the last one before a fall or a stop.
+/// A push; a fatal one is the last before a fall or a stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pushed {
     /// \[N s/kg\]
@@ -85,9 +86,11 @@ struct Pushed {
 impl Study for Hours {
     fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
-        if !(positive(self.hours) && positive(self.every) && positive(self.mean)) {
-            return Err("--hours, --every and --mean take numbers above 0".into());
+        let numbers = [self.hours, self.every, self.mean];
+        if !numbers.iter().chain(&self.speeds).all(|&x| positive(x)) {
+            return Err("--hours, --every, --mean and --speeds take numbers above 0".into());
         }
+        // Walks of one type and speed all begin with the same stride, each with pushes of its own seed.
         let mut rows = Vec::new();
         let (walks, done) = (self.walks as usize, AtomicUsize::new(0));
         let all = walks * self.types.len() * self.speeds.len();
@@ -142,9 +145,12 @@ impl Hours {
                 chain.push(&PushCommand { force, duration: DURATION });
                 pushes.push(Pushed { impulse, fatal: false });
             }
-            if ended(chain.step()) {
-                if let Some(last) = pushes.last_mut() {
-                    last.fatal = true;
+            let c = chain.step();
+            if ended(c) || GaitState::from(c.controller_state.gait) != GaitState::Walking {
+                // One without a push would be a fall, too.
+                match pushes.last_mut() {
+                    Some(last) => last.fatal = true,
+                    None => pushes.push(Pushed { impulse: 0.0, fatal: true }),
                 }
                 chain = start.clone();
             }

@@ -83,7 +83,7 @@ macro_rules! studies {
 studies! {
     /// Which impulse the walking robot survives.
     Push: push::Push,
-    /// How often random pushes fell the walking robot in so many hours.
+    /// Falls of the walking robot in hours of random pushes.
     Hours: hours::Hours,
     /// How often the robot walks over ground that it was not told of, and as a robot that differs from what it was told.
     Ground: ground::GroundStudy,

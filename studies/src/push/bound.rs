@@ -129,7 +129,7 @@ impl Pendulum {
         self.soles[foot][axis].map(|x| self.feet[foot][axis] + x)
     }
 
-    /// \[m\] Where the soles are along an axis once the other foot has landed wherever it gets in a swing of `time` \[s\].
+    /// \[m\] Box of both soles along an axis, once the other foot has landed wherever it gets in a swing of `time` \[s\].
     fn landing(&self, stance: usize, axis: usize, time: f64) -> [f64; 2] {
         let [near, far] = self.rules.width;
         let side = if stance == RIGHT { [near, far] } else { [-far, -near] };
