@@ -2,7 +2,7 @@
 //!
 //! Pushes of 0.1 s at the torso's own centre of gravity come from all sides after exponentially distributed times (a Poisson
 //! process); their impulses are exponentially distributed, too, so that some are larger than any that is survived. A robot that
-//! fell, was stopped, or no longer walks begins anew with the undisturbed walk.
+//! fell, was stopped, or no longer walks begins anew with the undisturbed walk; the largest push of the last seconds felled her.
 
 use chain::{Chain, parallel};
 use config::Setup;
@@ -29,8 +29,16 @@ const COLUMNS: &[Column] = &[
     plain("/falls", "falls"),
     fixed("/falls_in_10_hours", "in 10 hours", 1),
     fixed("/least_fatal_n_s_per_kg", "least that felled her [N s/kg]", 3),
-    fixed("/beyond", "larger ones survived", 2),
+    plain("/fell/0", "fell below 0.1"),
+    plain("/fell/1", "0.1 to 0.2"),
+    plain("/fell/2", "0.2 to 0.3"),
+    plain("/fell/3", "0.3 to 0.4"),
+    plain("/fell/4", "above"),
 ];
+/// \[N s/kg\] Least impulses of the classes in which pushes are counted.
+const CLASSES: [f64; 5] = [0.0, 0.1, 0.2, 0.3, 0.4];
+/// \[s\] Time that a fall takes at most.
+const FALLING: f64 = 4.0;
 
 /// The study's arguments.
 #[derive(clap::Args, Clone, Debug)]
@@ -71,13 +79,15 @@ struct Row {
     falls_in_10_hours: f64,
     /// \[N s/kg\] None if she never fell.
     least_fatal_n_s_per_kg: Option<f64>,
-    /// \[1\] Share of the pushes at least as large as that, from any side, that were survived.
-    beyond: Option<f64>,
+    /// Falls, and pushes, of each class: `3 of 40`.
+    fell: [String; CLASSES.len()],
 }
 
-/// A push; a fatal one is the last before a fall or a stop.
+/// A push; a fatal one is the largest of the last [`FALLING`] seconds before a fall or a stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pushed {
+    /// \[s\]
+    at: f64,
     /// \[N s/kg\]
     impulse: f64,
     fatal: bool,
@@ -137,20 +147,22 @@ impl Hours {
         let (mut chain, cycle, mut pushes) = (start.clone(), start.cycle(), Vec::new());
         let mut next = drawn(&mut random, self.every);
         for k in 0..(3600.0 * self.hours / cycle) as u64 {
-            if k as f64 * cycle >= next {
+            let at = k as f64 * cycle;
+            if at >= next {
                 next += drawn(&mut random, self.every).max(DURATION);
                 let impulse = drawn(&mut random, self.mean);
                 let (sin, cos) = (TAU * random.unit()).sin_cos();
                 let force = [cos, sin, 0.0].map(|share| share * impulse * mass / DURATION);
                 chain.push(&PushCommand { force, duration: DURATION });
-                pushes.push(Pushed { impulse, fatal: false });
+                pushes.push(Pushed { at, impulse, fatal: false });
             }
             let c = chain.step();
             if ended(c) || GaitState::from(c.controller_state.gait) != GaitState::Walking {
-                // One without a push would be a fall, too.
-                match pushes.last_mut() {
-                    Some(last) => last.fatal = true,
-                    None => pushes.push(Pushed { impulse: 0.0, fatal: true }),
+                // A fall that no push explains counts, too.
+                let late = pushes.iter_mut().rev().take_while(|push| at - push.at < FALLING);
+                match late.max_by(|a, b| a.impulse.total_cmp(&b.impulse)) {
+                    Some(push) => push.fatal = true,
+                    None => pushes.push(Pushed { at, impulse: 0.0, fatal: true }),
                 }
                 chain = start.clone();
             }
@@ -161,8 +173,12 @@ impl Hours {
     fn row(&self, depth: u8, kmh: f64, pushes: &[Pushed]) -> Row {
         let fatal = pushes.iter().filter(|push| push.fatal);
         let falls = fatal.clone().count();
-        let least = fatal.map(|push| push.impulse).reduce(f64::min);
         let hours = self.hours * self.walks as f64;
+        let class = |push: &Pushed| CLASSES.iter().rposition(|&least| push.impulse >= least);
+        let fell = std::array::from_fn(|k| {
+            let of = |fatal: bool| pushes.iter().filter(|p| class(p) == Some(k) && (p.fatal || !fatal)).count();
+            format!("{} of {}", of(true), of(false))
+        });
         Row {
             depth,
             kmh,
@@ -170,11 +186,8 @@ impl Hours {
             pushes: pushes.len(),
             falls,
             falls_in_10_hours: 10.0 * falls as f64 / hours,
-            least_fatal_n_s_per_kg: least,
-            beyond: least.map(|least| {
-                let beyond = pushes.iter().filter(|push| push.impulse >= least);
-                1.0 - falls as f64 / beyond.count() as f64
-            }),
+            least_fatal_n_s_per_kg: fatal.map(|push| push.impulse).reduce(f64::min),
+            fell,
         }
     }
 }
