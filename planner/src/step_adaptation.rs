@@ -26,8 +26,11 @@ use config::gait;
 const OFFSET: f64 = 30.0;
 /// \[m^2/s^2\] Weight of a shorter or longer swing.
 const HASTE: f64 = 0.01;
-/// Share of the sole, about its middle, in which the zero-moment point is counted on.
-const COUNTED: f64 = 0.8;
+/// Shares of the sole's length and width, about its middle, in which the zero-moment point is counted on: a sole that presses in
+/// a corner turns about it.
+const COUNTED: [f64; 2] = [0.5, 0.8];
+/// The same where the stabilizer alone is to make good for an error.
+const ALONE: [f64; 2] = [0.7, 1.0];
 /// Steps of the search for r: its bracket shrinks to a thousandth.
 const NARROWINGS: usize = 16;
 
@@ -101,10 +104,10 @@ pub(crate) fn adapt(
     if rest < rules.rest {
         return None;
     }
-    let axes = |counted: f64| axes(rules, walk, (k, t), body, foot, (sole, counted));
+    let axes = |counted: [f64; 2]| axes(rules, walk, (k, t), body, foot, (sole, counted));
     let growth = (body.w * rest).exp();
     let stays = |(a, most): (Axis, f64)| a.error.abs() <= rules.error || a.missed(growth).abs() <= most;
-    if axes(1.0).into_iter().zip(rules.tolerance).all(stays) {
+    if axes(ALONE).into_iter().zip(rules.tolerance).all(stays) {
         return None;
     }
     let problem = Problem { rules, w: body.w, axes: axes(COUNTED), planned: rest };
@@ -145,7 +148,7 @@ pub(crate) fn step_out(
     // There is no plan to hold the body against: the zero-moment point begins in the middle of the sole, and all of xi is error.
     let axes = [0, 1].map(|d| {
         let landing = [home.x, home.y][d];
-        let half = COUNTED * sole.half[d];
+        let half = COUNTED[1] * sole.half[d]; // no step of hers leads on, and turns the foot
         Axis {
             xi: xi[d],
             end: landing + [body.ahead, 0.0][d],
@@ -208,7 +211,7 @@ fn axes(
     (k, t): (usize, f64),
     body: &Divergence,
     foot: [f64; 2],
-    (sole, counted): (&Sole, f64),
+    (sole, counted): (&Sole, [f64; 2]),
 ) -> [Axis; 2] {
     let s = &walk.strides[k];
     let at = &s.foothold;
@@ -224,7 +227,7 @@ fn axes(
     let side = beside(rules, s.stance);
     [0, 1].map(|d| {
         let zmp = (end[d] - now[d] * growth) / (1.0 - growth);
-        let half = counted * sole.half[d];
+        let half = counted[d] * sole.half[d];
         let planned = [landing.x, landing.y][d];
         // A plan may land outside of the box, and a zero-moment point be outside of the counted part: both stay where they are.
         let [low, high] = [rules.length, side][d];

@@ -176,7 +176,8 @@ impl Hours {
         let hours = self.hours * self.walks as f64;
         let class = |push: &Pushed| CLASSES.iter().rposition(|&least| push.impulse >= least);
         let fell = std::array::from_fn(|k| {
-            let of = |fatal: bool| pushes.iter().filter(|p| class(p) == Some(k) && (p.fatal || !fatal)).count();
+            let of =
+                |fatal: bool| pushes.iter().filter(|p| class(p) == Some(k) && (p.fatal || !fatal)).count();
             format!("{} of {}", of(true), of(false))
         });
         Row {

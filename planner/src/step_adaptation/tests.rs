@@ -69,7 +69,7 @@ fn left_over(walk: &PlannedWalk, t: f64, error: [f64; 2], landing: &Landing, sol
     let to = [landing.pose.x - s.landing.x, landing.pose.y - s.landing.y];
     std::array::from_fn(|d| {
         let p = (end[d] - now[d] * growth) / (1.0 - growth);
-        let half = COUNTED * sole.half[d];
+        let half = [0.5, 0.8][d] * sole.half[d];
         let [low, high] = [sole.center[d] - half, sole.center[d] + half];
         let fall = |p: f64| {
             let (mut xi, steps) = (now[d] + error[d], (landing.rest / 1e-4).round() as usize);
@@ -219,7 +219,7 @@ fn a_body_that_topples_is_caught_where_it_is_said_to_be() {
         [0, 1].map(|d| {
             let goal = at[d] + [ahead, 0.0][d];
             let ends = [-1.0, 1.0].map(|side| {
-                let p = sole.center[d] + side * COUNTED * sole.half[d];
+                let p = sole.center[d] + side * 0.8 * sole.half[d];
                 let mut x = xi[d];
                 (0..(r * 1e4) as usize).for_each(|_| x += 1e-4 * W * (x - p));
                 x - goal
