@@ -80,6 +80,12 @@ struct Walked {
     as_told: bool,
 }
 
+impl Walked {
+    fn failed(&self) -> bool {
+        self.end != WalkEnd::Done || !self.as_told
+    }
+}
+
 impl Study for RandomCommands {
     fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
         let mut rows = Vec::new();
@@ -102,15 +108,34 @@ impl Study for RandomCommands {
 /// The scene on another type, and without commands of its own.
 fn of_type(mut setup: Setup, depth: u8) -> Setup {
     on_type(&mut setup, depth, if depth == 1 { 1e-3 } else { STEP });
+    uncommanded(setup)
+}
+
+/// The scene standing, and nobody pushes.
+fn uncommanded(mut setup: Setup) -> Setup {
     setup.scene.commands.retain(|(_, command)| matches!(command, Command::Stand));
     setup.scene.pushes.clear();
     setup
 }
 
+/// Timelines that are not walked as told: their seeds, and how they end.
+///
+/// # Errors
+/// The robot cannot be built.
+pub(crate) fn not_as_told(setup: &Setup, seeds: std::ops::Range<u64>) -> Result<Vec<String>, String> {
+    let setup = uncommanded(setup.clone());
+    let mut failed = Vec::new();
+    for seed in seeds {
+        let walked = walk(&setup, seed)?;
+        let how = if walked.end == WalkEnd::Done { "not as told".into() } else { walked.end.to_string() };
+        failed.extend(walked.failed().then(|| format!("seed {seed}: {how}")));
+    }
+    Ok(failed)
+}
+
 fn summed(depth: u8, walked: &[Walked]) -> Row {
     let count = |of: &dyn Fn(&Walked) -> bool| walked.iter().filter(|w| of(w)).count() as u64;
-    let failed = |w: &Walked| w.end != WalkEnd::Done || !w.as_told;
-    let seeds: Vec<String> = walked.iter().filter(|w| failed(w)).map(|w| w.seed.to_string()).collect();
+    let seeds: Vec<String> = walked.iter().filter(|w| w.failed()).map(|w| w.seed.to_string()).collect();
     Row {
         depth,
         timelines: walked.len() as u64,

@@ -56,12 +56,12 @@ impl GroundKind {
     }
 
     /// In tables and charts.
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         self.row().1
     }
 
     /// Unit of its size.
-    pub(super) fn unit(self) -> &'static str {
+    pub(crate) fn unit(self) -> &'static str {
         self.row().2
     }
 

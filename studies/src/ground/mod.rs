@@ -182,6 +182,26 @@ fn row((kind, size): (GroundKind, f64), (depth, speed_kmh): (u8, f64), places: &
     }
 }
 
+/// Random places of a kind and size that a robot does not walk over at a speed \[km/h\]: their seeds, and how it ends there.
+///
+/// # Errors
+/// The robot cannot be built, or does not walk on level ground.
+pub(crate) fn not_walked(
+    setup: &Setup,
+    (kind, size): (GroundKind, f64),
+    kmh: f64,
+    seeds: std::ops::Range<u64>,
+) -> Result<Vec<String>, String> {
+    let walk = (setup.scene.depth, kmh);
+    let reference = Reference::of(setup.clone(), walk).map_err(|e| e.to_string())?;
+    let mut failed = Vec::new();
+    for seed in seeds {
+        let of = reference.over(kind, size, seed)?;
+        failed.extend(of.map(|f| format!("{} {size}, {kmh} km/h, seed {seed}: {}", kind.name(), f.how)));
+    }
+    Ok(failed)
+}
+
 impl Reference {
     fn of(mut setup: Setup, (depth, kmh): (u8, f64)) -> Result<Self, Error> {
         on_type(&mut setup, depth, STEP);

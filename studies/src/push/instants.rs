@@ -35,7 +35,7 @@ pub(crate) fn at_instants(setup: &Setup, instants: usize) -> Result<Vec<Instant>
 }
 
 /// The walk of a scene at instants drawn from that stride, in their order.
-pub(super) fn at_random(setup: &Setup, instants: usize, seed: u64) -> Result<Vec<Instant>, Error> {
+pub(crate) fn at_random(setup: &Setup, instants: usize, seed: u64) -> Result<Vec<Instant>, Error> {
     let mut random = Random(seed);
     let mut shares: Vec<f64> = (0..instants).map(|_| random.unit()).collect();
     shares.sort_by(f64::total_cmp);
@@ -50,7 +50,7 @@ fn at_shares(setup: &Setup, shares: &[f64]) -> Result<Vec<Instant>, Error> {
 }
 
 /// The standing robot of a scene, once: every instant is like the other.
-pub(super) fn at_rest(setup: &Setup) -> Result<Vec<Instant>, Error> {
+pub(crate) fn at_rest(setup: &Setup) -> Result<Vec<Instant>, Error> {
     let mut setup = setup.clone();
     walk_on(&mut setup, SETTLED);
     instants(&setup, &[0.0], standing(&setup, SETTLED))

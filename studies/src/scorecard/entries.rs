@@ -7,6 +7,7 @@ use messages::Command;
 use messages::command::{StepCommand, VelocityCommand};
 
 use super::demand::{Demand, What};
+use crate::ground::GroundKind;
 
 /// One walk.
 pub(super) struct ScorecardEntry {
@@ -213,10 +214,61 @@ pub(super) const FASTEST: (&str, Demand) = (
 /// The scene in which the robot is pushed.
 pub(super) const PUSHED: &str = "walk_1kmh";
 
-/// Directions in the world's axes along which it is pushed, and the largest impulse that a public test asserts.
-pub(super) const PUSHES: [(&str, [f64; 2], &str); 4] = [
-    ("forward", [1.0, 0.0], "0.98, Valkyrie, mid-swing; with step adjustment"),
-    ("backward", [-1.0, 0.0], "0.49, Atlas; with step adjustment"),
-    ("left", [0.0, 1.0], "0.22 (inwards), Atlas; with step adjustment"),
-    ("right", [0.0, -1.0], "0.25 (outwards), Atlas; with step adjustment"),
+/// A direction in the world's axes in which it is pushed.
+pub(super) struct PushedAlong {
+    pub(super) name: &'static str,
+    pub(super) axis: [f64; 2],
+    /// \[N s/kg\] Impulses that are to be survived whenever they come, walking and standing.
+    pub(super) walking: f64,
+    pub(super) standing: f64,
+    /// The largest impulse that a public test asserts.
+    pub(super) published: &'static str,
+}
+
+/// All of them.
+pub(super) const PUSHES: [PushedAlong; 4] = [
+    PushedAlong {
+        name: "forward",
+        axis: [1.0, 0.0],
+        walking: 0.6,
+        standing: 0.5,
+        published: "0.98, Valkyrie, mid-swing; with step adjustment",
+    },
+    PushedAlong {
+        name: "backward",
+        axis: [-1.0, 0.0],
+        walking: 0.35,
+        standing: 0.5,
+        published: "0.49, Atlas; with step adjustment",
+    },
+    PushedAlong {
+        name: "left",
+        axis: [0.0, 1.0],
+        walking: 0.22,
+        standing: 0.3,
+        published: "0.22 (inwards), Atlas; with step adjustment",
+    },
+    PushedAlong {
+        name: "right",
+        axis: [0.0, -1.0],
+        walking: 0.22,
+        standing: 0.3,
+        published: "0.25 (outwards), Atlas; with step adjustment",
+    },
+];
+
+/// The scene that walks over unknown ground, and the one whose sensors err while commands come at random.
+pub(super) const OVER_GROUND: &str = "walk_2kmh";
+pub(super) const COMMANDED: &str = "walk_2kmh_sensors";
+
+/// Unknown ground with its size in the unit of its kind, and \[1\] the share of random places that are to be walked over.
+pub(super) const GROUND: [(GroundKind, f64, f64); 8] = [
+    (GroundKind::Board, 0.02, 1.0),
+    (GroundKind::Board, 0.04, 0.95),
+    (GroundKind::StepUp, 0.04, 0.95),
+    (GroundKind::StepDown, 0.04, 1.0),
+    (GroundKind::StepDown, 0.08, 0.95),
+    (GroundKind::Slope, 5.0, 0.95),
+    (GroundKind::HeightField, 0.03, 0.95),
+    (GroundKind::LowFriction, 0.3, 0.95),
 ];

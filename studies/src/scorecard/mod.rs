@@ -8,6 +8,7 @@ mod demand;
 mod entries;
 mod fastest;
 mod pushes;
+mod rates;
 pub(crate) mod walk;
 
 use std::path::Path;
@@ -19,7 +20,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use crate::sheet::{Column, Sheet, plain};
-use entries::{ENTRIES, PICTURED, PUSHES};
+use entries::{ENTRIES, GROUND, PICTURED, PUSHES};
 
 /// Errors are sentences: they come from other threads, which boxed ones cannot.
 pub type Result<T> = std::result::Result<T, String>;
@@ -33,7 +34,7 @@ pub struct ScorecardOptions<'a> {
     pub config: &'a Path,
     /// Only entries whose name contains this.
     pub only: Option<&'a str>,
-    /// Only the fastest bus cycle, and pushes at two instants.
+    /// Only the fastest bus cycle, pushes at two instants, and ground at two places.
     pub quick: bool,
     /// Seed of every scene.
     pub seed: u64,
@@ -147,8 +148,18 @@ fn tasks<'a>(order: &'a ScorecardOptions<'a>) -> Vec<ScorecardTask<'a>> {
         }
     }
     add("as fast as it goes".into(), Box::new(move || fastest::rows(order, 0.001)));
-    for (k, (direction, ..)) in PUSHES.iter().enumerate() {
-        add(format!("push {direction}"), Box::new(move || pushes::rows(order, k, 0.001)));
+    for (k, pushed) in PUSHES.iter().enumerate() {
+        add(format!("push {}", pushed.name), Box::new(move || pushes::walking(order, k, 0.001)));
+    }
+    for (k, pushed) in PUSHES.iter().enumerate() {
+        add(format!("push {}, standing", pushed.name), Box::new(move || pushes::standing(order, k, 0.001)));
+    }
+    add("random commands".into(), Box::new(move || rates::as_told(order)));
+    for (k, (kind, size, _)) in GROUND.iter().enumerate() {
+        add(
+            format!("unknown {} of {size} {}", kind.name(), kind.unit()),
+            Box::new(move || rates::over_ground(order, k)),
+        );
     }
     tasks
 }
@@ -210,6 +221,9 @@ impl Scorecard {
 
 /// Three digits, no needless ones.
 fn figure(x: f64) -> String {
+    if x.fract() == 0.0 {
+        return format!("{x}");
+    }
     if x != 0.0 && x.abs() < 0.1 { format!("{x:.4}") } else { format!("{x:.3}") }
 }
 
