@@ -195,7 +195,7 @@ enum GangwerkTask {
         /// Only entries whose name contains this, for example: "2 km/h", push.
         #[arg(long, value_name = "NAME")]
         only: Option<String>,
-        /// Only bus cycles of 1 ms, and pushes at two instants.
+        /// Only bus cycles of 1 ms, pushes at two instants, and two places of each kind of ground.
         #[arg(long)]
         quick: bool,
         /// Seed of everything random.
