@@ -148,7 +148,8 @@ pub(crate) fn step_out(
     // There is no plan to hold the body against: the zero-moment point begins in the middle of the sole, and all of xi is error.
     let axes = [0, 1].map(|d| {
         let landing = [home.x, home.y][d];
-        let half = COUNTED[1] * sole.half[d]; // no step of hers leads on, and turns the foot
+        // In both axes: with half of the length 0.57 instead of 0.64 N s/kg are survived forward.
+        let half = COUNTED[1] * sole.half[d];
         Axis {
             xi: xi[d],
             end: landing + [body.ahead, 0.0][d],
