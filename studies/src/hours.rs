@@ -93,6 +93,15 @@ struct Pushed {
     fatal: bool,
 }
 
+/// Marks the push that felled the robot, which ended at `at` \[s\]; a fall that no push explains counts, too.
+fn blame(pushes: &mut Vec<Pushed>, at: f64) {
+    let late = pushes.iter_mut().rev().take_while(|push| at - push.at < FALLING);
+    match late.max_by(|a, b| a.impulse.total_cmp(&b.impulse)) {
+        Some(push) => push.fatal = true,
+        None => pushes.push(Pushed { at, impulse: 0.0, fatal: true }),
+    }
+}
+
 impl Study for Hours {
     fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
@@ -158,12 +167,7 @@ impl Hours {
             }
             let c = chain.step();
             if ended(c) || GaitState::from(c.controller_state.gait) != GaitState::Walking {
-                // A fall that no push explains counts, too.
-                let late = pushes.iter_mut().rev().take_while(|push| at - push.at < FALLING);
-                match late.max_by(|a, b| a.impulse.total_cmp(&b.impulse)) {
-                    Some(push) => push.fatal = true,
-                    None => pushes.push(Pushed { at, impulse: 0.0, fatal: true }),
-                }
+                blame(&mut pushes, at);
                 chain = start.clone();
             }
         }
@@ -202,6 +206,21 @@ mod tests {
     struct Line {
         #[command(flatten)]
         hours: Hours,
+    }
+
+    /// A small push on the way down felled nobody, nor did a large one long before; a fall without any is one.
+    #[test]
+    fn the_largest_of_the_last_pushes_is_to_blame() {
+        let fatal = |pushes: &[(f64, f64)], at: f64| {
+            let push = |&(at, impulse): &(f64, f64)| Pushed { at, impulse, fatal: false };
+            let mut pushes: Vec<_> = pushes.iter().map(push).collect();
+            blame(&mut pushes, at);
+            let fatal: Vec<_> = pushes.iter().filter(|push| push.fatal).map(|push| push.impulse).collect();
+            fatal
+        };
+        assert_eq!(fatal(&[(1.0, 0.5), (9.0, 0.2), (9.2, 0.02)], 10.5), [0.2]);
+        assert_eq!(fatal(&[(1.0, 0.5)], 10.5), [0.0]);
+        assert_eq!(fatal(&[], 10.5), [0.0]);
     }
 
     /// A minute of small pushes are walked, of large ones not; the same seed is the same walk, and pushes come as often and are

@@ -56,13 +56,19 @@ impl GroundKind {
     }
 
     /// In tables and charts.
-    pub(crate) fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         self.row().1
     }
 
     /// Unit of its size.
-    pub(crate) fn unit(self) -> &'static str {
+    pub(super) fn unit(self) -> &'static str {
         self.row().2
+    }
+
+    /// Itself with a size in its unit: `board of 0.02 m`.
+    pub(crate) fn of(self, size: f64) -> String {
+        let unit = if self.unit() == "1" { String::new() } else { format!(" {}", self.unit()) };
+        format!("{} of {size}{unit}", self.name())
     }
 
     /// A size in its unit, in SI.

@@ -132,6 +132,7 @@ impl Study for GroundStudy {
             kinds.iter().flat_map(|kind| sizes(kind).into_iter().map(|size| (*kind, size))).collect();
         let walks: Vec<(u8, f64)> =
             self.types.iter().flat_map(|depth| self.speeds.iter().map(|speed| (*depth, *speed))).collect();
+        // Each type and speed walks on level ground once; every place is held against that.
         let scene = Setup::load(given.config, &self.scene)?;
         let references =
             parallel::map(walks.len(), |k| Reference::of(scene.clone(), walks[k]).map_err(|e| e.to_string()));
@@ -197,7 +198,7 @@ pub(crate) fn not_walked(
     let mut failed = Vec::new();
     for seed in seeds {
         let of = reference.over(kind, size, seed)?;
-        failed.extend(of.map(|f| format!("{} {size}, {kmh} km/h, seed {seed}: {}", kind.name(), f.how)));
+        failed.extend(of.map(|f| format!("{}, {kmh} km/h, seed {seed}: {}", kind.of(size), f.how)));
     }
     Ok(failed)
 }

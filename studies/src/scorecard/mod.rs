@@ -148,6 +148,7 @@ fn tasks<'a>(order: &'a ScorecardOptions<'a>) -> Vec<ScorecardTask<'a>> {
         }
     }
     add("as fast as it goes".into(), Box::new(move || fastest::rows(order, 0.001)));
+    // One task for each direction, and each kind of ground: rows of one table stand together.
     for (k, pushed) in PUSHES.iter().enumerate() {
         add(format!("push {}", pushed.name), Box::new(move || pushes::walking(order, k, 0.001)));
     }
@@ -156,10 +157,7 @@ fn tasks<'a>(order: &'a ScorecardOptions<'a>) -> Vec<ScorecardTask<'a>> {
     }
     add("random commands".into(), Box::new(move || rates::as_told(order)));
     for (k, (kind, size, _)) in GROUND.iter().enumerate() {
-        add(
-            format!("unknown {} of {size} {}", kind.name(), kind.unit()),
-            Box::new(move || rates::over_ground(order, k)),
-        );
+        add(format!("unknown {}", kind.of(*size)), Box::new(move || rates::over_ground(order, k)));
     }
     tasks
 }

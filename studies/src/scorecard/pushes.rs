@@ -28,6 +28,7 @@ pub(super) fn standing(order: &ScorecardOptions<'_>, k: usize, cycle: f64) -> Re
     row("pushed for 0.1 s standing", &setup, &starts, (&PUSHES[k], PUSHES[k].standing))
 }
 
+/// Row of the least impulse survived from all of these instants.
 fn row(
     entry: &str,
     setup: &Setup,
@@ -38,6 +39,7 @@ fn row(
     let survived = starts.iter().map(|start| push::largest(start, pushed.axis, 1.0));
     let survived = survived.map(|impulse| impulse.map(|impulse| impulse / setup.robot.total_mass));
     let survived = survived.collect::<Result<Vec<f64>>>()?;
+    // Whenever it comes: the worst instant counts, and the note has each of them.
     let least = survived.iter().copied().fold(f64::INFINITY, f64::min);
     let each: Vec<String> = survived.iter().map(|x| format!("{x:.3}")).collect();
     Ok(vec![ScorecardRow {

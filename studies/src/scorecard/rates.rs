@@ -16,7 +16,7 @@ const SPEEDS: [f64; 2] = [1.0, 2.0];
 /// Places of each kind of ground and speed, and timelines of commands; all of them, or with `--quick`.
 const DRAWN: [u64; 2] = [20, 2];
 
-/// What is to be walked as told.
+/// Walks of which a share is to be as told.
 struct Rate {
     entry: String,
     scene: &'static str,
@@ -32,7 +32,7 @@ pub(super) fn over_ground(order: &ScorecardOptions<'_>, k: usize) -> Result<Vec<
     let rate = Rate {
         entry: format!("over unknown ground at random places, at {slow} and {fast} km/h"),
         scene: OVER_GROUND,
-        what: format!("{} of {size} {}", kind.name(), kind.unit()).trim_end_matches(" 1").into(),
+        what: kind.of(size),
         share,
     };
     rate.row(order, SPEEDS.len(), |setup, seeds| {
@@ -64,8 +64,10 @@ impl Rate {
         let mut setup = Setup::load(order.config, self.scene).map_err(|e| e.to_string())?;
         on_type(&mut setup, DEPTH, STEP);
         let drawn = DRAWN[usize::from(order.quick)];
+        // Seeds count on from the scorecard's own; what failed is named with its seed.
         let failed = failed(&setup, order.seed..order.seed + drawn)?;
         let tried = walks * drawn as usize;
+        // Whole walks: the share is rounded up, and not by what 0.95 lacks in binary.
         let (walked, least) = ((tried - failed.len()) as f64, (self.share * tried as f64 - 1e-9).ceil());
         Ok(vec![ScorecardRow {
             entry: self.entry,

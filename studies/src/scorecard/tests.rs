@@ -61,12 +61,13 @@ fn a_name_that_no_entry_has_is_refused() {
     assert!(error.to_string().contains("moonwalk") && error.to_string().contains("turning on the spot"));
 }
 
-/// What is walked and what is not adds up, and is what the study of the same places says: of these four not all are walked.
+/// Rate of the scorecard, its goal and its notes beside the study of the same four places, of which not all are walked.
 #[test]
 fn a_rate_counts_the_places_that_the_study_walks() {
     let root = config::root(None);
     let order = ScorecardOptions { only: Some("unknown step down of 0.04"), ..order(&root) };
     let card = run(&order, &|_, _, _| ()).unwrap();
+    // The same places by the study, which walks them on all cores and counts for itself.
     let study = ground::GroundStudy {
         scene: "walk_2kmh".into(),
         kind: vec![ground::GroundKind::StepDown],
