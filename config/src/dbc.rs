@@ -12,6 +12,8 @@
 //! | `JOINT_current`, `JOINT_temp` | from the drives | \[A\], winding \[deg C\] |
 //! | `JOINT_status`, `JOINT_error` | from the drives | statusword, error code of CiA 402 |
 //! | `JOINT_letters`, `_index`, `_query`, `_float`, `_value` | both | telegram of the interpreter in a drive that plays tables |
+//! | `nmt_command`, `nmt_node` | to the drives | network management: command, node; 0: all |
+//! | `JOINT_network` | from the drives | network state, in a drive's heartbeat |
 //! | `SIDE_force_AXIS`, `SIDE_moment_AXIS` | from the drives | ground on the foot, sensor frame \[N\], \[N m\] |
 //! | `imu_quaternion_x` … `w`, `imu_rate_AXIS`, `imu_accel_AXIS` | from the drives | see `Imu` in `messages` |
 //!
@@ -195,6 +197,8 @@ impl DbcReader<'_> {
         match (name, to_drives) {
             ("counter", _) => return Ok(Carries::Counter),
             ("mode", true) => return Ok(Carries::Mode),
+            ("nmt_command", true) => return Ok(Carries::NetworkCommand),
+            ("nmt_node", true) => return Ok(Carries::NetworkNode),
             ("supply", false) => return Ok(Carries::Supply),
             _ => {}
         }
@@ -229,13 +233,14 @@ impl DbcReader<'_> {
             ("status", false) => Carries::Status,
             ("temp", false) => Carries::Temperature,
             ("error", false) => Carries::Error,
+            ("network", false) => Carries::NetworkState,
             ("letters" | "index" | "query" | "float" | "value", _) => Carries::Interpreter,
             _ => {
                 let there = if to_drives {
-                    "counter, mode, JOINT_target, JOINT_feed, JOINT_control, JOINT_letters, _index, _value"
+                    "counter, mode, nmt_command, nmt_node, JOINT_target, JOINT_feed, JOINT_control, JOINT_letters, _index, _value"
                 } else {
                     "counter, supply, JOINT_angle, _speed, _motor, _mspeed, _current, _status, _temp, _error, \
-                     _letters, _index, _value, right_force_x, left_moment_z, imu_quaternion_w, imu_rate_x, imu_accel_x and the like"
+                     _network, _letters, _index, _value, right_force_x, left_moment_z, imu_quaternion_w, imu_rate_x, imu_accel_x and the like"
                 };
                 return Err(format!("nothing of that name goes this way; there is {there}"));
             }
@@ -264,7 +269,12 @@ impl DbcReader<'_> {
         for signal in messages.iter().flat_map(|m| &m.signals) {
             let many = matches!(
                 signal.carries,
-                Carries::Counter | Carries::Mode | Carries::Supply | Carries::Interpreter(_)
+                Carries::Counter
+                    | Carries::Mode
+                    | Carries::Supply
+                    | Carries::Interpreter(_)
+                    | Carries::NetworkCommand
+                    | Carries::NetworkNode
             );
             if !many && all.iter().any(|(other, _)| *other == signal.carries) {
                 self.problem(0, &signal.name, "comes more than once".into());

@@ -160,7 +160,7 @@ fn a_frame_of_the_cycle_before_is_late() {
                     let command = DriveCommand {
                         targets: JointTargets { header: from.header, ..JointTargets::default() },
                         control: [15; messages::MAX_JOINTS],
-                        due: 0,
+                        ..DriveCommand::default()
                     };
                     encode_targets(layout, &command, &mut to);
                     (from.header.tick, to.header.tick) = (tick, tick);
@@ -181,7 +181,7 @@ fn a_frame_of_the_cycle_before_is_late() {
     }
 }
 
-/// Archie's drives that play tables: no targets, an interpreter in each, counts as in every cycle; room for 26 telegrams in 8 ms.
+/// Archie's drives that play tables: no targets, an interpreter in each, counts as in every cycle; room for 25 telegrams in 8 ms.
 #[test]
 fn frames_of_tables_have_interpreters_instead_of_targets() {
     let mut robot = robots().remove(2);
@@ -196,11 +196,11 @@ fn frames_of_tables_have_interpreters_instead_of_targets() {
     let target =
         |m: &codec::layout::BusMessage| m.signals.iter().any(|s| matches!(s.carries, Carries::Target(_)));
     assert!(!layout.messages.iter().any(target));
-    // Six PDOs of 135 us, SYNC of 65 us; a controlword of 75 us; telegram and answer 270 us.
+    // Six PDOs of 135 us, SYNC of 65 us; a controlword of 75 us, a heartbeat of 65 us; telegram and answer 270 us.
     assert_eq!([0, 1].map(|line| codec::room::cyclic_bits(layout, line)), [875; 2]);
-    assert_eq!([0.008, 0.0032].map(|cycle| codec::room::telegrams_per_cycle(layout, cycle)), [26, 8]);
-    // 10 cycles of checking, 71 of loading, 10 to spare, 20 of announcing.
-    assert_eq!(robot.tables.as_ref().unwrap().lead(layout, 0.008, 300), 111);
+    assert_eq!([0.008, 0.0032].map(|cycle| codec::room::telegrams_per_cycle(layout, cycle)), [25, 8]);
+    // 10 cycles of checking, 74 of loading, 10 to spare, 20 of announcing.
+    assert_eq!(robot.tables.as_ref().unwrap().lead(layout, 0.008, 300), 114);
     let refused = robots().remove(0).play_tables().unwrap_err();
     assert_eq!(refused, "robot lola has no [can.tables]: its drives take a point in every cycle");
 }
@@ -270,6 +270,12 @@ fn words(carries: Carries) -> Vec<(u16, &'static str)> {
         Carries::Control(_) => {
             let text = ["disable voltage", "quick stop", "shutdown", "enable operation", "fault reset"];
             cia402::WORDS.into_iter().zip(text).collect()
+        }
+        Carries::NetworkCommand => {
+            named(&[(1, "start"), (2, "stop"), (128, "pre-operational"), (129, "reset")])
+        }
+        Carries::NetworkState(_) => {
+            named(&[(0, "boot-up"), (4, "stopped"), (5, "operational"), (127, "pre-operational")])
         }
         Carries::Error(_) => {
             DriveFault::ALL.map(|f| (f as u16, f.text())).into_iter().chain([(0, "none")]).collect()

@@ -4,6 +4,7 @@ use std::error::Error;
 use std::time::Duration;
 
 use codec::frames::{self, DriveCommand, Received, encode_targets};
+use codec::network::NetworkCommand;
 use fieldbus::{BusEnd, BusLines};
 use messages::{BusFrames, MAX_FRAMES};
 use realtime::clock;
@@ -41,10 +42,11 @@ impl CanBus {
         Ok(Self { lines, settings, rx: BusFrames::default(), asked: 0, alive })
     }
 
-    /// Asks the drives for their positions: no targets, no torque.
+    /// Starts the drives and asks them for their positions: no targets, no torque.
     fn ask(&mut self) {
         let mut nothing = BusFrames::default();
-        encode_targets(&self.settings.layout, &DriveCommand::default(), &mut nothing);
+        let start = DriveCommand { network: Some(NetworkCommand::Start), ..DriveCommand::default() };
+        encode_targets(&self.settings.layout, &start, &mut nothing);
         self.lines.send(&nothing);
     }
 

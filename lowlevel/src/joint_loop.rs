@@ -370,6 +370,7 @@ impl JointLoop {
         let mut telegrams: &[messages::Frame] = &[];
         if let Some(tables) = &mut self.tables {
             command.due = tables.due(header.tick, &command.control, command.targets.mode);
+            command.network = tables.network_command();
             telegrams = tables.telegrams();
         }
         encode_command(&self.robot.layout, command, telegrams, frames);

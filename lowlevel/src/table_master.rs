@@ -12,6 +12,7 @@
 //! their points. Drives that are no longer led are stopped by `ST`; they brake on their own ramps.
 
 use codec::interpreter::{BG, MP, PT, QP, SAMPLING, ST, Telegram, WS};
+use codec::network::{NetworkCommand, NetworkState};
 use config::tables::{BEGIN_AHEAD, POINTS_CHECKED, REGISTERS};
 use config::{Robot, TableDrives};
 use messages::{BusFrames, Detail, EventCode, EventQueue, Frame, JointTables, MAX_JOINTS, TableFault};
@@ -80,6 +81,8 @@ pub(crate) struct TableMaster {
     refused: bool,
     /// Controlword and mode that each drive was sent last.
     sent: [(u32, u64); MAX_JOINTS],
+    /// State of each drive by its last heartbeat.
+    network: [NetworkState; MAX_JOINTS],
     events: EventQueue,
 }
 
@@ -105,6 +108,7 @@ impl TableMaster {
             cycles: 0,
             refused: false,
             sent: [(u32::MAX, 0); MAX_JOINTS],
+            network: [NetworkState::Operational; MAX_JOINTS],
             events: EventQueue::default(),
         })
     }
@@ -139,6 +143,7 @@ impl TableMaster {
 
     /// Answers of the drives in this cycle.
     pub(crate) fn receive(&mut self, frames: Option<&BusFrames>) {
+        self.hear_heartbeats(frames);
         let Self { exchange, next, state, drives, .. } = self;
         let patient = matches!(state, TableState::Disarming | TableState::Stopping);
         let wrong = exchange.receive(frames, patient, |j, i| {
@@ -155,6 +160,30 @@ impl TableMaster {
             _ => TableFault::WrongAnswer,
         };
         self.refuse(fault(j, point, what));
+    }
+
+    /// Takes heartbeats: a drive that is no longer operational plays nothing.
+    fn hear_heartbeats(&mut self, frames: Option<&BusFrames>) {
+        let layout = &self.robot.layout;
+        let mut lost = None;
+        for frame in frames.map(BusFrames::as_slice).unwrap_or_default() {
+            let message = layout.find(frame.line, frame.id).map(|i| &layout.messages[i]);
+            let joint = message.filter(|m| m.len == frame.len).and_then(|m| m.heartbeat());
+            let Some((j, state)) = joint.zip(NetworkState::of(frame.data[0])) else { continue };
+            let before = std::mem::replace(&mut self.network[j], state);
+            if before == NetworkState::Operational && state != before {
+                lost = lost.or(Some(j));
+            }
+        }
+        if let Some(j) = lost {
+            self.refuse(fault(j, 0, TableFault::Restarted));
+        }
+    }
+
+    /// Command to all drives of the network: those that are not operational are started.
+    pub(crate) fn network_command(&self) -> Option<NetworkCommand> {
+        let waits = self.network.iter().any(|state| *state != NetworkState::Operational);
+        waits.then_some(NetworkCommand::Start)
     }
 
     /// One cycle: what is sent to the interpreters in it is in [`Self::telegrams`].

@@ -6,6 +6,7 @@ use std::error::Error;
 use std::time::Duration;
 
 use codec::layout::{Carries, FrameLayout, MAX_NODES};
+use codec::network::NetworkCommand;
 use daemon::Daemon;
 use fieldbus::{BusEnd, BusLines};
 use messages::{BusFrames, Frame};
@@ -38,6 +39,8 @@ struct Gathering {
     synced_at: [usize; MAX_NODES],
     /// Lines that are waited for.
     alive: u32,
+    /// Lines whose drives were started, or need not be.
+    started: u32,
     /// Its tick, once one line was synchronized; until then the last one's.
     tick: u64,
 }
@@ -56,7 +59,7 @@ impl CanEnd {
     pub(crate) fn new(d: &Daemon, fd: bool, interfaces: &[String]) -> Result<Self, Box<dyn Error>> {
         let layout = d.setup.robot.layout.clone();
         let lines = BusLines::open(interfaces, &layout, fd, BusEnd::Far)?;
-        let gathering = Gathering::new(layout.nodes.len());
+        let gathering = Gathering::new(&layout);
         let empty = BusFrames::default;
         let (inbox, whole, answer) = (empty(), empty(), empty());
         Ok(Self { lines, layout, inbox, gathering, whole, answer, period_ns: d.period_ns() })
@@ -145,20 +148,27 @@ impl FarEnd for CanEnd {
 }
 
 impl Gathering {
-    fn new(lines: usize) -> Self {
+    fn new(layout: &FrameLayout) -> Self {
+        let all = ((1u64 << layout.nodes.len()) - 1) as u32;
+        let managed = layout.messages.iter().filter(|m| m.manages_network());
         Self {
             frames: BusFrames::default(),
             synced: 0,
             synced_at: [0; MAX_NODES],
-            alive: ((1u64 << lines) - 1) as u32,
+            alive: all,
+            started: managed.fold(all, |bits, m| bits & !(1 << m.node)),
             tick: 0,
         }
     }
 
     fn take(&mut self, layout: &FrameLayout, frame: &Frame) -> FrameResult {
-        let sync = layout.find(frame.line, frame.id).map(|i| &layout.messages[i]).filter(|m| m.is_sync());
-        let counter = sync
-            .filter(|m| m.len == frame.len)
+        let message = layout.find(frame.line, frame.id).map(|i| &layout.messages[i]);
+        let line = 1u32 << frame.line;
+        if message.is_some_and(|m| m.manages_network()) && frame.data[0] == NetworkCommand::Start as u8 {
+            self.started |= line;
+        }
+        let counter = message
+            .filter(|m| m.is_sync() && m.len == frame.len)
             .and_then(|m| m.signals.iter().find(|s| s.carries == Carries::Counter));
         let Some(counter) = counter else {
             self.frames.push(frame);
@@ -166,11 +176,11 @@ impl Gathering {
         };
         // The tick is the next one with these low bits.
         let ahead = (counter.get(&frame.data) as u64).wrapping_sub(self.tick) & ((1 << counter.bits) - 1);
-        let line = 1u32 << frame.line;
         if ahead == 0 && self.synced == 0 {
             if self.tick == 0 {
                 self.frames.count = 0;
-                return FrameResult::Asked(frame.line);
+                let started = self.started & line != 0;
+                return if started { FrameResult::Asked(frame.line) } else { FrameResult::More };
             }
             // A repeated one, or a broken line that speaks again, too late for this cycle.
             self.alive |= line;
@@ -249,7 +259,7 @@ mod tests {
     #[test]
     fn a_cycle_is_whole_with_the_last_sync_and_its_tick_goes_on_beyond_the_counter() {
         let layout = layout();
-        let mut g = Gathering::new(layout.nodes.len());
+        let mut g = Gathering::new(&layout);
         assert_eq!(take_all(&mut g, &layout, cycle(&layout, 0).as_slice()).0.len(), 9);
         for tick in 1..600 {
             let all = (vec![FrameResult::Whole], vec![true; 9]);
@@ -261,7 +271,7 @@ mod tests {
     #[test]
     fn a_broken_line_is_waited_for_once_and_again_when_it_speaks() {
         let layout = layout();
-        let mut g = Gathering::new(layout.nodes.len());
+        let mut g = Gathering::new(&layout);
         let without = |tick: u64| -> Vec<Frame> {
             cycle(&layout, tick).as_slice().iter().filter(|f| f.line != 8).copied().collect()
         };

@@ -83,8 +83,8 @@ impl Instruments {
 
     /// Writes the readings on the bus.
     pub(crate) fn encode(&mut self, robot: &Robot, joints: &mut SimulatedJoints) {
-        let (telegrams, emergencies) = joints.telegrams(&self.readings.drive_error);
-        encode_answers(&robot.layout, &self.readings, emergencies, telegrams, &mut self.frames);
+        let replies = joints.replies(&self.readings.drive_error);
+        encode_answers(&robot.layout, &self.readings, &replies, &mut self.frames);
     }
 
     /// Writes readings and truth at `time` \[s\]; false if a reading is NaN and none may go on the bus.

@@ -1,6 +1,6 @@
 //! Joints of the simulated robot: commands of the bus, electronics of the drives, references of one cycle.
 
-use codec::frames::{DriveCommand, decode_targets};
+use codec::frames::{DriveCommand, DriveReplies, decode_targets};
 use config::components::JointModel;
 use config::{Robot, Scene};
 use messages::{BusFrames, Sensors};
@@ -72,15 +72,9 @@ impl SimulatedJoints {
         &self.electronics
     }
 
-    /// Telegrams of the drives' interpreters in this cycle, and the drives (bits) that tell an error code.
-    pub(crate) fn telegrams(&mut self, errors: &[u32]) -> (&[messages::Frame], u32) {
-        match &mut self.tables {
-            Some(tables) => {
-                let emergencies = tables.emergencies(errors);
-                (tables.answers(), emergencies)
-            }
-            None => (&[], 0),
-        }
+    /// What drives that play tables say in this cycle beside their readings, once a cycle.
+    pub(crate) fn replies(&mut self, errors: &[u32]) -> DriveReplies<'_> {
+        self.tables.as_mut().map_or_else(DriveReplies::default, |tables| tables.replies(errors))
     }
 
     /// \[rad\] Excess of the readings of joint `j`, by its offset and by where its encoder began to count.
@@ -104,6 +98,10 @@ impl SimulatedJoints {
         let received = new.map(|f| decode_targets(&robot.layout, f, &mut self.command));
         if self.timeout.step(received.as_ref()) {
             self.followed = self.command.targets.header.tick;
+        }
+        if let Some(tables) = &mut self.tables {
+            tables.manage(new);
+            tables.deafen(&mut self.command.control);
         }
         // States of the drives; the current that a winding is warmed by is what its own sensor says.
         let DriveCommand { control, targets, .. } = &self.command;

@@ -6,8 +6,10 @@
 //!     └── answers ──┘                          SYNC, or the drive's own clock
 //! ```
 
+use codec::frames::DriveReplies;
 use codec::interpreter::{BG, MP, PT, QP, Refusal, SAMPLING, ST, Telegram, WS};
 use codec::layout::FrameLayout;
+use codec::network::{NetworkCommand, NetworkState};
 use config::tables::Playback;
 use config::{Robot, Scene, TableDrives};
 use drives::point_table::{MOST_POINTS, MOST_SPACING};
@@ -30,6 +32,11 @@ struct TableDrive {
     exhausted: bool,
     /// Error code that the bus was told last.
     told: u32,
+    /// Its number on the line, and the place of its heartbeat among those of the line.
+    node: u32,
+    turn: u64,
+    /// State that its last heartbeat said.
+    said: NetworkState,
 }
 
 /// All of them.
@@ -41,6 +48,10 @@ pub(crate) struct SimulatedTables {
     dt: f64,
     drives: Vec<TableDrive>,
     answers: Vec<Frame>,
+    /// State of each drive on the network. Before the first cycle they were started.
+    network: Vec<NetworkState>,
+    /// Cycles.
+    cycle: u64,
 }
 
 impl SimulatedTables {
@@ -54,7 +65,41 @@ impl SimulatedTables {
             dt: scene.cycle,
             drives,
             answers: Vec::with_capacity(MAX_FRAMES),
+            network: vec![NetworkState::Operational; robot.joints.len()],
+            cycle: 0,
         })
+    }
+
+    /// Takes the network management of a cycle. A drive that starts anew has lost its table, and waits to be started.
+    pub(crate) fn manage(&mut self, frames: Option<&BusFrames>) {
+        for frame in frames.map(BusFrames::as_slice).unwrap_or_default() {
+            let message = self.layout.find(frame.line, frame.id).map(|i| &self.layout.messages[i]);
+            if !message.is_some_and(|m| m.manages_network() && m.len == frame.len) {
+                continue;
+            }
+            let [number, node] = [frame.data[0], frame.data[1]];
+            let Some(command) = NetworkCommand::of(number) else { continue };
+            for (drive, state) in self.drives.iter_mut().zip(&mut self.network) {
+                if drive.answers.0 != frame.line || node != 0 && u32::from(node) != drive.node {
+                    continue;
+                }
+                *state = match command {
+                    NetworkCommand::Start => NetworkState::Operational,
+                    NetworkCommand::Stop => NetworkState::Stopped,
+                    NetworkCommand::PreOperational => NetworkState::PreOperational,
+                    NetworkCommand::Reset => NetworkState::BootUp,
+                };
+                if *state == NetworkState::BootUp {
+                    drive.player = TablePlayer::default();
+                }
+            }
+        }
+    }
+
+    /// Takes back the controlwords of drives that hear none.
+    pub(crate) fn deafen(&self, control: &mut [u32]) {
+        let states = control.iter_mut().zip(&self.network);
+        states.filter(|(_, state)| **state != NetworkState::Operational).for_each(|(word, _)| *word = 0);
     }
 
     /// Takes the telegrams of a cycle and answers them; `follows`: drives that have torque and no fault.
@@ -64,17 +109,15 @@ impl SimulatedTables {
             let message = self.layout.find(frame.line, frame.id).map(|i| &self.layout.messages[i]);
             let joint = message.filter(|m| m.to_drives && m.len == frame.len).and_then(|m| m.interpreter());
             let Some((j, command)) = joint.zip(Telegram::of(frame)) else { continue };
+            if self.network[j] != NetworkState::Operational {
+                continue;
+            }
             let drive = &mut self.drives[j];
             let answer = drive.execute(&command, self.sampling_us, follows(j));
             if self.answers.len() < self.answers.capacity() {
                 self.answers.push(answer.frame(drive.answers.0, drive.answers.1));
             }
         }
-    }
-
-    /// Answers of this cycle.
-    pub(crate) fn answers(&self) -> &[Frame] {
-        &self.answers
     }
 
     /// Reference of joint `j` in this cycle: from `from` \[rad\] in its encoder's zero; none if it plays nothing. SYNC with
@@ -124,12 +167,24 @@ impl SimulatedTables {
         self.drives[j].exhausted
     }
 
-    /// Drives (bits) whose error codes have changed since the last call.
-    pub(crate) fn emergencies(&mut self, errors: &[u32]) -> u32 {
-        let changed = self.drives.iter_mut().zip(errors).enumerate();
-        changed.fold(0, |bits, (j, (drive, &error))| {
-            bits | u32::from(std::mem::replace(&mut drive.told, error) != error) << j
-        })
+    /// What is said in this cycle: answers, error codes that have changed, and the heartbeats of one drive of each line in
+    /// turn and of those whose state has changed.
+    pub(crate) fn replies(&mut self, errors: &[u32]) -> DriveReplies<'_> {
+        let lines = self.layout.nodes.len().max(1);
+        let turn = self.cycle % self.drives.len().div_ceil(lines) as u64;
+        self.cycle += 1;
+        let (mut emergencies, mut heartbeats) = (0, 0);
+        let drives = self.drives.iter_mut().zip(&mut self.network).zip(errors);
+        for (j, ((drive, state), &error)) in drives.enumerate() {
+            emergencies |= u32::from(std::mem::replace(&mut drive.told, error) != error) << j;
+            // Pre-operational follows upon having said that it has started.
+            if [drive.said, *state] == [NetworkState::BootUp; 2] {
+                *state = NetworkState::PreOperational;
+            }
+            let new = std::mem::replace(&mut drive.said, *state) != *state;
+            heartbeats |= u32::from(new || drive.turn == turn) << j;
+        }
+        DriveReplies { telegrams: &self.answers, emergencies, heartbeats, network: &self.network }
     }
 }
 
@@ -137,6 +192,11 @@ impl TableDrive {
     fn new(robot: &Robot, scene: &Scene, tables: &TableDrives, j: usize) -> Self {
         let layout = &robot.layout;
         let answers = layout.interpreter(false, j).map_or((0, 0), |m| (m.node as u32, m.id));
+        // Nodes are numbered as the identifiers of their heartbeats are, 0x700 + n.
+        let heartbeat = layout.messages.iter().find(|m| m.heartbeat() == Some(j));
+        let node = heartbeat.map_or(0, |m| m.id & 0x7F);
+        let line = |i: usize| layout.interpreter(false, i).map_or(0, |m| m.node as u32);
+        let before = (0..j).filter(|&i| line(i) == answers.0);
         // SYNC corrects a clock in every cycle; what it is off within one is nothing.
         let ppm = match tables.playback {
             Playback::Sync => 0.0,
@@ -149,6 +209,9 @@ impl TableDrive {
             cycle: tables.samples(scene.cycle) * (1.0 + 1e-6 * ppm),
             exhausted: false,
             told: 0,
+            node,
+            turn: before.count() as u64,
+            said: NetworkState::Operational,
         }
     }
 
@@ -227,7 +290,7 @@ mod tests {
     }
 
     fn answers(tables: &SimulatedTables) -> Vec<String> {
-        tables.answers().iter().map(|frame| Telegram::of(frame).unwrap().to_string()).collect()
+        tables.answers.iter().map(|frame| Telegram::of(frame).unwrap().to_string()).collect()
     }
 
     #[test]
@@ -284,11 +347,11 @@ mod tests {
             "ST=0",
         ];
         assert_eq!(answers(&t), said);
-        assert!(t.answers().iter().all(|frame| (frame.line, frame.id) == (0, 0x285)));
+        assert!(t.answers.iter().all(|frame| (frame.line, frame.id) == (0, 0x285)));
         t.receive(Some(&frames(&setup, 4, &[set(PT, 0, 1), set(BG, 0, 7)])), |_| false);
         assert_eq!(answers(&t), ["PT=1", "BG refused: 58"], "without torque nothing begins");
         t.receive(None, |_| true);
-        assert!(t.answers().is_empty());
+        assert!(t.answers.is_empty());
     }
 
     /// By its own clock, 100 ppm fast, a stride of 24 s is over 2.4 ms early; a drive on SYNC is in time.

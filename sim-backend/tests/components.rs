@@ -163,7 +163,11 @@ fn locked_joints_stand_still_and_are_no_fault() {
         targets.header.tick = tick;
         targets.angle[head] = 1e-4 * tick as f64;
         let control = [if tick == 1 { 0x06 } else { 0x0F }; messages::MAX_JOINTS];
-        encode_targets(&setup.robot.layout, &DriveCommand { targets, control, due: 0 }, &mut frames);
+        encode_targets(
+            &setup.robot.layout,
+            &DriveCommand { targets, control, ..DriveCommand::default() },
+            &mut frames,
+        );
         let power = Power { toggle: tick, on: 1, arming: 1, ..Power::default() };
         let (answer, truth) = sim.step(Some(&frames), Some(&power));
         assert_eq!(truth.joint_angle[head], setup.robot.poses["stand"][head], "in cycle {tick}");

@@ -86,7 +86,7 @@ fn cycles_of_the_simulated_robot() {
                         &DriveCommand {
                             targets,
                             control: [if tick == 1 { 0x06 } else { 0x0F }; MAX_JOINTS],
-                            due: 0,
+                            ..DriveCommand::default()
                         },
                         &mut frames,
                     );

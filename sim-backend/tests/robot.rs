@@ -26,7 +26,7 @@ fn hold(sim: &mut SimBackend, setup: &Setup, cycles: u64, until: u64) -> (SimSta
         targets.header.tick = tick;
         encode_targets(
             &setup.robot.layout,
-            &DriveCommand { targets, control: enabling(tick), due: 0 },
+            &DriveCommand { targets, control: enabling(tick), ..DriveCommand::default() },
             &mut frames,
         );
         let power = Power { toggle: tick.min(until), on: 1, arming: 1, ..Power::default() };

@@ -38,7 +38,11 @@ fn cycles(
         change(tick, &mut targets);
         encode_targets(
             &setup.robot.layout,
-            &DriveCommand { targets, control: [if tick == from { 0x06 } else { 0x0F }; MAX_JOINTS], due: 0 },
+            &DriveCommand {
+                targets,
+                control: [if tick == from { 0x06 } else { 0x0F }; MAX_JOINTS],
+                ..DriveCommand::default()
+            },
             &mut frames,
         );
         let (answer, truth) = sim

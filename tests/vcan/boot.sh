@@ -58,7 +58,7 @@ chmod +x "$work/first/init"
 [ -z "$kept" ] || : >"$work/first/kept"
 {
     echo "cd $(quoted "$PWD") || exit 125"
-    for name in HOME PATH LANG TERM GANGWERK CI; do
+    for name in HOME PATH LANG TERM GANGWERK CI LONG; do
         value=$(printenv "$name") && echo "export $name=$(quoted "$value")"
     done
     echo "export VCAN_GUEST=1"

@@ -11,7 +11,7 @@ FNR == NR { next }
     count = substr($3, length(id) + 2, 2)
     if (ours[id] && $2 in last && count != last[$2]) tick[$2]++
     if (ours[id]) last[$2] = count
-    if (tick[$2] > 142 && (tick[$2] % 71 == 0 || (tick[$2] >= 2000 && tick[$2] < 2010))) {
+    if (tick[$2] > 142 && (tick[$2] % 71 == 0 || (tick[$2] >= 1000 && tick[$2] < 1010))) {
         print
         print tick[$2] >TICKS
     }

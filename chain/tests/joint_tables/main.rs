@@ -3,11 +3,15 @@
 mod rig;
 mod walk;
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
 use codec::interpreter::{BG, QP, ST, Telegram};
+use codec::network::{NetworkCommand, NetworkState};
 use config::tables::Playback;
 use lowlevel::joint_loop::LoopState;
 use lowlevel::table_master::TableState;
-use messages::{BusFrames, Detail, EventCode, JointMode, JointTables, TableFault};
+use messages::{BusFrames, Detail, EventCode, Frame, JointMode, JointTables, TableFault};
 
 use rig::{Bend, DT, Rig, telegrams};
 
@@ -144,6 +148,55 @@ fn a_begin_that_one_drive_missed_moves_nothing() {
     assert_eq!(missed, (7, 0, TableFault::NotArmed));
     let unheard = bent(false, |_, frames| _ = remove(frames, 0x288, BG, 0));
     assert_eq!(unheard, (7, 0, TableFault::NotArmed));
+}
+
+/// Somebody else manages the network while all drives play. The drive that was told is started again, holds nothing, and is
+/// named; the joints come to rest.
+#[test]
+fn a_drive_that_leaves_the_network_is_named_and_started_again_and_the_robot_stops() {
+    use NetworkState::{BootUp, Operational, PreOperational, Stopped};
+    let told = [
+        (NetworkCommand::Reset, BootUp),
+        (NetworkCommand::PreOperational, PreOperational),
+        (NetworkCommand::Stop, Stopped),
+    ];
+    for (command, state) in told {
+        let mut rig = Rig::standing(Playback::Sync);
+        rig.start = rig.tick + 1 + rig.lead(100);
+        let tables = rig.tables(1, rig.start, 100, true);
+        rig.joints.take_tables(&tables);
+        // Right knee: drive 4 of line 0.
+        let at = rig.start + 130;
+        rig.to_drives = Some(Box::new(move |tick, frames| {
+            let mut frame = Frame { line: 0, id: 0, len: 2, ..Frame::default() };
+            frame.data[..2].copy_from_slice(&[command as u8, 4]);
+            assert!(tick != at || frames.push(&frame));
+        }));
+        let heard = Rc::new(RefCell::new(Vec::new()));
+        let said = heard.clone();
+        rig.from_drives = Some(Box::new(move |tick, frames| {
+            let of_knee = frames.as_slice().iter().filter(|frame| frame.id == 0x704);
+            said.borrow_mut().extend(of_knee.map(|frame| (tick, NetworkState::of(frame.data[0]).unwrap())));
+        }));
+        while rig.tick < at - 1 {
+            rig.cycle();
+        }
+        assert_eq!(rig.joints.state(), LoopState::Track, "{:?}", rig.events);
+        rig.cycles(100);
+        assert_eq!(rig.refusal(), Some((3, 0, TableFault::Restarted)), "{command:?}: {:?}", rig.events);
+        assert_eq!(rig.joints.state(), LoopState::Stop(EventCode::TablesRefused));
+        let still = rig.angles();
+        rig.cycles(20);
+        let moves = rig.angles().iter().zip(&still).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(moves < 1e-3, "{command:?}: {moves} rad in 20 cycles after the stop");
+        // In turn, every sixth cycle, and with each change.
+        let heard = heard.borrow();
+        let changes: Vec<_> = heard.iter().filter(|(tick, _)| (at + 1..at + 3).contains(tick)).collect();
+        assert_eq!(changes, [&(at + 1, state), &(at + 2, Operational)], "{command:?}");
+        let before = heard.iter().filter(|(tick, _)| *tick < at).collect::<Vec<_>>();
+        assert!(before.len() > 20 && before.windows(2).all(|pair| pair[1].0 == pair[0].0 + 6), "{before:?}");
+        assert!(before.iter().all(|(_, state)| *state == Operational));
+    }
 }
 
 /// Tables that are refused before a byte goes out.

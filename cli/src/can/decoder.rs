@@ -92,7 +92,10 @@ pub(super) fn unit(carries: Carries) -> &'static str {
         | Carries::Status(_)
         | Carries::Error(_)
         | Carries::Orientation(_)
-        | Carries::Interpreter(_) => "",
+        | Carries::Interpreter(_)
+        | Carries::NetworkCommand
+        | Carries::NetworkNode
+        | Carries::NetworkState(_) => "",
     }
 }
 

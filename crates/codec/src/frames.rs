@@ -1,6 +1,7 @@
 //! Records to frames and back, by the layout of a robot: [`FrameLayout`].
 
 use crate::layout::{BusMessage, Carries, FrameLayout, MAX_NODES};
+use crate::network::{NetworkCommand, NetworkState};
 use messages::{BusFrames, ERROR_FLAG, Frame, JointMode, JointTargets, MAX_JOINTS, Sensors};
 
 /// Command to the drives in one cycle.
@@ -12,6 +13,41 @@ pub struct DriveCommand {
     pub control: [u32; MAX_JOINTS],
     /// Joints (bits) whose controlword is sent in this cycle, where it is not sent in every one.
     pub due: u32,
+    /// To all drives, where they know network management.
+    pub network: Option<NetworkCommand>,
+}
+
+/// What drives that play tables say beside their readings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DriveReplies<'a> {
+    /// Telegrams of their interpreters.
+    pub telegrams: &'a [Frame],
+    /// Drives (bits) that tell an error code.
+    pub emergencies: u32,
+    /// Drives (bits) that send a heartbeat.
+    pub heartbeats: u32,
+    /// State of each drive on the network; none of one that is operational.
+    pub network: &'a [NetworkState],
+}
+
+impl DriveReplies<'_> {
+    fn state(&self, j: usize) -> NetworkState {
+        self.network.get(j).copied().unwrap_or_default()
+    }
+
+    /// Whether a message is sent in this cycle. A drive that is not operational sends no process data.
+    fn sends(&self, message: &BusMessage) -> bool {
+        let mut signals = message.signals.iter().map(|s| s.carries);
+        if message.cyclic {
+            return !signals
+                .any(|c| matches!(c, Carries::Status(j) if self.state(j) != NetworkState::Operational));
+        }
+        signals.any(|c| match c {
+            Carries::Error(j) => self.emergencies >> j & 1 == 1,
+            Carries::NetworkState(j) => self.heartbeats >> j & 1 == 1,
+            _ => false,
+        })
+    }
 }
 
 /// Outcome of the frames of one cycle.
@@ -58,13 +94,19 @@ pub fn encode_command(
     let t = &command.targets;
     frames.header = t.header;
     frames.count = 0;
-    let due = |carries: Carries| matches!(carries, Carries::Control(j) if command.due >> j & 1 == 1);
-    encode(layout, true, t.header.tick, (telegrams, &due), frames, |carries| match carries {
+    let due = |carries: Carries| match carries {
+        Carries::Control(j) => command.due >> j & 1 == 1,
+        Carries::NetworkCommand => command.network.is_some(),
+        _ => false,
+    };
+    let sends = |m: &BusMessage| m.cyclic || m.signals.iter().any(|s| due(s.carries));
+    encode(layout, true, t.header.tick, (telegrams, &sends), frames, |carries| match carries {
         Carries::Mode => t.mode as f64,
         Carries::Target(j) => t.angle[j],
         Carries::Feed(j) => t.speed[j],
         Carries::Control(j) => f64::from(command.control[j]),
-        _ => 0.0, // not sent in this direction: `config` refuses such a layout
+        Carries::NetworkCommand => command.network.map_or(0.0, |command| f64::from(command as u8)),
+        _ => 0.0, // all nodes; the rest is not sent in this direction: `config` refuses such a layout
     });
 }
 
@@ -83,24 +125,22 @@ pub fn decode_targets(layout: &FrameLayout, frames: &BusFrames, command: &mut Dr
 
 /// Every message from the drives.
 pub fn encode_sensors(layout: &FrameLayout, sensors: &Sensors, frames: &mut BusFrames) {
-    encode_answers(layout, sensors, 0, &[], frames);
+    encode_answers(layout, sensors, &DriveReplies::default(), frames);
 }
 
-/// The same, with emergency frames of these drives (bits) and telegrams of their interpreters, which come first: who has all
-/// messages of the cycle has these, too.
+/// The same, with what else the drives say; telegrams come first: who has all messages of the cycle has these, too.
 pub fn encode_answers(
     layout: &FrameLayout,
     sensors: &Sensors,
-    emergencies: u32,
-    telegrams: &[Frame],
+    replies: &DriveReplies<'_>,
     frames: &mut BusFrames,
 ) {
     let s = sensors;
     frames.header = s.header;
     frames.count = 0;
-    telegrams.iter().for_each(|frame| _ = frames.push(frame));
-    let due = |carries: Carries| matches!(carries, Carries::Error(j) if emergencies >> j & 1 == 1);
-    encode(layout, false, s.header.tick, (&[], &due), frames, |carries| match carries {
+    replies.telegrams.iter().for_each(|frame| _ = frames.push(frame));
+    let sends = |m: &BusMessage| replies.sends(m);
+    encode(layout, false, s.header.tick, (&[], &sends), frames, |carries| match carries {
         Carries::Supply => s.power as f64,
         Carries::Angle(j) => s.joint_angle[j],
         Carries::Speed(j) => s.joint_speed[j],
@@ -110,6 +150,7 @@ pub fn encode_answers(
         Carries::Status(j) => f64::from(s.drive_status[j]),
         Carries::Temperature(j) => s.temperature[j],
         Carries::Error(j) => f64::from(s.drive_error[j]),
+        Carries::NetworkState(j) => f64::from(replies.state(j) as u8),
         Carries::Force(foot, k) => s.foot_wrench[foot].force[k],
         Carries::Moment(foot, k) => s.foot_wrench[foot].moment[k],
         Carries::Orientation(k) => s.imu.orientation[k],
@@ -181,18 +222,20 @@ fn is_current(message: &BusMessage, frame: &Frame, tick: u64) -> bool {
     counter.is_none_or(|s| s.get(&frame.data) as u64 == tick & ((1 << s.bits) - 1))
 }
 
-/// Appends every message of one direction, in the order of the layout: those of every cycle, and those with something that is
-/// due; before a line is synchronized, its telegrams.
+/// Whether a message is sent in this cycle.
+type Sends<'a> = &'a dyn Fn(&BusMessage) -> bool;
+
+/// Appends the messages of one direction that are sent, in the order of the layout; before a line is synchronized, its telegrams.
 fn encode(
     layout: &FrameLayout,
     to_drives: bool,
     tick: u64,
-    (telegrams, due): (&[Frame], &dyn Fn(Carries) -> bool),
+    (telegrams, sends): (&[Frame], Sends<'_>),
     frames: &mut BusFrames,
     value: impl Fn(Carries) -> f64,
 ) {
     for message in layout.messages.iter().filter(|m| m.to_drives == to_drives) {
-        if !message.cyclic && !message.signals.iter().any(|s| due(s.carries)) {
+        if !sends(message) {
             continue;
         }
         if !telegrams.is_empty() && message.is_sync() {

@@ -55,6 +55,12 @@ pub enum Carries {
     Acceleration(usize),
     /// \[1\] Part of a telegram of the interpreter in a joint's drive ([`crate::interpreter`]), either way.
     Interpreter(usize),
+    /// \[1\] To the drives: a [`NetworkCommand`](crate::network::NetworkCommand).
+    NetworkCommand,
+    /// \[1\] To the drives: node that the command is for; 0: all.
+    NetworkNode,
+    /// \[1\] A [`NetworkState`](crate::network::NetworkState), in the heartbeat of a joint's drive.
+    NetworkState(usize),
 }
 
 /// One number of a message.
@@ -177,6 +183,19 @@ impl BusMessage {
             Carries::Interpreter(j) => Some(j),
             _ => None,
         })
+    }
+
+    /// Joint whose drive's heartbeat it is.
+    pub fn heartbeat(&self) -> Option<usize> {
+        self.signals.iter().find_map(|s| match s.carries {
+            Carries::NetworkState(j) => Some(j),
+            _ => None,
+        })
+    }
+
+    /// Whether it is a command of the network management.
+    pub fn manages_network(&self) -> bool {
+        self.signals.iter().any(|s| s.carries == Carries::NetworkCommand)
     }
 }
 

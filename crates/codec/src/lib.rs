@@ -4,9 +4,10 @@
 //!   files.
 //! - [`frames`]: encoding and decoding by such a layout, and what became of the frames of a cycle.
 //! - [`interpreter`]: telegrams to and from the interpreters of drives that play tables; [`room`]: how many of them a cycle
-//!   has room for.
+//!   has room for; [`network`]: how such drives are started, and say that they are.
 
 pub mod frames;
 pub mod interpreter;
 pub mod layout;
+pub mod network;
 pub mod room;

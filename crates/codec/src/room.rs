@@ -22,8 +22,8 @@ pub fn cyclic_bits(layout: &FrameLayout, line: usize) -> u32 {
     cyclic.map(|m| classic_bits(m.len)).sum()
 }
 
-/// Telegrams with their answers for which a cycle \[s\] has room on each line: beside the messages of every cycle and one
-/// other command to a drive, and beside those of the other lines in a record.
+/// Telegrams with their answers for which a cycle \[s\] has room on each line: beside the messages of every cycle, one other
+/// command to a drive and one heartbeat, and beside those of the other lines in a record.
 pub fn telegrams_per_cycle(layout: &FrameLayout, cycle: f64) -> usize {
     let lines = layout.nodes.len().max(1);
     let bits = (cycle * BIT_RATE).round();
@@ -31,7 +31,9 @@ pub fn telegrams_per_cycle(layout: &FrameLayout, cycle: f64) -> usize {
         let commands = layout.messages.iter().filter(|m| m.node == line && m.to_drives && !m.cyclic);
         let command = commands.filter(|m| m.interpreter().is_none()).map(|m| classic_bits(m.len));
         let command = command.max().unwrap_or(0);
-        let left = bits - f64::from(cyclic_bits(layout, line) + command);
+        let heartbeat = layout.messages.iter().find(|m| m.node == line && m.heartbeat().is_some());
+        let heartbeat = heartbeat.map_or(0, |m| classic_bits(m.len));
+        let left = bits - f64::from(cyclic_bits(layout, line) + command + heartbeat);
         (left / f64::from(2 * classic_bits(LEN))).max(0.0) as usize
     };
     // Frames of a cycle and, of each joint, one that does not come in every cycle.

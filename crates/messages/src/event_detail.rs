@@ -132,6 +132,8 @@ pub enum TableFault {
     NotArmed = 14,
     /// The drives of this robot, or in this scene, play no tables.
     NoTables = 15,
+    /// The drive has started anew, or left the network.
+    Restarted = 16,
 }
 
 /// Limit of the stabilizer, in the detail of [`EventCode::ControlLimited`].
@@ -180,7 +182,7 @@ impl ControlLimit {
 
 impl TableFault {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Shape,
         Self::Robot,
         Self::Range,
@@ -196,6 +198,7 @@ impl TableFault {
         Self::NoAnswer,
         Self::NotArmed,
         Self::NoTables,
+        Self::Restarted,
     ];
 
     fn from_number(n: u64) -> Option<Self> {
@@ -220,6 +223,7 @@ impl TableFault {
             Self::NoAnswer => "the drive did not answer",
             Self::NotArmed => "the drive did not say that it is ready to begin",
             Self::NoTables => "its drives play no tables here",
+            Self::Restarted => "the drive has started anew, or left the network",
         }
     }
 }
