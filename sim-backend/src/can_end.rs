@@ -45,6 +45,11 @@ struct Gathering {
     tick: u64,
 }
 
+/// All lines of a layout, as bits.
+fn every_line(layout: &FrameLayout) -> u32 {
+    ((1u64 << layout.nodes.len()) - 1) as u32
+}
+
 /// Result of a frame.
 #[derive(Debug, PartialEq, Eq)]
 enum FrameResult {
@@ -108,7 +113,14 @@ impl FarEnd for CanEnd {
 
     fn answer(&mut self, _: &Daemon, frames: &BusFrames) {
         self.answer = *frames;
-        self.lines.send(frames);
+        // Who was not started yet says nothing.
+        let started = self.gathering.started;
+        if started == every_line(&self.layout) {
+            return self.lines.send(frames);
+        }
+        for line in (0..MAX_NODES as u32).filter(|line| started >> line & 1 == 1) {
+            self.lines.send_on(line, frames);
+        }
     }
 
     fn wait(&mut self, at_most: Duration) {
@@ -149,7 +161,7 @@ impl FarEnd for CanEnd {
 
 impl Gathering {
     fn new(layout: &FrameLayout) -> Self {
-        let all = ((1u64 << layout.nodes.len()) - 1) as u32;
+        let all = every_line(layout);
         let managed = layout.messages.iter().filter(|m| m.manages_network());
         Self {
             frames: BusFrames::default(),

@@ -90,7 +90,7 @@ impl SimulatedTables {
                     NetworkCommand::Reset => NetworkState::BootUp,
                 };
                 if *state == NetworkState::BootUp {
-                    drive.player = TablePlayer::default();
+                    drive.player.restart();
                 }
             }
         }

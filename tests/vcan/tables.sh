@@ -55,21 +55,25 @@ answered_by() {
     "$python" "$here/same.py" "$work/first/archie_tables.mcap" "$work/$name/archie_tables.mcap"
 }
 
-# In cycle 900, at the begin of the second step.
-pulled() {
+# disturbed NAME PATTERN COMMAND...: that is done in cycle 900, at the begin of the second step; the run tells of it, and the joints
+# come to rest.
+disturbed() {
+    name=$1
+    pattern=$2
+    shift 2
     timeout 800 candump -n 900 vcan1,080:7FF >/dev/null &
     waiting=$!
     within 20 listened vcan1 || return 1
-    walk fault archie_tables --lockstep --bus can:vcan0-1 &
+    walk "$name" archie_tables --lockstep --bus can:vcan0-1 &
     running=$!
-    wait "$waiting" || because "cycle 900 was not reached: $(tail -n 5 "$work/fault/said")" || return 1
-    ip link set vcan1 down
-    within 240 grep -E 'lowlevel: a local controller is silent for too long: leg_left' "$work/fault/said"
+    wait "$waiting" || because "cycle 900 was not reached: $(tail -n 5 "$work/$name/said")" || return 1
+    "$@" || because "could not: $*"
+    within 240 grep -E "$pattern" "$work/$name/said"
     code=$?
     ip link set vcan1 up
     wait "$running"
-    [ "$code" -eq 0 ] || because "leg_left is not named: $(tail -n 5 "$work/fault/said")" || return 1
-    "$python" "$here/at_rest.py" "$work/fault/archie_tables.mcap" Stopped
+    [ "$code" -eq 0 ] || because "nothing like '$pattern': $(tail -n 5 "$work/$name/said")" || return 1
+    "$python" "$here/at_rest.py" "$work/$name/archie_tables.mcap" Stopped
 }
 
 step "Archie walks a stride from tables over two lines" recorded first archie_tables --lockstep --bus can:vcan0-1
@@ -79,4 +83,7 @@ step "candump heard the upload, and cantools decodes it to the counts of the log
 step "the joint loop does it again from the log, byte for byte" replayed "$work/first/archie_tables.mcap"
 from_drives
 step "the drives' answers, repeated by canplayer, are the same walk, bit for bit" answered_by canplayer canplayer -I "$work/answers.log"
-step "a line is pulled in mid-stride: the run says which, and the joints come to rest" pulled
+step "a line is pulled in mid-stride: the run says which, and the joints come to rest" disturbed line \
+    'lowlevel: a local controller is silent for too long: leg_left' ip link set vcan1 down
+step "somebody resets a drive in mid-stride: it is named, and the joints come to rest" disturbed reset \
+    'right_knee_flexion: the drive has started anew' cansend vcan0 '000#8104'

@@ -73,12 +73,21 @@ pub struct TablePlayer {
 
 impl Default for TablePlayer {
     fn default() -> Self {
-        let next = TableMotion { first: 1, last: MOST_POINTS, cyclic: false, spacing: 1, begin: 0 };
-        Self { points: Box::new([0; MOST_POINTS]), next, begin: None, playing: None }
+        Self { points: Box::new([0; MOST_POINTS]), next: AT_START, begin: None, playing: None }
     }
 }
 
+/// Registers of a drive that has just started.
+const AT_START: TableMotion =
+    TableMotion { first: 1, last: MOST_POINTS, cyclic: false, spacing: 1, begin: 0 };
+
 impl TablePlayer {
+    /// Starts anew, with an empty memory.
+    pub fn restart(&mut self) {
+        self.points.fill(0);
+        (self.next, self.begin, self.playing) = (AT_START, None, None);
+    }
+
     /// Point `i`, from 1; none if there is no such point.
     pub fn point(&self, i: usize) -> Option<i32> {
         self.points.get(i.checked_sub(1)?).copied()

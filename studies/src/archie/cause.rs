@@ -203,7 +203,7 @@ pub(super) fn causes(setup: &Setup) -> Vec<Cause> {
         all.push(Cause { shown, ..cause("pattern", name, unit, tried, Acts::Pattern(change)) });
     }
     for (name, begin, end) in [
-        (LEFT_LATE, "left", ""),
+        ("left leg late", "left", ""),
         ("knees late", "", "knee_flexion"),
         ("one knee late", "left", "knee_flexion"),
     ] {
@@ -211,9 +211,6 @@ pub(super) fn causes(setup: &Setup) -> Vec<Cause> {
     }
     all
 }
-
-/// Name of the cause whose lag is played until he falls.
-pub(super) const LEFT_LATE: &str = "left leg late";
 
 /// \[cm/s\] Speed of the pattern as it is.
 const SPEED: f64 = 25.0 / 12.0;

@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use chain::parallel;
-use messages::MAX_JOINTS;
+use config::Setup;
 use serde::Serialize;
 
 use crate::sheet::{Column, fixed, plain};
@@ -45,9 +45,8 @@ const LANDINGS: [usize; 2] = [1, 6];
 const HALVINGS: usize = 10;
 /// Parts of the study.
 const PARTS: [&str; 6] = ["zero", "ground", "pattern", "clocks", "currents", "speeds"];
-/// \[ppm\] By how much the clocks of drives are apart, and in the trial that walks until it falls.
+/// \[ppm\] By how much the clocks of drives are apart; with the last one he walks until he falls.
 const PPM: [f64; 3] = [10.0, 50.0, 100.0];
-const DRIFT: f64 = 4000.0;
 
 const COLUMNS: &[Column] = &[
     plain("/name", "cause"),
@@ -63,8 +62,9 @@ const COLUMNS: &[Column] = &[
 const STRIDES: &[Column] = &[
     plain("/name", "clocks apart, tables played freely"),
     fixed("/ppm", "ppm", 0),
-    fixed("/predicted", "strides predicted", 0),
-    fixed("/measured", "strides", 0),
+    fixed("/predicted", "strides by statics", 0),
+    fixed("/by_lag", "by the constant lag that is borne", 0),
+    fixed("/walked", "walked until he fell", 1),
 ];
 
 /// The study's arguments.
@@ -126,8 +126,11 @@ pub struct BorneSide {
 struct Strides {
     name: String,
     ppm: f64,
+    /// By statics, and by the constant lag that is borne.
     predicted: Option<f64>,
-    measured: Option<f64>,
+    by_lag: Option<f64>,
+    /// Walked until he fell.
+    walked: Option<f64>,
 }
 
 impl Study for Archie {
@@ -141,29 +144,8 @@ impl Study for Archie {
         }
         // Drives whose tables run by their own clocks: how long a lag takes to grow.
         if wanted("clocks") {
-            (given.progress)(0, 0, "clocks that drift until he falls");
-            let step = benches[0].setup.gait.pattern.map_or(0.0, |p| p.step_time);
-            let grows = |x: f64, ppm: f64| 1e-3 * x / (1e-6 * ppm * 2.0 * step);
-            let late = all.iter().filter(|b| b.unit == "ms");
-            let strides = late.flat_map(|b| {
-                PPM.map(|ppm| Strides {
-                    name: b.name.clone(),
-                    ppm,
-                    predicted: b.sides[0].predicted.map(|x| grows(x, ppm)),
-                    measured: b.sides[0].open_loop.map(|x| grows(x, ppm)),
-                })
-            });
             sheet.line("");
-            sheet.rows("strides", STRIDES, &strides.collect::<Vec<_>>());
-            let walked = drift(given.config)?;
-            sheet.fact("drift", walked);
-            let told = all.iter().find(|b| b.name == cause::LEFT_LATE).map(|b| &b.sides[0]);
-            let [by_statics, by_lag] = [told.and_then(|s| s.predicted), told.and_then(|s| s.open_loop)]
-                .map(|x| x.map_or(f64::NAN, |x| grows(x, DRIFT)));
-            sheet.line(format!(
-                "Left leg, {DRIFT} ppm, played until he falls: {walked:.1} strides; by statics {by_statics:.1}, by the lag that \
-                 is borne {by_lag:.1}"
-            ));
+            sheet.rows("strides", STRIDES, &strides(&benches[0].setup, &all, given)?);
         }
         if wanted("currents") {
             (given.progress)(0, 0, "currents");
@@ -240,27 +222,52 @@ fn predicted(cause: &Cause, most: f64, open: &Bench) -> Option<f64> {
     Some(low)
 }
 
-/// Strides that are walked while the left leg's drives fall behind by [`DRIFT`].
-fn drift(config: &Path) -> Result<f64, Error> {
-    let steps = 100;
-    let setup = open_loop(config, steps, |_| ())?;
+/// Strides until a lag has grown to what is borne of it, and those that are walked.
+fn strides(setup: &Setup, all: &[Borne], given: &Given<'_>) -> Result<Vec<Strides>, Error> {
     let step = setup.gait.pattern.map_or(0.0, |p| p.step_time);
-    let most = 1e-6 * DRIFT * f64::from(steps) * step;
-    let mut late = LateDrives::new(setup.scene.cycle, most);
+    let strides = |lag_ms: f64, ppm: f64| 1e-3 * lag_ms / (1e-6 * ppm * 2.0 * step);
+    let late = causes(setup).into_iter().filter(|cause| matches!(cause.acts, Acts::Late(..)));
+    let late: Vec<_> = late.zip(all.iter().filter(|b| b.unit == "ms")).collect();
+    let of = |borne: &Borne, ppm: f64| {
+        [borne.sides[0].predicted, borne.sides[0].open_loop].map(|x| x.map(|x| strides(x, ppm)))
+    };
+    // With the largest, an hour and more of his time.
+    let most = PPM[2];
+    (given.progress)(0, 0, &format!("walks with clocks {most} ppm apart until he falls"));
+    let walked = parallel::map(late.len(), |i| {
+        let (cause, borne) = &late[i];
+        let expected = of(borne, most).into_iter().flatten().fold(10.0, f64::max);
+        drift(given.config, cause, most, (1.5 * expected) as u32).map_err(|e| e.to_string())
+    });
+    let mut rows = Vec::new();
+    for ((cause, borne), walked) in late.iter().zip(walked) {
+        let walked = walked?;
+        for ppm in PPM {
+            let [predicted, by_lag] = of(borne, ppm);
+            let walked = walked.filter(|_| ppm == most);
+            rows.push(Strides { name: cause.name.clone(), ppm, predicted, by_lag, walked });
+        }
+    }
+    Ok(rows)
+}
+
+/// Strides that are walked, of at most `most`, while the drives of a cause fall behind by `ppm`; none: all of them.
+fn drift(config: &Path, cause: &Cause, ppm: f64, most: u32) -> Result<Option<f64>, Error> {
+    let setup = open_loop(config, 2 * most, |_| ())?;
+    let step = setup.gait.pattern.map_or(0.0, |p| p.step_time);
+    let duration = f64::from(2 * most) * step;
     let (cycle, mut now) = (setup.scene.cycle, 0.0);
-    let left: Vec<bool> = setup.robot.joints.iter().map(|joint| joint.name.starts_with("left")).collect();
+    let mut late = LateDrives::new(cycle, 1e-6 * ppm * duration);
     let walked = walk_with(
         &setup,
         &mut |targets| {
             now += cycle;
-            let lag = 1e-6 * DRIFT * (now - BEGIN).clamp(0.0, f64::from(steps) * step);
-            let mut lags = [0.0; MAX_JOINTS];
-            lags.iter_mut().zip(&left).filter(|(_, left)| **left).for_each(|(l, _)| *l = lag);
-            late.delay(targets, &lags);
+            let lag_ms = 1e-3 * ppm * (now - BEGIN).clamp(0.0, duration);
+            late.delay(targets, &cause.lag(&setup, lag_ms));
         },
         &mut |_| (),
     );
-    Ok((walked.time - BEGIN) / (2.0 * step))
+    Ok((walked.ended != "done").then_some((walked.time - BEGIN) / (2.0 * step)))
 }
 
 /// For people and for other programs.

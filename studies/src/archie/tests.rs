@@ -1,6 +1,7 @@
 use super::statics::{Deviation, Statics};
 use super::*;
 use messages::JointTargets;
+use messages::MAX_JOINTS;
 
 /// Statics on one foot against the closed form: the edge of the sole, drawn in by 1 - m g h / K.
 #[test]
