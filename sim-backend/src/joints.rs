@@ -72,7 +72,7 @@ impl SimulatedJoints {
         &self.electronics
     }
 
-    /// What drives that play tables say in this cycle beside their readings, once a cycle.
+    /// Replies of drives that play tables, beside their readings; once a cycle.
     pub(crate) fn replies(&mut self, errors: &[u32]) -> DriveReplies<'_> {
         self.tables.as_mut().map_or_else(DriveReplies::default, |tables| tables.replies(errors))
     }

@@ -167,7 +167,7 @@ impl SimulatedTables {
         self.drives[j].exhausted
     }
 
-    /// What is said in this cycle: answers, error codes that have changed, and the heartbeats of one drive of each line in
+    /// Replies of this cycle: answers, error codes that have changed, and the heartbeats of one drive of each line in
     /// turn and of those whose state has changed.
     pub(crate) fn replies(&mut self, errors: &[u32]) -> DriveReplies<'_> {
         let lines = self.layout.nodes.len().max(1);

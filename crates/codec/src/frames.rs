@@ -17,7 +17,7 @@ pub struct DriveCommand {
     pub network: Option<NetworkCommand>,
 }
 
-/// What drives that play tables say beside their readings.
+/// Replies of drives that play tables, beside their readings.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DriveReplies<'a> {
     /// Telegrams of their interpreters.
@@ -35,7 +35,7 @@ impl DriveReplies<'_> {
         self.network.get(j).copied().unwrap_or_default()
     }
 
-    /// Whether a message is sent in this cycle. A drive that is not operational sends no process data.
+    /// True if a message is sent in this cycle. A drive that is not operational sends no process data.
     fn sends(&self, message: &BusMessage) -> bool {
         let mut signals = message.signals.iter().map(|s| s.carries);
         if message.cyclic {
@@ -222,7 +222,7 @@ fn is_current(message: &BusMessage, frame: &Frame, tick: u64) -> bool {
     counter.is_none_or(|s| s.get(&frame.data) as u64 == tick & ((1 << s.bits) - 1))
 }
 
-/// Whether a message is sent in this cycle.
+/// True for messages that are sent in this cycle.
 type Sends<'a> = &'a dyn Fn(&BusMessage) -> bool;
 
 /// Appends the messages of one direction that are sent, in the order of the layout; before a line is synchronized, its telegrams.

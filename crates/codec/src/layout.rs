@@ -193,7 +193,7 @@ impl BusMessage {
         })
     }
 
-    /// Whether it is a command of the network management.
+    /// True for a command of the network management.
     pub fn manages_network(&self) -> bool {
         self.signals.iter().any(|s| s.carries == Carries::NetworkCommand)
     }
