@@ -150,8 +150,8 @@ fn a_begin_that_one_drive_missed_moves_nothing() {
     assert_eq!(unheard, (7, 0, TableFault::NotArmed));
 }
 
-/// Somebody else manages the network while all drives play. The drive that was told is started again, holds nothing, and is
-/// named; the joints come to rest.
+/// Somebody else manages the network, at a random instant from the first telegram to the fifth round. The drive that was told
+/// is started again, has lost its torque, and is named; the joints come to rest.
 #[test]
 fn a_drive_that_leaves_the_network_is_named_and_started_again_and_the_robot_stops() {
     use NetworkState::{BootUp, Operational, PreOperational, Stopped};
@@ -160,42 +160,56 @@ fn a_drive_that_leaves_the_network_is_named_and_started_again_and_the_robot_stop
         (NetworkCommand::PreOperational, PreOperational),
         (NetworkCommand::Stop, Stopped),
     ];
-    for (command, state) in told {
+    let mut random = 0x5EED_u64;
+    for case in 0..24 {
+        let mut below = |n: u64| {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (random >> 33) % n
+        };
+        let (j, (command, state)) = (below(12) as usize, told[case % 3]);
         let mut rig = Rig::standing(Playback::Sync);
-        rig.start = rig.tick + 1 + rig.lead(100);
+        let begun = rig.tick;
+        rig.start = begun + 1 + rig.lead(100);
+        let at = begun + 12 + below(rig.start + 400 - begun - 12);
         let tables = rig.tables(1, rig.start, 100, true);
         rig.joints.take_tables(&tables);
-        // Right knee: drive 4 of line 0.
-        let at = rig.start + 130;
+        // Six drives on each line, numbered through.
         rig.to_drives = Some(Box::new(move |tick, frames| {
-            let mut frame = Frame { line: 0, id: 0, len: 2, ..Frame::default() };
-            frame.data[..2].copy_from_slice(&[command as u8, 4]);
+            let mut frame = Frame { line: j as u32 / 6, id: 0, len: 2, ..Frame::default() };
+            frame.data[..2].copy_from_slice(&[command as u8, j as u8 + 1]);
             assert!(tick != at || frames.push(&frame));
         }));
         let heard = Rc::new(RefCell::new(Vec::new()));
         let said = heard.clone();
         rig.from_drives = Some(Box::new(move |tick, frames| {
-            let of_knee = frames.as_slice().iter().filter(|frame| frame.id == 0x704);
-            said.borrow_mut().extend(of_knee.map(|frame| (tick, NetworkState::of(frame.data[0]).unwrap())));
+            let of_drive = frames.as_slice().iter().filter(|frame| frame.id == 0x701 + j as u32);
+            said.borrow_mut().extend(of_drive.map(|frame| (tick, NetworkState::of(frame.data[0]).unwrap())));
         }));
         while rig.tick < at - 1 {
             rig.cycle();
         }
-        assert_eq!(rig.joints.state(), LoopState::Track, "{:?}", rig.events);
-        rig.cycles(100);
-        assert_eq!(rig.refusal(), Some((3, 0, TableFault::Restarted)), "{command:?}: {:?}", rig.events);
-        assert_eq!(rig.joints.state(), LoopState::Stop(EventCode::TablesRefused));
+        let place = format!("joint {j}, {command:?}, {} cycles from the begin", at as i64 - rig.start as i64);
+        assert_eq!(rig.joints.state(), LoopState::Track, "{place}: {:?}", rig.events);
+        // CiA 402: operation enabled.
+        let mut enabled = [0; 2];
+        for _ in 0..100 {
+            rig.cycle();
+            enabled[usize::from(rig.sensors.drive_status[j] & 0x6F == 0x27)] += 1;
+        }
+        assert!(enabled[0] > 0 && enabled[1] > 50, "{place}: off and on for {enabled:?} cycles");
+        assert_eq!(rig.refusal(), Some((j, 0, TableFault::Restarted)), "{place}: {:?}", rig.events);
+        assert_eq!(rig.joints.state(), LoopState::Stop(EventCode::TablesRefused), "{place}");
         let still = rig.angles();
         rig.cycles(20);
         let moves = rig.angles().iter().zip(&still).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(moves < 1e-3, "{command:?}: {moves} rad in 20 cycles after the stop");
+        assert!(moves < 1e-3, "{place}: {moves} rad in 20 cycles after the stop");
         // In turn, every sixth cycle, and with each change.
         let heard = heard.borrow();
         let changes: Vec<_> = heard.iter().filter(|(tick, _)| (at + 1..at + 3).contains(tick)).collect();
-        assert_eq!(changes, [&(at + 1, state), &(at + 2, Operational)], "{command:?}");
+        assert_eq!(changes, [&(at + 1, state), &(at + 2, Operational)], "{place}");
         let before = heard.iter().filter(|(tick, _)| *tick < at).collect::<Vec<_>>();
-        assert!(before.len() > 20 && before.windows(2).all(|pair| pair[1].0 == pair[0].0 + 6), "{before:?}");
-        assert!(before.iter().all(|(_, state)| *state == Operational));
+        assert!(before.windows(2).all(|pair| pair[1].0 == pair[0].0 + 6), "{place}: {before:?}");
+        assert!(!before.is_empty() && before.iter().all(|(_, state)| *state == Operational), "{place}");
     }
 }
 

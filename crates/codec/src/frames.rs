@@ -144,6 +144,7 @@ pub fn encode_answers(
         Carries::Supply => s.power as f64,
         Carries::Angle(j) => s.joint_angle[j],
         Carries::Speed(j) => s.joint_speed[j],
+        // Motor side and drives.
         Carries::Motor(j) => s.motor_angle[j],
         Carries::MotorSpeed(j) => s.motor_speed[j],
         Carries::Current(j) => s.motor_current[j],
@@ -151,6 +152,7 @@ pub fn encode_answers(
         Carries::Temperature(j) => s.temperature[j],
         Carries::Error(j) => f64::from(s.drive_error[j]),
         Carries::NetworkState(j) => f64::from(replies.state(j) as u8),
+        // Ground and inertia.
         Carries::Force(foot, k) => s.foot_wrench[foot].force[k],
         Carries::Moment(foot, k) => s.foot_wrench[foot].moment[k],
         Carries::Orientation(k) => s.imu.orientation[k],
