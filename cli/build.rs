@@ -3,7 +3,7 @@
 use std::process::Command;
 
 /// Parts of the configuration that are shipped, as in `src/shipped.rs`: a file that is added is no change of any other.
-const SHIPPED: [&str; 6] = ["gaits", "gears", "objects", "robots", "scenes", "system.toml"];
+const SHIPPED: [&str; 7] = ["gaits", "gears", "joystick.toml", "objects", "robots", "scenes", "system.toml"];
 
 fn main() {
     for part in SHIPPED {

@@ -34,7 +34,13 @@ struct Robot {
 }
 
 impl Robot {
+    /// A machine that stands still for some milliseconds may stop the robot before any stranger comes: then another one starts.
     fn standing() -> Self {
+        (0..5).find_map(|_| Self::stood_up()).expect("the machine lets a robot stand up")
+    }
+
+    /// None: it was stopped before it stood.
+    fn stood_up() -> Option<Self> {
         let site = with_door(Site::patient(EXE));
         site.scene("wait", 100_000.0, "[[command]]\ntime = 0.2\ntopic = \"walk/stand\"\n");
         let mut run = site.run("wait", &["--no-log"]);
@@ -42,11 +48,15 @@ impl Robot {
         let mut state: Reader<ControllerState> = space.reader(&CONTROLLER_STATE).unwrap();
         let begun = now();
         while !state.latest().is_some_and(|s| s.header.tick > 3000 && s.gait == GaitState::Standing as u64) {
+            if state.held().is_some_and(|s| s.gait == GaitState::Halted as u64) {
+                println!("stopped before it stood: {}", run.err());
+                return None;
+            }
             assert!(run.is_alive() && now() - begun < 60 * SECOND, "{}", run.err());
             doze(0.01);
         }
         let targets = space.reader(&JOINT_TARGETS).unwrap();
-        Self { run, space, targets, site }
+        Some(Self { run, space, targets, site })
     }
 
     /// Largest difference of any joint target since the last look \[rad\].

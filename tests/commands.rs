@@ -1,5 +1,8 @@
 //! `gangwerk topic`: commands that reach a running robot and act, and looks at what it does.
 
+#[path = "commands/joystick.rs"]
+mod joystick;
+
 use harness::{Running, Signal, Site, doze, turn};
 use ipc::{Reader, Space};
 use messages::topics::{CONTROLLER_STATE, EVENTS_PLANNER, EVENTS_WATCHDOG, POWER, SIM_STATE};
@@ -203,6 +206,27 @@ fn an_operator_who_is_killed_or_hangs_stops_the_walk() {
     }
 }
 
+/// The run goes on when its scene is over; whoever steers, by a stop before she was to walk, is not overruled by the scene.
+#[test]
+fn a_run_that_stays_goes_on_and_obeys_whoever_steers() {
+    let walks = format!("{WAIT}[[command]]\ntime = 6.0\ntopic = \"walk/velocity\"\nforward = 0.278\n");
+    let site = Site::patient(EXE);
+    site.scene("stay", 7.0, &walks);
+    for (steered, gait) in [(false, GaitState::Walking), (true, GaitState::Standing)] {
+        let mut run = site.run("stay", &["--lockstep", "--paced", "--stay", "--no-log"]);
+        let space = run.space();
+        let mut state = space.reader::<ControllerState>(&CONTROLLER_STATE).unwrap();
+        until(&mut run, &mut state, |s| s.tick() > 2500 && s.gait == GaitState::Standing as u64);
+        if steered {
+            site.topic(&["pub", "walk/stop", "-1"]).well();
+        }
+        let late = until(&mut run, &mut state, |s| s.tick() > 9000);
+        assert_eq!(GaitState::from(late.gait), gait);
+        run.interrupt();
+        assert_eq!(run.end().code, Some(130), "ended by Ctrl-C");
+    }
+}
+
 /// The lease ends by the clock of the process that walks: nobody has to tell it.
 #[test]
 fn a_broker_that_hangs_or_dies_stops_the_walk() {
@@ -289,5 +313,22 @@ fn the_python_client_speaks_to_the_broker() {
         .expect("python3 is there");
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     assert!(said.status.success(), "{}{}{}", text(&said.stdout), text(&said.stderr), run.err());
+    // The same client in a shell.
+    let console = |python: &str, dir: &std::path::Path, code: &str| {
+        let mut shell = std::process::Command::new(EXE);
+        shell.env("PYTHONPATH", harness::root().join("python"));
+        shell.args(["console", "--python", python, "-c", code, "--dir"]).arg(dir);
+        let said = shell.output().expect("the command is built");
+        (said.status.code(), text(&said.stdout), text(&said.stderr))
+    };
+    let accepted = console("python3", &site.run_dir(), "print(robot.command('walk/stop'))");
+    assert_eq!(accepted, (Some(0), "planner\n".into(), String::new()));
+    let refused = "robot.command('walk/velocity', forward=1.9)";
+    let (code, _, err) = console("python3", &site.run_dir(), refused);
+    assert!(code == Some(1) && err.contains("Refused: walk/velocity refused by planner"), "{err}");
+    let (code, _, err) = console("python3", &site.path("nowhere"), "1");
+    assert!(code == Some(1) && err.contains("start one with `gangwerk run demo`"), "{err}");
+    let (code, _, err) = console("false", &site.run_dir(), "1");
+    assert!(code == Some(1) && err.contains("-m pip install ./python"), "{err}");
     assert!(run.is_alive());
 }

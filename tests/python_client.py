@@ -8,7 +8,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"))
-from gangwerk_client import Client, Lost, Refused  # noqa: E402
+from gangwerk.client import Client, Lost, Refused  # noqa: E402
 
 run, host, port, key_name, key = sys.argv[1:]
 

@@ -14,8 +14,6 @@ const UNKNOWN_GROUND: f64 = 0.06;
 const SPEED: f64 = 0.03;
 /// Share of its length by which a closed path may miss its beginning.
 const CLOSING: f64 = 0.05;
-/// Simulated time over processor time with type 1, planner and stabilizer in the loop, in an optimised build.
-const REAL_TIMES: f64 = 10.0;
 
 /// \[N\] Lola's.
 const WEIGHT: f64 = 597.3;
@@ -35,9 +33,6 @@ fn figures_within(scene: &str, seconds: f64, inclination: f64) -> Value {
     for axis in 0..2 {
         let error = f["inclination_error_max_rad"][axis].as_f64().unwrap();
         assert!(error <= inclination, "{scene}: {error} rad about axis {axis}");
-    }
-    if !cfg!(debug_assertions) && f["depth"].as_str().is_some_and(|d| d.starts_with("type 1")) {
-        assert!(number(&f, "real_time_factor") >= REAL_TIMES, "{f:#}");
     }
     f
 }

@@ -1,6 +1,9 @@
 //! Rules of the house that no compiler checks: which crate may know which, what may stand in code, and whether the
 //! files and tests that the documents name exist.
 
+#[path = "tidy/book.rs"]
+mod book;
+
 use harness::root;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -8,33 +11,40 @@ use std::path::{Path, PathBuf};
 
 /// Layers from the bottom to the top. A crate depends only on crates of layers below its own, or of its own layer if
 /// that is not the processes'.
-const LAYERS: [&[&str]; 7] = [
+const LAYERS: [&[&str]; 8] = [
     &["contact", "curves", "drawing", "drives", "environment", "multibody", "terminal"],
     &["messages", "codec"],
     &["ipc", "realtime", "config", "recording", "daemon", "fieldbus", "sercos", "latency"],
     &["planner", "controller", "lowlevel", "sim-backend", "broker", "watchdog", "logger"],
-    &["chain"],
+    &["chain", "dashboard", "joystick"],
     &["studies", "harness", "fuzzing"],
     &["cli"],
+    &["python"],
 ];
 const PROCESSES: usize = 3;
 
 /// Libraries that only these crates name.
-const ONLY: [(&str, &[&str]); 10] = [
+const ONLY: [(&str, &[&str]); 16] = [
     ("iceoryx2", &["ipc", "latency"]),
     ("toml", &["config"]),
     ("bincode", &["messages"]),
     ("mcap", &["recording"]),
     ("urdf-rs", &["multibody"]),
     ("tiny-skia", &["drawing"]),
-    ("tokio", &["broker", "fuzzing"]),
+    ("tokio", &["broker", "dashboard", "fuzzing"]),
+    ("axum", &["dashboard"]),
+    ("pulldown-cmark", &["dashboard"]),
+    ("hyper", &["dashboard"]),
     ("socketcan", &["fieldbus"]),
     ("can-dbc", &["config"]),
+    ("evdev", &["joystick"]),
     ("libc", &["ipc", "realtime", "sercos"]),
+    ("pyo3", &["python"]),
+    ("numpy", &["python"]),
 ];
 
 /// Folders that hold no source of ours.
-const NOT_OURS: [&str; 4] = ["target", "runs", ".git", ".venv"];
+const NOT_OURS: [&str; 5] = ["target", "runs", ".git", ".venv", "node_modules"];
 /// Longest source file \[lines\], and the files that may be longer, each with its reason.
 const LONGEST: usize = 500;
 const LONGER: [(&str, &str); 0] = [];
@@ -268,7 +278,7 @@ fn quoted(document: &str) -> Vec<String> {
 
 /// Whether a quotation claims that a file or folder of the tree exists.
 fn is_path(word: &str) -> bool {
-    const FOLDERS: [&str; 17] = [
+    const FOLDERS: [&str; 20] = [
         "planner",
         "controller",
         "lowlevel",
@@ -276,22 +286,26 @@ fn is_path(word: &str) -> bool {
         "broker",
         "watchdog",
         "logger",
+        "dashboard",
+        "joystick",
         "cli",
         "config",
         "crates",
         "chain",
         "studies",
+        "python",
         "tests",
         "docs",
         "runs",
         "scenes",
         "gaits",
     ];
+    // Names that stand for others are patterns; a bare file name may be anywhere.
     let plain = word.chars().all(|c| c.is_ascii_alphanumeric() || "/._-".contains(c));
     let ending = [".rs", ".toml", ".md", ".urdf", ".sh", ".py"].iter().any(|e| word.ends_with(e));
     let pattern = word.split(['/', '.']).any(|part| part == "NAME" || part == "PROCESS" || part == "SCENE");
     let first = word.split('/').next().unwrap_or("");
-    let in_folder = FOLDERS[..14].contains(&first) && word.contains('/');
+    let in_folder = FOLDERS[..17].contains(&first) && word.contains('/');
     plain && !pattern && (in_folder || ending && word.contains('/'))
 }
 

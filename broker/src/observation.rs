@@ -6,26 +6,12 @@ use config::Setup;
 use config::registry::{self, Change, ParameterEntry};
 use ipc::{IpcError, Reader, Space};
 use messages::command_stamp::{LEASE, MAX_AGE};
-use messages::topics::{
-    CONTROLLER_STATE, EVENTS_BROKER, EVENTS_CONTROLLER, EVENTS_LOGGER, EVENTS_LOWLEVEL, EVENTS_PLANNER,
-    EVENTS_SIM_BACKEND, EVENTS_WATCHDOG, PARAMETERS_CONTROLLER, PARAMETERS_PLANNER, POWER, SENSORS,
-};
-use messages::{Command, ControllerState, Event, EventCode, MAX_JOINTS, Parameters, Power, Sensors, Topic};
+use messages::topics::{CONTROLLER_STATE, EVENTS, PARAMETERS_CONTROLLER, PARAMETERS_PLANNER, POWER, SENSORS};
+use messages::{Command, ControllerState, Event, EventCode, MAX_JOINTS, Parameters, Power, Sensors};
 
 use crate::connection::{RATE, UNANSWERED};
 use crate::pending::ANSWER_TIME;
 use crate::refusal::Refusal;
-
-/// Topics of what processes report.
-const EVENTS: [&Topic; 7] = [
-    &EVENTS_BROKER,
-    &EVENTS_WATCHDOG,
-    &EVENTS_LOWLEVEL,
-    &EVENTS_PLANNER,
-    &EVENTS_CONTROLLER,
-    &EVENTS_SIM_BACKEND,
-    &EVENTS_LOGGER,
-];
 
 /// The newest records; none before the first.
 struct NewestRecords<'a> {
@@ -162,7 +148,7 @@ impl Observation {
     }
 
     /// Those that have been changed since the last call.
-    pub(crate) fn changed(&mut self) -> Vec<(String, f64)> {
+    pub fn changed(&mut self) -> Vec<(String, f64)> {
         let mut changed = Vec::new();
         for Set { process, reader, told } in &mut self.set {
             // Somebody who asked for the value may have read the record before.

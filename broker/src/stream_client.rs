@@ -289,8 +289,32 @@ impl StreamClient {
     /// # Errors
     /// Somebody holds it, or the connection is lost.
     pub fn take_lease(&mut self, over: bool) -> Result<(), String> {
-        let sequence = self.request(service::TAKE_LEASE, &[u8::from(over)])?;
+        let sequence = self.ask_lease(over)?;
         self.answer(sequence)?.accepted().map(drop)
+    }
+
+    /// The same without waiting: number of the request.
+    ///
+    /// # Errors
+    /// The connection is lost.
+    pub fn ask_lease(&mut self, over: bool) -> Result<u64, String> {
+        self.request(service::TAKE_LEASE, &[u8::from(over)])
+    }
+
+    /// Gives the command lease back; number of the request.
+    ///
+    /// # Errors
+    /// The connection is lost.
+    pub fn give_lease(&mut self) -> Result<u64, String> {
+        self.request(service::GIVE_LEASE, &[])
+    }
+
+    /// Gives the parameter `process.name` another value; number of the request, which the deciding process answers.
+    ///
+    /// # Errors
+    /// The connection is lost.
+    pub fn set(&mut self, name: &str, value: f64) -> Result<u64, String> {
+        self.request(service::SET, &[&value.to_le_bytes()[..], name.as_bytes()].concat())
     }
 
     /// Sign of life: keeps the lease for 500 ms more. Not answered.

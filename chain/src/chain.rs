@@ -11,7 +11,7 @@ use controller::Controller;
 use lowlevel::JointLoop;
 use messages::{
     BusFrames, Command, ControllerState, Detail, EventCode, JointTargets, Parameters, Plan, Power, Process,
-    Sensors, SimState, WatchdogReset,
+    Reason, Sensors, SimState, Verdict, WatchdogReset,
 };
 use planner::Planner;
 use planner::obstacles::KnownObstacles;
@@ -41,6 +41,8 @@ pub struct Cycle {
     pub events: Vec<(Process, EventCode, Detail)>,
     /// Commands that were refused.
     pub refused: u64,
+    /// Commands that were taken, each with the answer of [the process that decides](Command::decided_by).
+    pub answers: Vec<(Command, Verdict)>,
 }
 
 /// The processes of a scene, each a library's step.
@@ -137,6 +139,16 @@ impl Chain {
         hearers.into_iter().for_each(|timeline| timeline.insert(command));
     }
 
+    /// Records that the last cycle wrote.
+    pub fn last(&self) -> &Cycle {
+        &self.cycle
+    }
+
+    /// The newest plan; its id is 0 before the first one.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
     /// What the drives were told in the last cycle.
     pub fn told(&self) -> &BusFrames {
         self.joint_loop.commanded()
@@ -222,13 +234,14 @@ impl Chain {
         self.elapsed += 1;
         self.cycle.events.clear();
         self.cycle.refused = 0;
+        self.cycle.answers.clear();
         self.cycle.plan = None;
         if runs(Process::Lowlevel) {
             self.tick += 1;
             self.measure();
             // Both are woken by new sensor data.
             if runs(Process::Planner) {
-                self.plan();
+                self.make_plan();
             }
             if runs(Process::Controller) {
                 self.stabilize();
@@ -250,12 +263,13 @@ impl Chain {
         self.cycle.sensors = *self.joint_loop.receive(self.tick, stamp, answer);
     }
 
-    fn plan(&mut self) {
+    fn make_plan(&mut self) {
         let c = &mut self.cycle;
         take_due(&mut self.walk, self.tick, &mut self.due);
         let seen = (self.tick > 1).then_some(&c.controller_state);
         let output = self.planner.step(self.tick, self.dt, seen, &self.due);
         c.refused += output.answers.iter().filter(|answer| answer.is_err()).count() as u64;
+        c.answers.extend(self.due.iter().copied().zip(output.answers.iter().copied()));
         if let Some(plan) = output.plan {
             *self.plan = *plan;
             self.plan.header = c.sensors.header;
@@ -267,9 +281,12 @@ impl Chain {
     fn stabilize(&mut self) {
         let c = &mut self.cycle;
         take_due(&mut self.head, self.tick, &mut self.due);
-        for (code, detail) in self.due.iter().filter_map(|command| self.controller.command(command)) {
-            c.refused += u64::from(controller::verdict(Some((code, detail))).is_err());
-            c.events.push((Process::Controller, code, detail));
+        for command in &self.due {
+            let said = self.controller.command(command);
+            let verdict = controller::verdict(said);
+            c.refused += u64::from(verdict.is_err());
+            c.answers.push((*command, verdict));
+            c.events.extend(said.map(|(code, detail)| (Process::Controller, code, detail)));
         }
         let (targets, state) = self.controller.step(&c.sensors, (self.plan.id > 0).then_some(&*self.plan));
         (c.joint_targets, c.controller_state) = (*targets, *state);
@@ -283,8 +300,13 @@ impl Chain {
     /// Second half of the joint loop's cycle.
     fn drive_joints(&mut self) {
         take_due(&mut self.joint, self.tick, &mut self.due);
-        // Nobody waits for an answer; a refusal is told as an event.
-        self.due.iter().for_each(|command| _ = self.joint_loop.command(command));
+        for command in &self.due {
+            // A refusal is told as an event.
+            let verdict = self.joint_loop.command(command);
+            if command.decided_by() == Process::Lowlevel.name() {
+                self.cycle.answers.push((*command, verdict));
+            }
+        }
         self.reset = *self.joint_loop.send(Some(&self.cycle.joint_targets), None).1;
     }
 
@@ -300,8 +322,11 @@ impl Chain {
         self.cycle.power = *self.watchdog.step(&inputs);
         self.skipped = 0;
         let after = self.watchdog.supply();
-        let refused = self.due.iter().filter(|c| watchdog::verdict(c, before, after).is_err());
-        self.cycle.refused += refused.count() as u64;
+        for command in &self.due {
+            let verdict = watchdog::verdict(command, before, after);
+            self.cycle.refused += u64::from(verdict.is_err());
+            self.cycle.answers.push((*command, verdict));
+        }
         let event = watchdog::supply_event(before, after);
         self.cycle.events.extend(event.map(|(code, detail)| (Process::Watchdog, code, detail)));
     }
@@ -311,11 +336,16 @@ impl Chain {
         let c = &mut self.cycle;
         take_due(&mut self.simulated, self.tick, &mut self.due);
         for command in &self.due {
-            if let Command::Lower(way) = command
-                && !self.sim.lower(way)
-            {
-                let message = Detail::Message(command.address().1.into());
+            let Command::Lower(way) = command else { continue };
+            let message = Detail::Message(command.address().1.into());
+            if self.sim.lower(way) {
+                c.answers.push((*command, Ok(())));
+            } else {
                 c.events.push((Process::SimBackend, EventCode::CommandRefused, message));
+                c.answers.push((
+                    *command,
+                    Err(Reason::Event { code: EventCode::CommandRefused, detail: message }),
+                ));
                 c.refused += 1;
             }
         }

@@ -4,6 +4,11 @@ use std::fmt;
 
 use messages::{Detail, EventCode, GaitState, Words};
 
+use crate::Cycle;
+
+/// \[s\] For so long a run of a simulated robot goes on after it fell: it then lies still.
+pub const AFTER_FALL: f64 = 2.0;
+
 /// What ended the walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WalkEnd {
@@ -86,6 +91,21 @@ impl Ending {
             _ if powered => self.stopped = None,
             _ => {}
         }
+    }
+
+    /// Everything of a cycle that ends at `time` \[s\].
+    pub fn follow(&mut self, time: f64, cycle: &Cycle) {
+        cycle.events.iter().for_each(|&(_, code, detail)| self.tell(time, code, detail));
+        self.refused += cycle.refused;
+        // The simulation knows of a fall that the robot does not notice.
+        let fallen = cycle.sim_state.fallen == 1;
+        let gait = if fallen { GaitState::Fallen } else { cycle.controller_state.gait.into() };
+        self.see(time, cycle.sensors.power == 1, gait);
+    }
+
+    /// True if a run of a simulated robot is over at `time` \[s\] before its scene is.
+    pub fn is_over(&self, time: f64) -> bool {
+        self.fell.or(self.diverged).is_some_and(|fell| time > fell + AFTER_FALL)
     }
 
     /// When it fell \[s\]; none: it did not.

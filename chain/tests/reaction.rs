@@ -75,6 +75,26 @@ fn pushes_to_the_side_are_caught_by_steps() {
     assert!(fell >= 3 && adapted >= fell, "{fell} fall without reaction, {adapted} needed one");
 }
 
+/// 0.38 N s/kg backward at 2 km/h, up to 10 degrees to either side, felt while both feet carry: 0.35 is demanded at any time.
+#[test]
+fn pushes_back_are_caught_from_double_support() {
+    let setup = setup("walk_2kmh", true);
+    let mut chain = Chain::new(&setup).unwrap();
+    let cycle = chain.cycle();
+    let carry = |chain: &mut Chain| (0.05..0.95).contains(&chain.step().controller_state.load_left);
+    let times: Vec<f64> =
+        (1..(9.6 / cycle) as u64).filter(|_| carry(&mut chain)).map(|tick| tick as f64 * cycle).collect();
+    let walked: Vec<f64> = times.into_iter().filter(|time| *time > 8.0).collect();
+    let draws: Vec<f64> = draw(23).take(24).collect();
+    let caught = draws.chunks(2).filter(|x| {
+        let time = walked[(x[0] * walked.len() as f64) as usize] - 0.5 * PUSH;
+        let angle = PI + (2.0 * x[1] - 1.0) * 0.17;
+        let impulse = [angle.cos(), angle.sin()].map(|share| share * 0.38 * setup.robot.total_mass);
+        pushed(&setup, time, impulse).is_some_and(|steps| steps > 0)
+    });
+    assert_eq!(caught.count(), 12);
+}
+
 /// 0.55 N s/kg forward and 0.4 backward, up to 10 degrees to either side: more than her soles can hold while she stands. She steps
 /// out, and stands again. What they can hold, from anywhere, moves no foot.
 #[test]

@@ -4,18 +4,13 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Duration;
 
-use ipc::{StopAnswer, StopButton, StopName};
-use realtime::clock;
+use ipc::StopName;
 
-/// Timeout for an answer, and period of the repeated question \[ns\].
-const PATIENCE: u64 = clock::SECOND;
-const REPEAT: u64 = clock::SECOND / 20;
-/// Between two looks for an answer.
-const LOOK: Duration = Duration::from_millis(2);
+pub use watchdog::stop_request::{StopOutcome, Stopped, stop};
 
-const HELP: &str = "\
+/// Help, which is printed before the command line is parsed.
+pub const HELP: &str = "\
 Emergency stop: cuts the motor supply of a robot, and says when it was off.
 
 Usage: gangwerk estop [--all | --dir DIR]
@@ -23,30 +18,9 @@ Usage: gangwerk estop [--all | --dir DIR]
 Without options: your robot in the default run directory; if there is none, every robot on this machine.
   --all      every robot on this machine, whoever runs it
   --dir DIR  the robot that runs there
-Exit code 0: the supply of every robot asked is off. 1: somebody did not answer, or there is no robot.";
-
-/// Answer of one robot.
-#[derive(Clone, Debug)]
-pub struct Stopped {
-    /// Which.
-    pub name: StopName,
-    /// Its result.
-    pub outcome: StopOutcome,
-}
-
-/// Answer of a robot.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum StopOutcome {
-    /// Its supply is off since this tick.
-    Off {
-        /// Tick of the first power record that said so.
-        tick: u64,
-        /// \[ns\] From the request to that record; none: it was off before.
-        after_ns: Option<u64>,
-    },
-    /// It is not known to be off, and why.
-    Failed(String),
-}
+Exit codes:
+  0  the supply of every robot that was asked is off
+  1  somebody did not answer, or there is no robot";
 
 /// `gangwerk estop`, if that is what was called: to be asked before anything else is done.
 pub fn main(arguments: impl Iterator<Item = OsString>) -> Option<ExitCode> {
@@ -97,58 +71,8 @@ pub(crate) fn stop_own(dir: &Path) -> Vec<Stopped> {
     stop(&[StopName::own(dir)])
 }
 
-/// Asks all of them first, then waits for the answers.
-pub fn stop(names: &[StopName]) -> Vec<Stopped> {
-    let begun = clock::now();
-    let failed = |text: String| Some(StopOutcome::Failed(text));
-    let mut asked: Vec<(StopName, Result<StopButton, _>, Option<StopOutcome>)> =
-        names.iter().map(|name| (name.clone(), StopButton::new(name), None)).collect();
-    let (mut next, mut pending) = (begun, false);
-    while asked.iter().any(|(.., outcome)| outcome.is_none()) && clock::now() < begun + PATIENCE {
-        let repeat = clock::now() >= next;
-        next += if repeat { REPEAT } else { 0 };
-        for (_, button, outcome) in asked.iter_mut().filter(|(.., outcome)| outcome.is_none()) {
-            match button {
-                Err(e) => *outcome = failed(format!("no socket: {e}")),
-                Ok(button) if repeat => {
-                    // A full queue is no error: it is full of requests.
-                    if let Err(e) = button.press() {
-                        *outcome = failed(format!("nobody listens, so no watchdog runs there: {e}"));
-                    }
-                }
-                Ok(_) => {}
-            }
-            match button.as_ref().ok().and_then(|button| button.answer(LOOK)) {
-                Some(StopAnswer::Off { tick, stamp_ns }) => {
-                    *outcome = Some(StopOutcome::Off { tick, after_ns: stamp_ns.checked_sub(begun) });
-                }
-                Some(StopAnswer::Pending) => pending = true,
-                None => {}
-            }
-        }
-    }
-    let silent = if pending {
-        "it has the request, but no cycle of its watchdog has acted on it: its time stands still"
-    } else {
-        "no answer: its watchdog hangs; without it the relay falls by itself"
-    };
-    let outcome = |o: Option<StopOutcome>| o.unwrap_or_else(|| StopOutcome::Failed(silent.into()));
-    asked.into_iter().map(|(name, _, o)| Stopped { name, outcome: outcome(o) }).collect()
-}
-
 /// One line for each robot.
 pub fn report(stopped: &[Stopped]) -> Vec<String> {
-    let line = |s: &Stopped| {
-        let robot = format!("{} (user {})", s.name.dir(), s.name.uid);
-        match &s.outcome {
-            StopOutcome::Off { tick, after_ns: Some(ns) } => {
-                format!("{robot}: power off at tick {tick}, {} us after the request", ns / 1000)
-            }
-            StopOutcome::Off { tick, after_ns: None } => {
-                format!("{robot}: power was off already, since tick {tick}")
-            }
-            StopOutcome::Failed(why) => format!("{robot}: NOT KNOWN TO BE OFF: {why}"),
-        }
-    };
+    let line = |s: &Stopped| format!("{} (user {}): {}", s.name.dir(), s.name.uid, s.outcome);
     stopped.iter().map(line).collect()
 }

@@ -1,4 +1,4 @@
-//! Parts of the command `gangwerk`, for the command itself and for tests.
+//! Parts of the command `gangwerk`, for the command itself, for the Python package and for tests.
 
 // println! and eprintln! here do not panic: a result that cannot be written is an error, a remark is dropped.
 #[macro_use(println, eprintln)]
@@ -9,7 +9,7 @@ pub mod choose;
 pub mod estop;
 pub mod exit;
 pub mod faults;
-pub mod fields;
+pub mod film;
 pub mod fit_friction;
 pub mod latency;
 pub mod log;
@@ -20,8 +20,12 @@ pub mod preview;
 pub mod replay;
 pub mod run;
 pub mod scorecard;
+pub mod shipped;
 pub mod sim;
 pub mod topic;
 
 /// Git commit that this program was built from, `-dirty` with changes; empty: unknown.
-pub(crate) const COMMIT: &str = env!("GANGWERK_COMMIT");
+pub const COMMIT: &str = env!("GANGWERK_COMMIT");
+
+/// Version with that commit.
+pub const VERSION: &str = env!("GANGWERK_VERSION");

@@ -8,8 +8,8 @@ use messages::topics::{ForType, TOPICS, Topic, with_type};
 use messages::{CommandTaken, Event, EventCode, Record, Words};
 use recording::{Log, Repaired, repair};
 
-use crate::fields::{first_difference, numbers};
 use crate::topic::{Echo, EchoTable};
+use messages::fields::{first_difference, numbers};
 
 /// Gives a log its end and index, if it lacks them.
 ///
@@ -54,6 +54,7 @@ pub fn info(path: &Path) -> Result<(), Box<dyn Error>> {
         };
         println!("  {channel:36} {count:8} {rate}");
     }
+    println!("`gangwerk dashboard --replay {}` shows it in a browser", path.display());
     Ok(())
 }
 

@@ -5,12 +5,16 @@
 extern crate terminal;
 
 mod config_command;
+mod console_command;
+mod dashboard_command;
+mod desk;
 mod fault_table;
+mod joystick_command;
 mod log_command;
 mod param_command;
+mod reference;
 mod robot_command;
 mod run_command;
-mod shipped;
 mod sim_command;
 mod study;
 mod topic_command;
@@ -21,13 +25,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use cli::run::RunOptions;
-use config::BusAddress;
 use daemon::Connect;
-use ipc::Mode;
 use messages::Process;
 use realtime::{CountingAllocator, Grade, Stop};
-use run_command::Results;
 
 /// Counts what control cycles allocate: nothing, after they are armed.
 #[global_allocator]
@@ -35,7 +35,7 @@ static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 /// Walking control for biped robots: plan, stabilize, drive the joints, guard, record.
 #[derive(Parser)]
-#[command(name = "gangwerk", version = env!("GANGWERK_VERSION"), about)]
+#[command(name = "gangwerk", version = cli::VERSION, about)]
 struct Arguments {
     #[command(subcommand)]
     task: Option<GangwerkTask>,
@@ -48,40 +48,7 @@ struct Arguments {
 enum GangwerkTask {
     /// Run a scene with all processes: broker, watchdog, simulated robot, logger, planner, stabilizer, joint loop.
     #[command(after_help = cli::exit::HELP)]
-    Run {
-        /// Name of a scene, see `gangwerk scene list`, or path of a scene file.
-        scene: String,
-        /// Simulated time: every process waits for the others, and two runs are bit for bit the same.
-        #[arg(long)]
-        lockstep: bool,
-        /// Lockstep no faster than real time: a busy machine slows the robot down instead of felling it.
-        #[arg(long, requires = "lockstep")]
-        paced: bool,
-        /// Field bus: shm, can:vcan0 (all lines), can:vcan0-8 (one each), canfd:INTERFACES, sercos:INTERFACES.
-        #[arg(long, default_value = "shm")]
-        bus: BusAddress,
-        /// No simulated robot: somebody else is at the far end of the bus, a robot or a replay.
-        #[arg(long)]
-        no_robot: bool,
-        /// Where log and pictures go; default: runs/latest, or where this user may write instead.
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-        /// No log and no pictures.
-        #[arg(long)]
-        no_log: bool,
-        /// Refuse to arm if a process does not get the scheduling and the locked memory that it asks for.
-        #[arg(long, value_name = "required", value_parser = ["required"])]
-        rt: Option<String>,
-        /// Log, but draw no pictures.
-        #[arg(long)]
-        no_plots: bool,
-        /// End with the figures of the log as one JSON object on standard output, instead of a table and pictures.
-        #[arg(long, conflicts_with = "no_log")]
-        json: bool,
-        /// Where the processes meet; a second robot needs another one.
-        #[arg(long, value_name = "DIR", default_value_os_t = ipc::default_dir())]
-        dir: PathBuf,
-    },
+    Run(run_command::RunArguments),
     /// Emergency stop: cut the motor supply of a robot at once. See `gangwerk estop --help`.
     Estop,
     /// Run a scene in one process, as fast as possible.
@@ -121,6 +88,13 @@ enum GangwerkTask {
         #[arg(long, global = true, value_name = "DIR", default_value_os_t = ipc::default_dir())]
         dir: PathBuf,
     },
+    /// See, steer, tune and plot a robot in a browser; waits for one if none runs.
+    Dashboard(dashboard_command::DashboardArguments),
+    /// Walk a robot with a gamepad; waits for one if none runs.
+    #[command(after_help = joystick_command::HELP)]
+    Joystick(joystick_command::JoystickArguments),
+    /// Interactive Python shell with a client `robot` of the running robot; needs the Python package: docs/python.md.
+    Console(console_command::ConsoleArguments),
     /// The configuration that is taken, or a copy of the built-in one.
     Config {
         #[command(subcommand)]
@@ -262,6 +236,9 @@ enum GangwerkTask {
         /// Directory for them, for example ~/.local/share/man/man1; it is made.
         dir: PathBuf,
     },
+    /// Pages of the book's reference, for docs/reference; in a clone of the repository only.
+    #[command(hide = true)]
+    Reference { dir: PathBuf },
     /// One process of a run; `gangwerk run` starts them.
     #[command(hide = true)]
     Broker(RunArgument),
@@ -283,13 +260,17 @@ impl GangwerkTask {
     /// Whether it only tells something. What moves a robot or guards it does not end because nobody reads any more.
     fn only_tells(&self) -> bool {
         use GangwerkTask::{
-            Broker, Controller, Faults, Latency, Logger, Lowlevel, Planner, Run, SimBackend, Watchdog,
+            Broker, Console, Controller, Dashboard, Faults, Joystick, Latency, Logger, Lowlevel, Planner,
+            Run, SimBackend, Watchdog,
         };
         let moves = matches!(
             self,
-            Run { .. }
+            Run(_)
                 | Self::Sim { plant: Some(_), .. }
                 | Faults(_)
+                | Console(_)
+                | Dashboard(_)
+                | Joystick(_)
                 | Latency { .. }
                 | Self::LatencyEnd { .. }
         );
@@ -310,9 +291,10 @@ fn main() -> ExitCode {
     if let Some(code) = cli::estop::main(std::env::args_os()) {
         return code;
     }
+    realtime::last_words::abort_at_panic();
     tracing_subscriber::fmt().with_writer(|| terminal::Quiet).without_time().with_target(false).init();
     let arguments = Arguments::parse();
-    config::embed(shipped::files());
+    config::embed(cli::shipped::files());
     // A result that nobody reads any more (`| head`) ends a command quietly; a robot goes on.
     if arguments.task.as_ref().is_some_and(GangwerkTask::only_tells) {
         realtime::end_with_reader();
@@ -330,41 +312,20 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
     let asked = arguments.config.as_deref();
     let config = || config::find(asked).map(|found| found.dir);
     let done = |result: Result<(), Box<dyn Error>>| result.map(|()| ExitCode::SUCCESS);
-    let task = arguments.task.unwrap_or(GangwerkTask::Run {
-        scene: "demo".into(),
-        lockstep: true,
-        paced: true,
-        bus: BusAddress::Shared,
-        no_robot: false,
-        out: None,
-        no_log: false,
-        no_plots: false,
-        json: false,
-        rt: None,
-        dir: ipc::default_dir(),
-    });
+    let task =
+        arguments.task.unwrap_or_else(|| GangwerkTask::Run(run_command::RunArguments::demonstration()));
     match task {
-        GangwerkTask::Run { scene, lockstep, paced, bus, no_robot, out, no_log, no_plots, json, rt, dir } => {
-            let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
-            let config = config()?;
-            let log = match no_log {
-                true => None,
-                false => {
-                    Some(run_command::place(out)?.join(format!("{}.mcap", config::scenes::name(&scene))))
-                }
-            };
-            let (robot, rt_required) = (!no_robot, rt.is_some());
-            let order =
-                RunOptions { mode, paced, scene, method: None, config, bus, robot, dir, log, rt_required };
-            run_command::run(order, Results::of(json, no_plots))
-        }
+        GangwerkTask::Run(arguments) => run_command::main(arguments, config()?),
         GangwerkTask::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
         GangwerkTask::Sim { scene, json, log, can, classic, plant } => {
             let (log, can, plant) = (log.as_deref(), can.as_deref(), plant.as_deref());
             sim_command::run(&config()?, &scene, json, log, can, classic, plant)
         }
         GangwerkTask::Topic { what, dir } => done(topic_command::run(&dir, what)),
+        GangwerkTask::Dashboard(arguments) => done(dashboard_command::run(arguments, asked)),
+        GangwerkTask::Joystick(arguments) => done(joystick_command::run(arguments, &config()?)),
         GangwerkTask::Param { what, dir } => done(param_command::run(&dir, what)),
+        GangwerkTask::Console(arguments) => done(console_command::run(&arguments)),
         GangwerkTask::Config { what } => done(config_command::run(asked, what)),
         GangwerkTask::Scene { what: config_command::SceneTask::List } => {
             done(config_command::scenes(&config()?))
@@ -415,6 +376,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         GangwerkTask::Doctor => Ok(doctor()),
         GangwerkTask::Completions { shell } => done(words::completions(shell, Arguments::command())),
         GangwerkTask::Man { dir } => done(words::man_pages(&dir, Arguments::command())),
+        GangwerkTask::Reference { dir } => done(reference::write(&dir, Arguments::command())),
         process => daemon(process),
     }
 }

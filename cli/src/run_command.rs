@@ -1,24 +1,121 @@
 //! `gangwerk run`: a run, its results and its exit code, with nothing printed but through the console.
 
 use std::error::Error;
+use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
 use cli::exit::Exit;
 use cli::run::{RunOptions, RunOutcome};
-use config::Setup;
+use config::{BusAddress, Setup};
+use ipc::Mode;
 use realtime::{Stop, clock};
 use terminal::Console;
 
+use crate::desk::Desk;
+
 /// Timeout for the terminal to take the remaining output when a run has ended.
 const LAST_WORDS: Duration = Duration::from_secs(2);
+
+/// Arguments of `gangwerk run`.
+#[derive(clap::Args)]
+pub(crate) struct RunArguments {
+    /// Name of a scene, see `gangwerk scene list`, or path of a scene file.
+    scene: String,
+    /// Simulated time: every process waits for the others, and two runs are bit for bit the same.
+    #[arg(long)]
+    lockstep: bool,
+    /// Lockstep no faster than real time: a busy machine slows the robot down instead of felling it.
+    #[arg(long, requires = "lockstep")]
+    paced: bool,
+    /// Go on when the scene is over, until Ctrl-C; the first walking command that somebody gives ends the scene's own.
+    #[arg(long = "stay")]
+    stays: bool,
+    /// Serve the page of the operator's desk beside it, and show it where there is a desktop: see `gangwerk dashboard`.
+    #[arg(long)]
+    desk: bool,
+    /// Field bus: shm, can:vcan0 (all lines), can:vcan0-8 (one each), canfd:INTERFACES, sercos:INTERFACES.
+    #[arg(long, default_value = "shm")]
+    bus: BusAddress,
+    /// No simulated robot: somebody else is at the far end of the bus, a robot or a replay.
+    #[arg(long)]
+    no_robot: bool,
+    /// Directory of log and pictures; default: runs/latest, or one where this user may write instead.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// No log and no pictures.
+    #[arg(long)]
+    no_log: bool,
+    /// Refuse to arm if a process does not get the scheduling and the locked memory that it asks for.
+    #[arg(long, value_name = "required", value_parser = ["required"])]
+    rt: Option<String>,
+    /// Log, but draw no pictures.
+    #[arg(long)]
+    no_plots: bool,
+    /// End with the figures of the log as one JSON object on standard output, instead of a table and pictures.
+    #[arg(long, conflicts_with = "no_log")]
+    json: bool,
+    /// Directory in which the processes meet; a second robot needs another one.
+    #[arg(long, value_name = "DIR", default_value_os_t = ipc::default_dir())]
+    dir: PathBuf,
+}
+
+impl RunArguments {
+    /// Without arguments: the demonstration. Where somebody looks at a terminal the robot stays, to be steered, and so no log grows;
+    /// otherwise it ends.
+    pub(crate) fn demonstration() -> Self {
+        let watched = io::stdout().is_terminal() && io::stderr().is_terminal();
+        Self {
+            scene: "demo".into(),
+            lockstep: true,
+            paced: true,
+            stays: watched,
+            desk: watched,
+            bus: BusAddress::Shared,
+            no_robot: false,
+            out: None,
+            no_log: watched,
+            rt: None,
+            no_plots: false,
+            json: false,
+            dir: ipc::default_dir(),
+        }
+    }
+}
+
+/// `gangwerk run` with the configuration in `config`.
+///
+/// # Errors
+/// There is no place for the log, or the run cannot be started.
+pub(crate) fn main(arguments: RunArguments, config: PathBuf) -> Result<ExitCode, Box<dyn Error>> {
+    let RunArguments { scene, lockstep, paced, stays, desk, bus, no_robot, out, no_log, rt, .. } = arguments;
+    let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
+    let log = match no_log {
+        true => None,
+        false => Some(place(out)?.join(format!("{}.mcap", config::scenes::name(&scene)))),
+    };
+    let order = RunOptions {
+        mode,
+        paced,
+        scene,
+        method: None,
+        stays,
+        config,
+        bus,
+        robot: !no_robot,
+        dir: arguments.dir,
+        log,
+        rt_required: rt.is_some(),
+    };
+    run(order, Results::of(arguments.json, arguments.no_plots), desk)
+}
 
 /// Directory for log and pictures: the one asked for, else `runs/latest`, else the user's data directory.
 ///
 /// # Errors
 /// Neither can be made.
-pub(crate) fn place(asked: Option<PathBuf>) -> Result<PathBuf, String> {
+fn place(asked: Option<PathBuf>) -> Result<PathBuf, String> {
     let made = |dir: &Path| {
         // A directory of somebody else's may be there already: only a file in it shows.
         let probe = dir.join(format!(".gangwerk-{}", std::process::id()));
@@ -42,7 +139,7 @@ pub(crate) fn place(asked: Option<PathBuf>) -> Result<PathBuf, String> {
 
 /// Results made from the log of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Results {
+enum Results {
     /// Its figures, for other programs.
     Json,
     /// Its figures, for people.
@@ -53,7 +150,7 @@ pub(crate) enum Results {
 
 impl Results {
     /// As the command line asks for them.
-    pub(crate) fn of(json: bool, no_plots: bool) -> Self {
+    fn of(json: bool, no_plots: bool) -> Self {
         match (json, no_plots) {
             (true, _) => Self::Json,
             (false, true) => Self::Table,
@@ -62,18 +159,24 @@ impl Results {
     }
 }
 
-/// A run, with nothing printed but through the console: a paused terminal holds up neither robot nor end.
-pub(crate) fn run(mut order: RunOptions, wanted: Results) -> Result<ExitCode, Box<dyn Error>> {
+/// A run, with nothing printed but through the console: a paused terminal holds up neither robot nor end. With a `desk` its page
+/// is served besides.
+fn run(mut order: RunOptions, wanted: Results, desk: bool) -> Result<ExitCode, Box<dyn Error>> {
     let (setup, choice) = cli::choose::load(&order.config, &order.scene, true)?;
     order.method = choice.map(|choice| choice.method);
     // First of all that starts a thread: one with signals of its own would be where Ctrl-C ends everything.
     let stop = Stop::on_signals()?;
-    let console = Console::start(Some((setup.scene.duration * 10.0) as u64), clock::now)?;
+    let length = Some((setup.scene.duration * 10.0) as u64).filter(|_| !order.stays);
+    let console = Console::start(length, clock::now)?;
     terminal::divert(&console);
+    // A robot walks without its page, too.
+    let page =
+        desk.then(|| Desk::open(&order.dir, &console).map_err(|e| console.say(format!("no page: {e}"))));
     let exit = run_on(&order, &setup, wanted, stop, &console).unwrap_or_else(|error| {
         console.say(format!("error: {error}"));
         Exit::Error
     });
+    drop(page);
     console.flush(LAST_WORDS);
     Ok(exit.into())
 }
@@ -141,6 +244,7 @@ fn results(
         let pictures = cli::plot::run(log, log.parent().unwrap_or(log))?;
         text += &pictures.written.iter().map(|path| format!("\n{}", path.display())).collect::<String>();
         pictures.skipped.iter().for_each(|reason| console.say(format!("not drawn: {reason}")));
+        text += &format!("\ngangwerk dashboard --replay {} shows it again", log.display());
     }
     Ok(text)
 }

@@ -13,8 +13,11 @@ const FOLDERS: [(&str, Dir); 5] = [
 ];
 
 /// Every file, by its path below the configuration directory.
-pub(crate) fn files() -> Vec<Embedded> {
-    let mut all: Vec<Embedded> = vec![("system.toml".into(), include_bytes!("../../config/system.toml"))];
+pub fn files() -> Vec<Embedded> {
+    let mut all: Vec<Embedded> = vec![
+        ("system.toml".into(), include_bytes!("../../config/system.toml")),
+        ("joystick.toml".into(), include_bytes!("../../config/joystick.toml")),
+    ];
     FOLDERS.iter().for_each(|(name, folder)| collect(name, folder, &mut all));
     all
 }

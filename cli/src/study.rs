@@ -129,6 +129,7 @@ impl Study for Realtime {
             robot: true,
             mode: Mode::RealTime,
             paced: false,
+            stays: false,
             scene: self.scene.clone(),
             method: choice.map(|choice| choice.method),
             config: given.config.to_path_buf(),

@@ -13,12 +13,20 @@ use crate::{Robot, Setup};
 pub type Triangle = [[f64; 3]; 3];
 
 impl Setup {
+    /// Origin of I_0 \[m\] @world of a simulated robot: on the ground, in the middle between its soles at the start.
+    ///
+    /// # Errors
+    /// The robot's data do not fit together.
+    pub fn start(&self) -> Result<Vector3<f64>, Box<dyn Error>> {
+        middle_of_soles(&self.robot, &self.robot.poses[&self.scene.start_pose])
+    }
+
     /// The triangles of each known object.
     ///
     /// # Errors
     /// A mesh cannot be read, or the robot's data do not fit together.
     pub fn known_obstacles(&self) -> Result<Vec<Vec<Triangle>>, Box<dyn Error>> {
-        let begin = middle_of_soles(&self.robot, &self.robot.poses[&self.scene.start_pose])?;
+        let begin = self.start()?;
         let mut obstacles = Vec::new();
         for object in self.scene.objects.iter().filter(|o| o.known) {
             let mesh = match &object.shape {
@@ -33,7 +41,7 @@ impl Setup {
     }
 }
 
-/// Origin of I_0: on the ground, in the middle between the soles of a robot whose torso stands over the origin.
+/// On the ground, in the middle between the soles of a robot whose torso stands over the origin.
 fn middle_of_soles(robot: &Robot, pose: &[f64]) -> Result<Vector3<f64>, Box<dyn Error>> {
     let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
     let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?;

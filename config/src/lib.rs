@@ -3,11 +3,14 @@
 //! - [`robot::Robot`]: `robots/NAME/robot.toml` and the URDF beside it.
 //! - [`gait::Gait`]: `gaits/NAME.toml`: how the robot walks and how it is stabilized.
 //! - [`scene::Scene`]: `scenes/NAME.toml`: what is simulated.
+//! - [`joystick::Joystick`]: `joystick.toml`: what the sticks and buttons of a gamepad do.
 //! - [`system::System`]: `system.toml`: processes, cores, priorities, deadlines, limits of the run-time system.
 //!
 //! [`registry`] lists the parameters of all processes; those of [`parameters`] may be changed while the robot runs.
 //!
 //! [`Setup`] reads all four for a scene, checks what they say about each other, and hashes them.
+//!
+//! [`keys`] lists the keys of all files, for the reference.
 //!
 //! Only this crate names TOML.
 
@@ -28,6 +31,10 @@ mod file;
 pub mod gait;
 mod joint;
 mod joint_control;
+pub mod joystick;
+mod key_meaning;
+mod key_words;
+pub mod keys;
 mod known_obstacles;
 pub mod leg;
 pub mod limbs;
@@ -37,6 +44,7 @@ pub mod pattern;
 mod plan_legs;
 pub mod plant_mismatch;
 pub mod protection;
+mod questions;
 pub mod registry;
 pub mod robot;
 pub mod scene;
@@ -51,6 +59,7 @@ pub mod tables;
 pub mod terrain;
 pub mod timeline;
 pub mod tolerance;
+mod velocity;
 
 pub use acceleration::WITH_LOAD;
 pub use bus_address::{BusAddress, interface_names};
@@ -58,6 +67,7 @@ pub use components::Components;
 pub use error::{ConfigError, Problem};
 pub use file::{BUILT_IN, Embedded, embed};
 pub use gait::Gait;
+pub use joystick::Joystick;
 pub use known_obstacles::Triangle;
 pub use leg::{Leg, LegError};
 pub use robot::Robot;
@@ -69,3 +79,4 @@ pub use snapshot::snapshot;
 pub use system::System;
 pub use tables::TableDrives;
 pub use timeline::Timeline;
+pub use velocity::VELOCITY_STEPS;

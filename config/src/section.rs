@@ -14,6 +14,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{ConfigError, Problem};
+use crate::questions::{self, Question};
 
 /// Everything above zero, for lengths, masses, times.
 pub(crate) const POSITIVE: RangeInclusive<f64> = 1e-9..=1e9;
@@ -24,6 +25,7 @@ type Value<'t> = Spanned<DeValue<'t>>;
 
 /// State shared by all sections of one file.
 struct File<'t> {
+    path: &'t Path,
     text: &'t str,
     problems: RefCell<Vec<Problem>>,
 }
@@ -52,7 +54,7 @@ pub(crate) fn read<T>(
     text: &str,
     build: impl FnOnce(&Section<'_, '_>) -> T,
 ) -> Result<T, ConfigError> {
-    let file = File { text, problems: RefCell::default() };
+    let file = File { path, text, problems: RefCell::default() };
     let value = match DeTable::parse(text) {
         Ok(table) => {
             let top = Section::new(&file, String::new(), 0, table.get_ref());
@@ -92,14 +94,36 @@ impl<'a, 't> Section<'a, 't> {
         self.file.problems.borrow().is_empty()
     }
 
-    /// Is the key there?
+    /// Is the key there? Asked for one that may be left out.
+    #[track_caller]
     pub(crate) fn has(&self, key: &str) -> bool {
+        self.tell(key, "", true);
+        self.is_there(key)
+    }
+
+    fn is_there(&self, key: &str) -> bool {
         self.asked.borrow_mut().push(key.to_owned());
         self.table.contains_key(key)
     }
 
+    /// Tells who lists the keys what this one takes, and where it is asked for.
+    #[track_caller]
+    fn tell(&self, key: &str, wanted: &str, may_be_left_out: bool) {
+        let place = std::panic::Location::caller();
+        questions::tell(|| Question {
+            file: self.file.path.to_owned(),
+            path: self.path(key),
+            takes: wanted.to_owned(),
+            may_be_left_out,
+            source: place.file(),
+            line: place.line() as usize,
+        });
+    }
+
+    #[track_caller]
     fn get(&self, key: &str, wanted: &str) -> Option<&'a Value<'t>> {
-        let found = self.has(key).then(|| &self.table[key]);
+        self.tell(key, wanted, false);
+        let found = self.is_there(key).then(|| &self.table[key]);
         if found.is_none() {
             self.problem(key, format!("missing; it takes {wanted}"));
         }
@@ -112,6 +136,7 @@ impl<'a, 't> Section<'a, 't> {
     }
 
     /// A number in `range`, or NaN.
+    #[track_caller]
     pub(crate) fn number(&self, key: &str, unit: &str, range: RangeInclusive<f64>) -> f64 {
         match self.get(key, &number_in(unit, &range)) {
             Some(value) => self.number_of(&self.path(key), value, unit, &range),
@@ -137,6 +162,7 @@ impl<'a, 't> Section<'a, 't> {
     }
 
     /// `N` numbers in `range`, NaN where one is wrong.
+    #[track_caller]
     pub(crate) fn numbers<const N: usize>(
         &self,
         key: &str,
@@ -175,6 +201,7 @@ impl<'a, 't> Section<'a, 't> {
     }
 
     /// Two numbers in `range`, ascending.
+    #[track_caller]
     pub(crate) fn interval(&self, key: &str, unit: &str, range: RangeInclusive<f64>) -> [f64; 2] {
         let [lo, hi] = self.numbers(key, unit, range);
         if lo >= hi {
@@ -184,6 +211,7 @@ impl<'a, 't> Section<'a, 't> {
     }
 
     /// Rows of `N` numbers each; at least one row.
+    #[track_caller]
     pub(crate) fn rows<const N: usize>(&self, key: &str, meaning: &str) -> Vec<[f64; N]> {
         let name = self.path(key);
         self.items(key, &format!("a list of rows, each {meaning}"))
@@ -194,6 +222,7 @@ impl<'a, 't> Section<'a, 't> {
     }
 
     /// A whole number in `range`; its lower end if the entry is wrong.
+    #[track_caller]
     pub(crate) fn integer(&self, key: &str, range: RangeInclusive<u64>) -> u64 {
         let wanted = format!("a whole number from {} to {}", range.start(), range.end());
         let Some(value) = self.get(key, &wanted) else { return *range.start() };
@@ -211,6 +240,7 @@ impl<'a, 't> Section<'a, 't> {
     }
 
     /// A string; empty if the entry is wrong.
+    #[track_caller]
     pub(crate) fn text(&self, key: &str) -> String {
         let Some(value) = self.get(key, "a string") else { return String::new() };
         let text = value.get_ref().as_str();
@@ -221,6 +251,7 @@ impl<'a, 't> Section<'a, 't> {
     }
 
     /// A list of strings.
+    #[track_caller]
     pub(crate) fn texts(&self, key: &str) -> Vec<String> {
         let name = self.path(key);
         let items = self.items(key, "a list of strings").iter().enumerate();
@@ -235,7 +266,9 @@ impl<'a, 't> Section<'a, 't> {
     }
 
     /// The position of a word in `words`; 0 if the entry is wrong.
+    #[track_caller]
     pub(crate) fn word(&self, key: &str, words: &[&str]) -> usize {
+        self.tell(key, &format!("one of {}", listed(words)), false);
         let text = self.text(key);
         words.iter().position(|word| *word == text).unwrap_or_else(|| {
             // What is missing or no string has been named.
@@ -247,8 +280,10 @@ impl<'a, 't> Section<'a, 't> {
     }
 
     /// A switch: off if the key is not there.
+    #[track_caller]
     pub(crate) fn flag(&self, key: &str) -> bool {
-        if !self.has(key) {
+        self.tell(key, "true or false", true);
+        if !self.is_there(key) {
             return false;
         }
         match self.table[key].get_ref() {
@@ -262,19 +297,20 @@ impl<'a, 't> Section<'a, 't> {
 
     /// Is the key there, and a string?
     pub(crate) fn is_text(&self, key: &str) -> bool {
-        self.has(key) && matches!(self.table[key].get_ref(), DeValue::String(_))
+        self.is_there(key) && matches!(self.table[key].get_ref(), DeValue::String(_))
     }
 
     /// Is the key there, and a table?
     pub(crate) fn is_table(&self, key: &str) -> bool {
-        self.has(key) && matches!(self.table[key].get_ref(), DeValue::Table(_))
+        self.is_there(key) && matches!(self.table[key].get_ref(), DeValue::Table(_))
     }
 
     /// Is the key there, and a list?
     pub(crate) fn is_list(&self, key: &str) -> bool {
-        self.has(key) && matches!(self.table[key].get_ref(), DeValue::Array(_))
+        self.is_there(key) && matches!(self.table[key].get_ref(), DeValue::Array(_))
     }
 
+    #[track_caller]
     fn items(&self, key: &str, wanted: &str) -> &'a [Value<'t>] {
         let Some(value) = self.get(key, wanted) else { return &[] };
         match value.get_ref() {
@@ -291,6 +327,7 @@ impl<'a, 't> Section<'a, 't> {
     }
 
     /// Reads the table `key` with `build`; nothing if it is missing.
+    #[track_caller]
     pub(crate) fn table<T>(&self, key: &str, build: impl FnOnce(&Section<'a, 't>) -> T) -> Option<T> {
         let value = self.get(key, "a table")?;
         self.table_of(self.path(key), value, build)
@@ -312,8 +349,10 @@ impl<'a, 't> Section<'a, 't> {
     }
 
     /// Reads every table of the list `[[key]]` with `build`; none if the list is missing.
+    #[track_caller]
     pub(crate) fn tables<T>(&self, key: &str, build: impl Fn(&Section<'a, 't>) -> T) -> Vec<T> {
-        if !self.has(key) {
+        self.tell(key, "a list of tables", true);
+        if !self.is_there(key) {
             return Vec::new();
         }
         let name = self.path(key);
@@ -323,6 +362,7 @@ impl<'a, 't> Section<'a, 't> {
 
     /// The keys of this table, for tables whose keys are names.
     pub(crate) fn keys(&self) -> Vec<String> {
+        questions::tell_named(self.file.path, &self.name);
         self.table.keys().map(|key| key.get_ref().clone().into_owned()).collect()
     }
 }

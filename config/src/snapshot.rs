@@ -8,7 +8,7 @@ use crate::error::ConfigError;
 use crate::file::{BUILT_IN, embedded};
 
 /// Files that belong to a configuration; sources and notes beside them do not.
-const PARTS: [&str; 6] = ["system.toml", "robots", "gaits", "scenes", "gears", "objects"];
+const PARTS: [&str; 7] = ["system.toml", "joystick.toml", "robots", "gaits", "scenes", "gears", "objects"];
 /// Deepest folder, and most bytes: beyond them it is no configuration (a link in a circle, somebody's home).
 const DEEPEST: u32 = 8;
 const MOST: u64 = 256 << 20;

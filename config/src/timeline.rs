@@ -36,10 +36,11 @@ impl Timeline {
         self.next = self.entries.partition_point(|(t, _)| *t < tick);
     }
 
-    /// A live command comes in between, if the process takes it: due at once.
+    /// A live command comes in between, if the process takes it: due at once, behind those that came before it.
     pub fn insert(&mut self, command: &Command) {
         if self.domains.contains(&command.address().0) {
-            self.entries.insert(self.next, (0, *command));
+            let waiting = self.entries[self.next..].iter().take_while(|(tick, _)| *tick == 0).count();
+            self.entries.insert(self.next + waiting, (0, *command));
         }
     }
 
@@ -50,5 +51,26 @@ impl Timeline {
             self.next += 1;
             command
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Setup;
+
+    /// The last of two commands between the same cycles was taken first.
+    #[test]
+    fn live_commands_are_taken_in_their_order_and_before_what_the_scene_has_next() {
+        let setup = Setup::load(&crate::root(None), "walk_1kmh").unwrap();
+        let mut timeline = Timeline::new(&setup.scene, Process::Planner);
+        let scripted = timeline.clone().due(u64::MAX);
+        let live = [Command::Stop, Command::Start, Command::Stand];
+        live.iter().for_each(|command| timeline.insert(command));
+        timeline.insert(&Command::Reset); // another process's
+        let taken: Vec<Command> = std::iter::from_fn(|| timeline.due(1)).collect();
+        assert_eq!(taken, live);
+        assert!(scripted.is_some());
+        assert_eq!(timeline.due(u64::MAX), scripted);
     }
 }

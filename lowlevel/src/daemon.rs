@@ -50,7 +50,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         ports.timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
     }
     let scene = &d.setup.scene;
-    let last = (scene.duration / scene.cycle).round() as u64;
+    let last = if d.stays { u64::MAX } else { (scene.duration / scene.cycle).round() as u64 };
     let mut joints = JointLoop::new(&d.setup.robot, &d.setup.system, scene.cycle);
     if !ports.bus.start(&WaitingDaemon { daemon: &d, waiter: &ports.waiter })? {
         return Ok(());

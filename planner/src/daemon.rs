@@ -89,6 +89,11 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         while !inbox.is_full()
             && let Some(live) = timeline.due(header.tick).map(Live::of_scene).or_else(|| commands.next())
         {
+            // Whoever steers a robot that stays is not overruled by what is left of the scene.
+            let steers = live.stamp.origin != 0 && !matches!(live.command, Command::WalkParameter(_));
+            if d.stays && steers {
+                timeline.skip_before(u64::MAX);
+            }
             inbox.add(live);
         }
         d.log.left_out(header, commands.as_mut());

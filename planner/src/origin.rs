@@ -2,6 +2,7 @@
 
 use crate::planned_walk::PlannedWalk;
 use crate::pose::{PlanarPose, rotate};
+use crate::sole::Sole;
 use crate::steps::{StepParameters, Stride};
 use crate::touchdown::lowered;
 use curves::Sample;
@@ -184,21 +185,13 @@ impl PlanOrigin {
         from.torso = torso;
         from.torso.position[2] -= frame.heading;
         from.height += lowered(state, s.stance);
-        let relative = |pose: &PlanarPose| frame.relative(pose);
-        let mut heights = s.heights;
-        for z in [&mut heights.foothold, &mut heights.takeoff, &mut heights.landing] {
-            *z -= stance[2];
-        }
         let stride = Stride {
             begin: s.begin - t,
             lift: s.lift - t,
             end: cycles as f64 * cycle_s,
             end_cycle: cycles,
-            foothold: relative(&s.foothold),
-            takeoff: relative(&s.takeoff),
-            landing: relative(landing),
-            heights,
-            ..*s
+            landing: frame.relative(landing),
+            ..s.seen(&frame, stance[2])
         };
         let flat =
             |v: [f64; 4]| Sample { position: [v[0], v[1], v[2]], velocity: [0.0; 3], acceleration: [0.0; 3] };
@@ -221,26 +214,34 @@ impl PlanOrigin {
         from
     }
 
-    /// The robot as it is measured, on the feet of the active plan `walk` that has ended, `ahead` \[s\] after the measurement `state`
-    /// with the zero-moment point at `zmp`, and the step with which it goes on, seen from below its stance foot.
-    pub(crate) fn standing(
+    /// The robot as it is measured, on both feet of the active plan `walk` at `t` \[s\], `ahead` \[s\] after the measurement `state`
+    /// with the zero-moment point at `zmp`, and the step with which it goes on, seen from below its stance foot; `sole` is that
+    /// of either foot.
+    pub(crate) fn on_both_feet(
         walk: &PlannedWalk,
-        cycle_s: f64,
+        t: f64,
         (state, zmp, ahead): (&ControllerState, [f64; 2], f64),
         step: &Stride,
+        sole: &Sole,
     ) -> Self {
-        let stance = step.stance;
-        let mut from = Self::at_rest(walk, cycle_s, stance, step.parameters.duration);
-        let sole = walk.soles(walk.end_cycle as f64 * cycle_s)[stance];
-        let frame = PlanarPose::new(sole[0], sole[1], sole[3]);
-        from.body = seen(&frame, sole[2], &fallen_on(state, zmp, sole[2], ahead));
+        let (stance, soles) = (step.stance, walk.soles(t));
+        let mut from = Self::on_plan(walk, t, soles, stance, step.parameters, None);
+        let at = soles[stance];
+        let frame = PlanarPose::new(at[0], at[1], at[3]);
+        from.body = seen(&frame, at[2], &fallen_on(state, zmp, at[2], ahead));
         from.zmp = frame.local(zmp);
-        from.torso = leaning(state, &from.torso, ahead);
+        let torso = leaning(state, &walk.plan.torso.sample(t), ahead);
+        from.torso = torso;
+        from.torso.position[2] -= frame.heading;
+        from.height += lowered(state, stance);
         // Feet carry what lies over them.
-        let [right, left] = [from.feet[RIGHT].y, from.feet[LEFT].y];
-        from.load_left = ((from.zmp[1] - right) / (left - right)).clamp(0.0, 1.0);
-        let (at, z) = (from.feet[1 - stance], from.heights[1 - stance]);
-        from.inside = Some(RunningStep { stride: *step, swing: Sample::rest([at.x, at.y, z, at.heading]) });
+        let [right, left] = [RIGHT, LEFT].map(|i| sole.middle(&from.feet[i]));
+        let apart = [0, 1].map(|d| left[d] - right[d]);
+        let share = (0..2).map(|d| (from.zmp[d] - right[d]) * apart[d]).sum::<f64>();
+        from.load_left = (share / (apart[0] * apart[0] + apart[1] * apart[1])).clamp(0.0, 1.0);
+        let (foot, z) = (from.feet[1 - stance], from.heights[1 - stance]);
+        from.inside =
+            Some(RunningStep { stride: *step, swing: Sample::rest([foot.x, foot.y, z, foot.heading]) });
         from
     }
 

@@ -1,4 +1,4 @@
-//! Reaction to pushes: in single support, and out of standing, a plan from where the robot is, whose foot lands where it
+//! Reaction to pushes: inside a step, and out of standing, a plan from where the robot is, whose foot lands where it
 //! catches the body ([`crate::step_adaptation`]). Where the stabilizer alone can make good for an error, nothing happens.
 
 use crate::commands::Intent;
@@ -7,8 +7,8 @@ use crate::gait::{LEAD_MIN, Planner};
 use crate::origin::PlanOrigin;
 use crate::pose::PlanarPose;
 use crate::skills::{Script, Skill};
-use crate::sole::Sole;
-use crate::step_adaptation::{self, Divergence, Toppling};
+use crate::sole::{Hull, Sole};
+use crate::step_adaptation::{self, Divergence, SwingFoot, Toppling};
 use crate::steps::{Heights, ROUNDING, StepParameters, Stride};
 use crate::verdict::PlanVerdict;
 use messages::{ControllerState, Detail, EventCode, GaitState, LEFT, RIGHT};
@@ -20,8 +20,10 @@ const PERSISTS: f64 = 0.03;
 const LOST: f64 = 0.35;
 /// \[m\] Distance of the divergent component to the edge of the soles, at which a standing robot steps out.
 const EDGE: f64 = 0.015;
-/// \[s\] Time in which one foot takes all of the load, when she steps out.
-const LOADING: f64 = 0.1;
+/// \[s\] Time in which one foot takes all of the load, when the other one is to catch her.
+const LOADING: f64 = 0.06;
+/// \[m\] Distance from both soles at which a zero-moment point is that of a foot that bounces.
+const REACH: f64 = 0.05;
 
 /// The plan that catches the body.
 struct Catch {
@@ -79,18 +81,42 @@ impl Planner {
         let k = walk.steps().iter().position(|s| t < s.end)?;
         let s = &walk.strides[k];
         // Where nothing is known to lie it may land elsewhere.
-        if t < s.lift || s.is_high(&model.step) && !self.builder.footsteps.sees_nothing() {
+        if s.is_high(&model.step) && !self.builder.footsteps.sees_nothing() {
             return None;
         }
-        let foot = state.feet[1 - s.stance];
-        let sole = &model.soles[s.stance];
-        let zmp = zmp_within(state, &s.foothold, sole);
-        let body = divergence(state, zmp, s.heights.foothold, start, model.cycle_s)?;
-        let landing = step_adaptation::adapt(rules, walk, (k, t), &body, [foot[0], foot[1]], sole)?;
         // From where she will be when the plan begins.
         let ahead = (start - state.header.tick) as f64 * model.cycle_s;
-        let cycles = (model.cycles(landing.rest), model.cycle_s);
-        let from = PlanOrigin::inside(walk, (k, t), (state, zmp, ahead), &landing.pose, cycles);
+        let [x, y, ..] = state.feet[1 - s.stance];
+        let sole = &model.soles[s.stance];
+        let (place, w) = ([x, y], pendulum(state, s.heights.foothold));
+        if t >= s.lift {
+            let zmp = zmp_within(state, &s.foothold, sole);
+            let body = divergence(state, zmp, w, ahead)?;
+            let foot = SwingFoot { place, loaded: 0.0 };
+            let landing = step_adaptation::adapt(rules, walk, (k, t), &body, &foot, sole)?;
+            let cycles = (model.cycles(landing.rest), model.cycle_s);
+            let from = PlanOrigin::inside(walk, (k, t), (state, zmp, ahead), &landing.pose, cycles);
+            return Some(Catch { from, enough: landing.catches });
+        }
+
+        // Both feet carry: the one that is about to swing hands its load over sooner.
+        let lift = model.cycles((s.lift - t).min(LOADING));
+        let foot = SwingFoot { place, loaded: lift as f64 * model.cycle_s };
+        let zmp = zmp_between(state, [&s.foothold, &s.takeoff], [sole, &model.soles[1 - s.stance]]);
+        let body = divergence(state, zmp, w, ahead)?;
+        let landing = step_adaptation::adapt(rules, walk, (k, t), &body, &foot, sole)?;
+        let [x, y, z, heading] = walk.soles(t)[s.stance];
+        let frame = PlanarPose::new(x, y, heading);
+        let end_cycle = model.cycles(landing.rest);
+        let step = Stride {
+            begin: 0.0,
+            lift: foot.loaded,
+            end: end_cycle as f64 * model.cycle_s,
+            end_cycle,
+            landing: frame.relative(&landing.pose),
+            ..s.seen(&frame, z)
+        };
+        let from = PlanOrigin::on_both_feet(walk, t, (state, zmp, ahead), &step, sole);
         Some(Catch { from, enough: landing.catches })
     }
 
@@ -103,7 +129,8 @@ impl Planner {
             return None;
         }
         // Both soles as one, seen from the right foot.
-        let soles = walk.soles(walk.end_cycle as f64 * model.cycle_s);
+        let t = walk.end_cycle as f64 * model.cycle_s;
+        let soles = walk.soles(t);
         let feet = soles.map(|p| PlanarPose::new(p[0], p[1], p[3]));
         let apart = feet[RIGHT].relative(&feet[LEFT]).y;
         let mut both = model.soles[RIGHT];
@@ -151,7 +178,7 @@ impl Planner {
         };
         let ahead = (start - state.header.tick) as f64 * model.cycle_s;
         let measured = (state, zmp_within(state, at, &both), ahead);
-        let from = PlanOrigin::standing(walk, model.cycle_s, measured, &step);
+        let from = PlanOrigin::on_both_feet(walk, t, measured, &step, sole);
         Some(Catch { from, enough: landing.catches })
     }
 
@@ -190,21 +217,20 @@ fn zmp_within(state: &ControllerState, foothold: &PlanarPose, sole: &Sole) -> [f
     }
 }
 
+/// \[m\] Measured zero-moment point, if it is within reach of two feet on the ground; otherwise the desired one.
+fn zmp_between(state: &ControllerState, feet: [&PlanarPose; 2], soles: [&Sole; 2]) -> [f64; 2] {
+    let within = Hull::of((soles[0], feet[0]), (soles[1], feet[1])).margin(state.zmp) > -REACH;
+    if within { state.zmp } else { state.zmp_desired }
+}
+
 /// \[1/s\] Rate of a pendulum as high over the ground as the measured centre of gravity.
 fn pendulum(state: &ControllerState, ground: f64) -> f64 {
     (GRAVITY / (state.com[2] - ground)).sqrt()
 }
 
-/// Divergent component at the tick `start`, the zero-moment point staying at `zmp`; none without a measurement.
-fn divergence(
-    state: &ControllerState,
-    zmp: [f64; 2],
-    ground: f64,
-    start: u64,
-    cycle_s: f64,
-) -> Option<Divergence> {
-    let w = pendulum(state, ground);
-    let growth = w * (start - state.header.tick) as f64 * cycle_s;
+/// Divergent component `ahead` \[s\] after the measurement, the zero-moment point staying at `zmp`; none without a measurement.
+fn divergence(state: &ControllerState, zmp: [f64; 2], w: f64, ahead: f64) -> Option<Divergence> {
+    let growth = w * ahead;
     let error = [0, 1].map(|d| {
         let shift = zmp[d] - state.zmp_desired[d];
         -state.dcm_error[d] + growth * (-state.dcm_error[d] - shift)

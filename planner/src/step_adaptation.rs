@@ -43,6 +43,15 @@ pub(crate) struct Divergence {
     pub(crate) error: [f64; 2],
 }
 
+/// The foot that swings, or is about to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SwingFoot {
+    /// \[m\] @planning frame
+    pub(crate) place: [f64; 2],
+    /// \[s\] Until it lifts off; 0 while it swings.
+    pub(crate) loaded: f64,
+}
+
 /// A landing that catches the body, as far as one can.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Landing {
@@ -89,14 +98,17 @@ impl Axis {
     }
 }
 
-/// Landing of step `k` of `walk` at its time `t` \[s\], in single support, that makes good for the error of `body`; `foot` is
-/// where the swing foot is \[m\] @planning frame, `sole` that of the stance foot. None if the stabilizer alone can.
+/// Landing of step `k` of `walk` at its time `t` \[s\] that makes good for the error of `body`; `foot` lands, `sole` is that of
+/// the stance foot. None if the stabilizer alone can.
+///
+/// As long as the swing foot carries, both soles hold the body to the sides better than a step that begins sooner: only an
+/// error ahead or back alone is answered then.
 pub(crate) fn adapt(
     rules: &gait::Reaction,
     walk: &PlannedWalk,
     (k, t): (usize, f64),
     body: &Divergence,
-    foot: [f64; 2],
+    foot: &SwingFoot,
     sole: &Sole,
 ) -> Option<Landing> {
     let s = &walk.strides[k];
@@ -104,14 +116,18 @@ pub(crate) fn adapt(
     if rest < rules.rest {
         return None;
     }
-    let axes = |counted: [f64; 2]| axes(rules, walk, (k, t), body, foot, (sole, counted));
+    let axes = |counted: [f64; 2]| axes(rules, walk, (k, t), body, foot.place, (sole, counted));
     let growth = (body.w * rest).exp();
-    let stays = |(a, most): (Axis, f64)| a.error.abs() <= rules.error || a.missed(growth).abs() <= most;
-    if axes(ALONE).into_iter().zip(rules.tolerance).all(stays) {
+    let stays = |a: &Axis, most: f64| a.error.abs() <= rules.error || a.missed(growth).abs() <= most;
+    let alone = axes(ALONE);
+    let held = [0, 1].map(|d| stays(&alone[d], rules.tolerance[d]));
+    let carries = foot.loaded > 0.0;
+    if held == [true; 2] || carries && held != [false, true] {
         return None;
     }
-    let problem = Problem { rules, w: body.w, axes: axes(COUNTED), planned: rest };
-    let shortest = rules.rest.max(rules.swing - (t - s.lift)).min(rest);
+    let problem = Problem { rules, w: body.w, axes: axes(COUNTED), planned: rest, loaded: foot.loaded };
+    let swung = (t - s.lift).max(0.0);
+    let shortest = rules.rest.max(foot.loaded + rules.swing - swung).min(rest);
     let mut r = problem.best(shortest, rest);
     // A body that was pushed over its stance foot, and no more than that, may come back if the foot waits for it.
     let outward = -nu(s.stance) * problem.axes[1].error > rules.error;
@@ -161,7 +177,7 @@ pub(crate) fn step_out(
             foot: foot[d],
         }
     });
-    let problem = Problem { rules, w: body.w, axes, planned: swing };
+    let problem = Problem { rules, w: body.w, axes, planned: swing, loaded: 0.0 };
     problem.landing(problem.best(rules.swing.min(swing), swing), foothold, &foothold.compose(&home))
 }
 
@@ -173,12 +189,14 @@ struct Problem<'a> {
     axes: [Axis; 2],
     /// \[s\] Planned rest of the swing.
     planned: f64,
+    /// \[s\] Until the foot lifts off.
+    loaded: f64,
 }
 
 impl Problem<'_> {
     /// Change of the landing, and of the offset, of both axes if the foot lands after `r` \[s\].
     fn split(&self, r: f64) -> [[f64; 2]; 2] {
-        self.axes.map(|a| a.split((self.w * r).exp(), self.rules.speed * r))
+        self.axes.map(|a| a.split((self.w * r).exp(), self.rules.speed * (r - self.loaded)))
     }
 
     /// Which axes are caught then.

@@ -134,6 +134,17 @@ impl Stride {
         heights: Heights { foothold: 0.0, takeoff: 0.0, landing: 0.0, lift: 0.0 },
     };
 
+    /// The same step seen from `frame`, on ground of the height `ground` \[m\]; its times stay.
+    pub(crate) fn seen(&self, frame: &PlanarPose, ground: f64) -> Self {
+        let [foothold, takeoff, landing] =
+            [&self.foothold, &self.takeoff, &self.landing].map(|pose| frame.relative(pose));
+        let mut heights = self.heights;
+        for z in [&mut heights.foothold, &mut heights.takeoff, &mut heights.landing] {
+            *z -= ground;
+        }
+        Self { foothold, takeoff, landing, heights, ..*self }
+    }
+
     /// A step down?
     pub(crate) fn descends(&self) -> bool {
         self.heights.landing < self.heights.foothold - ROUNDING

@@ -13,8 +13,6 @@ if ! "$venv/bin/python" -c 'import placo' 2> /dev/null; then
         exit 0
     }
 fi
-# Together with the executable: what both depend on was built for it.
-cargo build --quiet --release --package cli --package planner --example plan_time
-"${CARGO_TARGET_DIR:-target}/release/examples/plan_time"
+"$(sh "$here/example.sh" plan_time)"
 echo
 exec "$venv/bin/python" "$here/placo_walk.py"

@@ -7,18 +7,21 @@ here=$(cd "$(dirname "$0")" && pwd)
 flavour=${1:+$1-}
 kernel="$here/.kernel${1:+-$1}"
 
-# Each after those it needs. The host's files: 9p over virtio, with a writable layer above. The rest is CAN.
+# Each after those it needs. The host's files: 9p over virtio, with a writable layer above. Then CAN, and gamepads that a
+# program plays.
 modules="drivers/virtio/virtio_ring drivers/virtio/virtio drivers/virtio/virtio_pci_modern_dev
 drivers/virtio/virtio_pci_legacy_dev drivers/virtio/virtio_pci fs/netfs/netfs fs/fscache/fscache net/9p/9pnet
 net/9p/9pnet_virtio fs/9p/9p fs/overlayfs/overlay net/can/can net/can/can-raw net/can/can-bcm net/can/can-gw
-drivers/net/can/dev/can-dev drivers/net/can/vcan"
+drivers/net/can/dev/can-dev drivers/net/can/vcan
+drivers/input/evdev drivers/input/misc/uinput"
 
 fail() {
     echo "kernel.sh: $*" >&2
     exit 1
 }
 
-if [ -f "$kernel/complete" ]; then
+# One with other modules is from another time.
+if [ -f "$kernel/complete" ] && [ "$(cat "$kernel/complete")" = "$modules" ]; then
     echo "$kernel"
     exit
 fi
@@ -62,5 +65,5 @@ for module in $modules; do
 done
 cd "$kernel"
 rm -rf package
-echo "$package" >complete
+echo "$modules" >complete
 echo "$kernel"

@@ -1,14 +1,14 @@
 #!/bin/sh
-# Archie walks a stride that his drives play from tables; candump hears the upload. A replay of the drives' answers is the same
-# walk, bit for bit, and a line that is pulled in mid-stride stops it.
+# Archie walks a stride that his drives play from tables; candump hears the upload, and a line that is pulled in mid-stride
+# stops it. LONG=1: a replay of the drives' answers is the same walk, bit for bit.
 . "$(dirname "$0")/step.sh"
 . "$here/walking.sh"
 
-# The walk of thesis 6.2, four times as fast, on type 1: there are 1875 cycles in it.
+# The walk of thesis 6.2, four times as fast, on type 1: there are 1500 cycles in it.
 scene="$work/config/scenes/archie_tables.toml"
 sed -i -e 's/^T_c = .*/T_c = 3.0/' -e 's/^T_d = .*/T_d = 1.2/' -e 's/^T_o = .*/T_o = 2.1/' -e 's/^T_min = .*/T_min = 0.24/' \
     -e 's/^T_max = .*/T_max = 2.1/' -e 's/^N = .*/N = 150/' "$work/config/gaits/archie_static.toml"
-sed -i -e 's/^depth = .*/depth = 1/' -e 's/^duration = .*/duration = 15.0/' -e 's/^time = 4.0/time = 2.5/' \
+sed -i -e 's/^depth = .*/depth = 1/' -e 's/^duration = .*/duration = 12.0/' -e 's/^time = 4.0/time = 2.5/' \
     -e 's/^time = 20.0/time = 7.0/' -e 's/^forward = .*/forward = 0.0833/' "$scene"
 dbc="$here/../../config/robots/archie/can/archie_tables.dbc"
 
@@ -81,8 +81,10 @@ step "the joint loop allocated nothing and lost nothing" counted
 step "the drives were started, and say that they are operational" started
 step "candump heard the upload, and cantools decodes it to the counts of the log" uploaded
 step "the joint loop does it again from the log, byte for byte" replayed "$work/first/archie_tables.mcap"
-from_drives
-step "the drives' answers, repeated by canplayer, are the same walk, bit for bit" answered_by canplayer canplayer -I "$work/answers.log"
+if [ -n "${LONG:-}" ]; then
+    from_drives
+    step "the drives' answers, repeated by canplayer, are the same walk, bit for bit" answered_by canplayer canplayer -I "$work/answers.log"
+fi
 step "a line is pulled in mid-stride: the run says which, and the joints come to rest" disturbed line \
     'lowlevel: a local controller is silent for too long: leg_left' ip link set vcan1 down
 step "somebody resets a drive in mid-stride: it is named, and the joints come to rest" disturbed reset \

@@ -5,6 +5,7 @@
 
 pub mod daemon;
 pub mod estop;
+pub mod stop_request;
 mod supply;
 
 pub use supply::{Inputs, PAUSE, Supply, SupplyState, Watchdog, supply_event, verdict};

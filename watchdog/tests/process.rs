@@ -68,6 +68,7 @@ impl Rig {
             config: config(&dir),
             bus: "shm".into(),
             robot: true,
+            stays: false,
             log: None,
             commit: String::new(),
             started: None,

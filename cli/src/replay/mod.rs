@@ -1,6 +1,7 @@
 //! `gangwerk replay LOG`: the recorded inputs of a process, fed to its real step, and what comes out held against the log.
 //!
 //! - `tape.rs`: the log, topic by topic, in the order of writing; notices what is missing.
+//! - `unpacked.rs`: the configuration in the log.
 //! - `parts.rs`: one process each: which record goes into which step.
 //!
 //! A replay begins where the process began, with the configuration in the log. It is exact or says why it cannot be.
@@ -8,12 +9,12 @@
 mod parts;
 mod problem;
 mod tape;
+mod unpacked;
 
 use std::error::Error;
-use std::path::{Component, Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
-use config::method::Method;
 use config::{BusAddress, Setup};
 
 use messages::Process;
@@ -21,6 +22,7 @@ use recording::Log;
 
 pub use problem::ReplayProblem;
 use tape::Tape;
+pub use unpacked::Unpacked;
 
 /// Processes whose step can be replayed.
 pub const PROCESSES: [Process; 4] =
@@ -99,23 +101,13 @@ fn cycle(tape: &mut Tape, part: &mut dyn parts::Part, done: &mut Replayed) -> Re
 
 /// The configuration of a log, from the files in it, and the field bus.
 fn setup_of(log: &Log) -> Result<(Setup, BusAddress), Box<dyn Error>> {
-    let place = Unpacked::new()?;
-    let mut run = None;
-    let mut failed = None;
-    log.each_attachment(|name, bytes| match name.strip_prefix(logger::CONFIG) {
-        Some(name) => failed = failed.take().or(place.put(Path::new(name), bytes).err()),
-        None if name == logger::daemon::RUN => run = Some(String::from_utf8_lossy(bytes).into_owned()),
-        None => {}
-    })?;
-    if let Some(error) = failed {
-        return Err(error.into());
-    }
-    let run =
-        run.ok_or("the log does not say how it was run: only logs of `gangwerk run` can be replayed")?;
-    let run = ipc::Run::parse(&place.0, &run)?;
-    let method: Option<Method> = run.method.as_deref().map(str::parse).transpose()?;
+    let unpacked = Unpacked::of(log)?;
+    let run = unpacked
+        .run
+        .as_ref()
+        .ok_or("the log does not say how it was run: only logs of `gangwerk run` can be replayed")?;
     let bus: BusAddress = run.bus.parse()?;
-    let setup = Setup::load(&place.0, &run.scene)?.with_method(method)?.on_bus(bus.is_classic())?;
+    let setup = unpacked.setup(log)?;
     let (theirs, ours) = (log.run().config_hash, setup.hash);
     if theirs != ours {
         return Err(format!(
@@ -124,34 +116,6 @@ fn setup_of(log: &Log) -> Result<(Setup, BusAddress), Box<dyn Error>> {
         .into());
     }
     Ok((setup, bus))
-}
-
-/// A directory for the configuration of a log; gone when dropped.
-struct Unpacked(PathBuf);
-
-impl Unpacked {
-    fn new() -> Result<Self, String> {
-        static COUNT: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
-        let n = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("gangwerk-replay-{}-{n}", std::process::id()));
-        std::fs::create_dir(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-        Ok(Self(path))
-    }
-
-    fn put(&self, name: &Path, bytes: &[u8]) -> Result<(), String> {
-        if !name.components().all(|part| matches!(part, Component::Normal(_))) {
-            return Err(format!("the log holds a file with the name {}", name.display()));
-        }
-        let path = self.0.join(name);
-        let made = path.parent().map_or(Ok(()), std::fs::create_dir_all);
-        made.and_then(|()| std::fs::write(&path, bytes)).map_err(|e| format!("{}: {e}", path.display()))
-    }
-}
-
-impl Drop for Unpacked {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
 }
 
 /// `gangwerk replay`: every process, or one, and what came of it.

@@ -12,7 +12,7 @@ use messages::{CommandTaken, CycleInputs, Detail, Event, EventCode, Header, Proc
 use recording::{Log, LogEnd, cdr, channel_name, definition};
 
 use super::problem::ReplayProblem;
-use crate::fields::first_difference;
+use messages::fields::first_difference;
 
 /// Messages read ahead.
 const AHEAD: usize = 4096;

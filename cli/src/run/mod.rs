@@ -51,6 +51,8 @@ pub struct RunOptions {
     pub method: Option<Method>,
     /// The configuration directory.
     pub config: PathBuf,
+    /// Goes on when the scene is over, until it is asked to end.
+    pub stays: bool,
     /// The field bus.
     pub bus: BusAddress,
     /// Whether a simulated robot is put at its far end.
@@ -147,6 +149,7 @@ pub fn run(order: &RunOptions, stop: Stop, console: &Console) -> Result<RunOutco
         config,
         bus: order.bus.to_string(),
         robot: order.robot,
+        stays: order.stays,
         log: order.log.clone(),
         commit: crate::COMMIT.into(),
         started: (order.mode == Mode::RealTime).then(|| [clock::unix_ns(), clock::now()]),

@@ -12,8 +12,7 @@ use messages::{
 use terminal::Console;
 
 use super::tally::Tally;
-use crate::sim::AFTER_FALL;
-use chain::ending::Ending;
+use chain::ending::{AFTER_FALL, Ending};
 
 /// Operator's console.
 pub(super) struct View {

@@ -10,7 +10,7 @@ use messages::topics::{ForType, Topic, with_type};
 use messages::{Event, Process, Record, TOPICS, Words};
 
 use super::{EVENTS, ObservedRobot, find};
-use crate::fields::{Number, numbers};
+use messages::fields::{Number, numbers};
 
 /// Between two looks.
 const LOOK: Duration = Duration::from_millis(1);

@@ -15,7 +15,7 @@ use messages::command_text::{COMMANDS, CommandInfo};
 use messages::topics::{ForType, Topic, with_type};
 use messages::{Process, Record, TOPICS};
 
-use crate::fields::numbers;
+use messages::fields::numbers;
 
 pub use echo::{Echo, echo};
 pub(crate) use echo::{EchoTable, words};

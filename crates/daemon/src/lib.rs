@@ -41,6 +41,8 @@ pub struct Daemon {
     pub bus: BusAddress,
     /// Whether a simulated robot is at its far end.
     pub robot: bool,
+    /// A run that goes on when the scene is over.
+    pub stays: bool,
     /// Whether the run is logged.
     pub logged: bool,
     /// Scene, robot, gait, run-time system.
@@ -96,6 +98,7 @@ impl Daemon {
             granted,
             bus,
             robot: run.robot,
+            stays: run.stays,
             logged: run.log.is_some(),
             mode: run.mode,
             paced: run.paced,

@@ -27,11 +27,13 @@ impl Schedule {
         Self { appears, vanishes, poses }
     }
 
-    pub(crate) fn is_present(&self, time: f64) -> bool {
+    /// Presence at `time` \[s\].
+    pub fn is_present(&self, time: f64) -> bool {
         self.appears <= time && time < self.vanishes
     }
 
-    pub(crate) fn pose(&self, time: f64) -> Pose {
+    /// Its pose at `time` \[s\].
+    pub fn pose(&self, time: f64) -> Pose {
         let next = self.poses.partition_point(|(t, _)| *t <= time);
         match (self.poses.get(next.wrapping_sub(1)), self.poses.get(next)) {
             (Some((t0, from)), Some((t1, to))) => from.towards(to, (time - t0) / (t1 - t0)),

@@ -1,7 +1,7 @@
 //! Readers of a topic: the newest record, or every one of them.
 
 use crate::error::{IpcError, because};
-use crate::slot::{self, HEAD, HeadEntry, Numbered, RealTime, RingEntry, SLOTS, SlotHead, SlotService};
+use crate::slot::{self, HeadEntry, Numbered, RealTime, RingEntry, SLOTS, SlotHead, SlotService};
 use iceoryx2::prelude::*;
 use messages::{Record, Topic};
 
@@ -14,14 +14,11 @@ struct Slot<T: Record> {
 
 impl<T: Record> Slot<T> {
     fn open(node: &Node<RealTime>, topic: &Topic, index: usize) -> Result<Self, IpcError> {
-        let what = || format!("reader of topic {}", topic.name);
-        let service = slot::open::<T>(node, topic, index)?;
-        let port = service.reader_builder().create().map_err(|e| because(what(), e))?;
+        let (service, port, head) = slot::open_to_read(node, topic, &slot::schema::<T>(topic), index)?;
         let ring = (0..topic.depth as u64)
             .map(|k| port.entry::<Numbered<T>>(&k))
             .collect::<Result<Vec<_>, _>>()
-            .map_err(|e| because(what(), e))?;
-        let head = port.entry::<SlotHead>(&HEAD).map_err(|e| because(what(), e))?;
+            .map_err(|e| because(format!("reader of topic {}", topic.name), e))?;
         Ok(Self { ring, head, _service: service })
     }
 

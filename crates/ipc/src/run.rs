@@ -9,6 +9,7 @@
 //! config = /home/me/gangwerk/config
 //! bus = can:vcan0,vcan1      # or shm, canfd:..., sercos:...
 //! robot = simulated          # or elsewhere
+//! stays = no                 # or yes: goes on when the scene is over
 //! commit = 5c1f...           # of the software; empty: unknown
 //! started = 1763812800123456789 4711000000 # [ns] since 1970, and CLOCK_MONOTONIC at that instant; empty: simulated time
 //! log = /home/me/walk.mcap   # empty: no log
@@ -51,6 +52,8 @@ pub struct Run {
     pub bus: String,
     /// Whether a simulated robot is at the far end of the bus.
     pub robot: bool,
+    /// A run that goes on when the scene is over, until it is asked to end. The first live walking command ends the scene's own.
+    pub stays: bool,
     /// Path of the log; none: no log.
     pub log: Option<PathBuf>,
     /// Git commit of the software; empty: unknown.
@@ -71,6 +74,7 @@ impl Run {
             config: "none".into(),
             bus: "shm".into(),
             robot: true,
+            stays: false,
             log: None,
             commit: String::new(),
             started: None,
@@ -87,13 +91,14 @@ impl Run {
         let log = self.log.as_deref().unwrap_or(Path::new(""));
         let started = self.started.map_or(String::new(), |[unix, monotonic]| format!("{unix} {monotonic}"));
         format!(
-            "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nbus = {}\nrobot = {}\ncommit = {}\n\
-             started = {started}\nlog = {}\n",
+            "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nbus = {}\nrobot = {}\nstays = {}\n\
+             commit = {}\nstarted = {started}\nlog = {}\n",
             self.scene,
             self.method.as_deref().unwrap_or_default(),
             self.config.display(),
             self.bus,
             if self.robot { "simulated" } else { "elsewhere" },
+            if self.stays { "yes" } else { "no" },
             self.commit,
             log.display()
         )
@@ -148,6 +153,11 @@ impl Run {
         };
         let (method, log) = (value("method")?, value("log")?);
         // Logs of earlier versions do not say these.
+        let stays = match value("stays") {
+            Ok("yes") => true,
+            Ok("no") | Err(_) => false,
+            Ok(other) => return Err(wrong("stays", other, "yes or no")),
+        };
         let (commit, started) = (value("commit").unwrap_or_default(), value("started").unwrap_or_default());
         let number = |text: &str| text.parse().ok();
         let started =
@@ -161,6 +171,7 @@ impl Run {
             config: value("config")?.into(),
             bus: value("bus")?.into(),
             robot,
+            stays,
             log: (!log.is_empty()).then(|| log.into()),
             commit: commit.into(),
             started,

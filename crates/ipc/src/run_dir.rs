@@ -7,6 +7,7 @@ use crate::IpcError;
 use rustix::fs::{AtFlags, Mode, OFlags};
 use rustix::io::Errno;
 use std::fs::File;
+use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
@@ -41,6 +42,28 @@ pub fn wrong_dir(path: &Path) -> Option<IpcError> {
     let there = std::fs::symlink_metadata(path);
     let missing = there.is_err_and(|e| e.kind() == std::io::ErrorKind::NotFound);
     if missing { None } else { RunDir::open(path).err() }
+}
+
+/// Writes a private file (mode 0600) into a run directory, whole or not at all; makes the directory if it is not there.
+///
+/// # Errors
+/// The directory is not private, or the file cannot be written.
+pub fn publish_file(dir: &Path, name: &str, text: &str) -> Result<(), IpcError> {
+    let (dir, unfinished) = (RunDir::make(dir)?, format!("{name}.new"));
+    let written = dir.new_file(&unfinished)?.write_all(text.as_bytes());
+    written.map_err(|e| dir.told(name, e))?;
+    dir.rename(&unfinished, name)
+}
+
+/// Removes a file of [`publish_file`] if it still holds `text`, and the directory if nothing else is in it.
+pub fn withdraw_file(dir: &Path, name: &str, text: &str) {
+    let Ok(open) = RunDir::open(dir) else { return };
+    let mut found = String::new();
+    let read = open.file(name, OFlags::RDONLY).map(|mut file| file.read_to_string(&mut found));
+    if matches!(read, Ok(Ok(_))) && found == text {
+        let _ = rustix::fs::unlinkat(&open.fd, name, AtFlags::empty());
+        let _ = std::fs::remove_dir(dir);
+    }
 }
 
 impl RunDir {
@@ -206,6 +229,20 @@ mod tests {
         dir.new_file("run.new").unwrap();
         assert!(!dir.path.join("run.new").is_symlink());
         assert_eq!(std::fs::read_to_string(&victim).unwrap(), "precious");
+    }
+
+    #[test]
+    fn a_published_file_is_private_and_goes_with_its_writer() {
+        let ground = Ground::new("publish");
+        let path = ground.0.join("run");
+        publish_file(&path, "x.url", "one").unwrap();
+        publish_file(&path, "x.url", "two").unwrap();
+        let mode = std::fs::metadata(path.join("x.url")).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o600);
+        withdraw_file(&path, "x.url", "one");
+        assert_eq!(std::fs::read_to_string(path.join("x.url")).unwrap(), "two", "somebody else's by now");
+        withdraw_file(&path, "x.url", "two");
+        assert!(!path.exists());
     }
 
     #[test]

@@ -55,6 +55,7 @@ pub(crate) struct SlotHead {
     pub(crate) count: u64,
 }
 
+pub(crate) type ReaderPort = iceoryx2::port::reader::Reader<RealTime, u64>;
 pub(crate) type RingEntry<T> = EntryHandle<RealTime, u64, Numbered<T>>;
 pub(crate) type HeadEntry = EntryHandle<RealTime, u64, SlotHead>;
 
@@ -63,7 +64,7 @@ fn name(topic: &Topic, slot: usize) -> Result<ServiceName, IpcError> {
 }
 
 /// Name, size and layout of the record: what two programs must agree on.
-fn schema<T: Record>(topic: &Topic) -> String {
+pub(crate) fn schema<T: Record>(topic: &Topic) -> String {
     format!("{} {:016x} depth {}", T::NAME, schema_hash::<T>(), topic.depth)
 }
 
@@ -94,20 +95,23 @@ pub(crate) fn create<T: Record>(
     creator.create_with_attributes(&attributes).map_err(|e| because(what(), e))
 }
 
-/// Opens slot `slot` of a topic, if its record looks here as it looked to who made it.
-pub(crate) fn open<T: Record>(
+/// Opens slot `slot` of a topic, if its record looks here (`schema`) as it looked to who made it.
+///
+/// Without a type parameter, as whatever else can be: what is generic is compiled again in each program that uses it, and much
+/// of iceoryx2 with it.
+pub(crate) fn open(
     node: &Node<RealTime>,
     topic: &Topic,
+    schema: &str,
     slot: usize,
 ) -> Result<SlotService, IpcError> {
     let what = || format!("topic {}", topic.name);
-    let here = schema::<T>(topic);
     let required = AttributeVerifier::new()
-        .require(&SCHEMA.try_into().map_err(|e| because(what(), e))?, &attribute(&here)?)
+        .require(&SCHEMA.try_into().map_err(|e| because(what(), e))?, &attribute(schema)?)
         .map_err(|e| because(what(), e))?;
     node.service_builder(&name(topic, slot)?).blackboard_opener::<u64>().open_with_attributes(&required).map_err(
         |e| match e {
-            BlackboardOpenError::IncompatibleAttributes => IpcError::Schema { topic: topic.name.into(), here },
+            BlackboardOpenError::IncompatibleAttributes => IpcError::Schema { topic: topic.name.into(), here: schema.into() },
             BlackboardOpenError::DoesNotExist => IpcError::Other(format!(
                 "topic {} does not exist in this run: start the supervisor (gangwerk run) first, from this same build",
                 topic.name
@@ -115,6 +119,20 @@ pub(crate) fn open<T: Record>(
             e => because(what(), e),
         },
     )
+}
+
+/// Opens slot `slot` of a topic to be read: its port and its head.
+pub(crate) fn open_to_read(
+    node: &Node<RealTime>,
+    topic: &Topic,
+    schema: &str,
+    slot: usize,
+) -> Result<(SlotService, ReaderPort, HeadEntry), IpcError> {
+    let what = || format!("reader of topic {}", topic.name);
+    let service = open(node, topic, schema, slot)?;
+    let port = service.reader_builder().create().map_err(|e| because(what(), e))?;
+    let head = port.entry::<SlotHead>(&HEAD).map_err(|e| because(what(), e))?;
+    Ok((service, port, head))
 }
 
 fn attribute(text: &str) -> Result<iceoryx2::service::attribute::AttributeValue, IpcError> {
@@ -149,8 +167,9 @@ mod tests {
         let node = crate::space::node::<RealTime>(&place, "test").unwrap();
         let made = create::<Event>(&node, &EVENTS_PLANNER, 0).unwrap();
         assert_eq!(size_of::<Event>(), size_of::<Swapped>());
-        assert!(open::<Event>(&node, &EVENTS_PLANNER, 0).is_ok());
-        let error = open::<Swapped>(&node, &EVENTS_PLANNER, 0).err().unwrap();
+        let open = |schema: String| open(&node, &EVENTS_PLANNER, &schema, 0);
+        assert!(open(schema::<Event>(&EVENTS_PLANNER)).is_ok());
+        let error = open(schema::<Swapped>(&EVENTS_PLANNER)).err().unwrap();
         assert!(matches!(&error, IpcError::Schema { topic, .. } if topic == "events/planner"), "{error}");
         assert!(error.to_string().contains("start all processes from one build"));
         drop((made, node));

@@ -35,6 +35,16 @@ pub struct Space {
     _hold: Hold,
 }
 
+/// Process id of the supervisor of the run in `dir`; none: nobody runs there.
+pub fn supervisor(dir: &StdPath) -> Option<u32> {
+    Lock::owner(&RunPlace::of(dir).ok()?.dir, SUPERVISOR)
+}
+
+/// Process id of a process of the run in `dir`; none: it is not there.
+pub fn owner(dir: &StdPath, process: Process) -> Option<u32> {
+    Lock::owner(&RunPlace::of(dir).ok()?.dir, process.name())
+}
+
 /// Lock of a place.
 struct Hold {
     place: RunPlace,

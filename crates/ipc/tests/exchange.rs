@@ -184,6 +184,7 @@ fn a_run_is_saved_and_loaded() {
         config: "/somewhere/config".into(),
         bus: "shm".into(),
         robot: true,
+        stays: true,
         log: None,
         commit: "5c1f".into(),
         started: Some([17, 4]),

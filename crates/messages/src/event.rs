@@ -20,7 +20,7 @@ macro_rules! events {
             }
 
             /// Words for people: what happened, what the detail says, what to do. See [`Words`](crate::event_words::Words).
-            pub(crate) const fn words(self) -> [&'static str; 3] {
+            pub const fn words(self) -> [&'static str; 3] {
                 match self { $(Self::$name => [$what, $detail, $advice],)* }
             }
         }

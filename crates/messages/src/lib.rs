@@ -20,6 +20,7 @@ pub mod event;
 pub mod event_detail;
 pub mod event_queue;
 pub mod event_words;
+pub mod fields;
 pub mod joint_tables;
 pub mod joint_targets;
 pub mod parameters;

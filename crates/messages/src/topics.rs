@@ -73,6 +73,8 @@ impl Process {
 pub struct Topic {
     /// Name of the topic.
     pub name: &'static str,
+    /// Content in one sentence.
+    pub about: &'static str,
     /// Name of the record type.
     pub type_name: &'static str,
     /// The only process that writes it.
@@ -94,10 +96,10 @@ pub struct Topic {
 use Process::{Broker, Controller, Logger, Lowlevel, Planner, SimBackend, Watchdog};
 
 macro_rules! topics {
-    ($($(#[$doc:meta])* $name:ident: $type:ident = $topic:literal, $writer:ident -> [$($reader:ident),*],
+    ($($(#[doc = $about:literal])+ $name:ident: $type:ident = $topic:literal, $writer:ident -> [$($reader:ident),*],
         wakes [$($wake:ident),*], $rate:literal Hz, stale $stale:literal, depth $depth:literal, logged $logged:literal;)*) => {
-        $($(#[$doc])* pub const $name: Topic = Topic {
-            name: $topic, type_name: stringify!($type), writer: $writer, readers: &[$($reader),*],
+        $($(#[doc = $about])+ pub const $name: Topic = Topic {
+            name: $topic, about: concat!($($about),+), type_name: stringify!($type), writer: $writer, readers: &[$($reader),*],
             wakes: &[$($wake),*], rate_hz: $rate, stale_after: $stale, depth: $depth, logged: $logged,
         };)*
 
@@ -232,6 +234,17 @@ topics! {
     /// Events of the logger, such as losses.
     EVENTS_LOGGER: Event = "events/logger", Logger -> [], wakes [], 0 Hz, stale 0, depth 64, logged true;
 }
+
+/// Events of all processes.
+pub const EVENTS: [&Topic; 7] = [
+    &EVENTS_BROKER,
+    &EVENTS_WATCHDOG,
+    &EVENTS_LOWLEVEL,
+    &EVENTS_PLANNER,
+    &EVENTS_CONTROLLER,
+    &EVENTS_SIM_BACKEND,
+    &EVENTS_LOGGER,
+];
 
 impl Topic {
     /// The topic of that name.

@@ -1,6 +1,6 @@
 //! Reading a URDF into a [`Model`].
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3};
 use urdf_rs::{Joint, JointType, Pose, Robot};
@@ -21,7 +21,31 @@ impl Model {
         Self::from_urdf_locked(urdf, base_link, joint_order, &[])
     }
 
-    /// The same with some joints held at these coordinates \[rad, m\], as if they were fixed: they are none of `joint_order`.
+    /// Root link of a URDF, and its movable joints: parents before their children, otherwise in the order of the file.
+    ///
+    /// # Errors
+    /// It cannot be read, or has no link that hangs on none.
+    pub fn urdf_order(urdf: &str) -> Result<(String, Vec<String>), ModelError> {
+        let robot = urdf_rs::read_from_string(urdf).map_err(|e| ModelError::Unreadable(e.to_string()))?;
+        let children: HashSet<&str> = robot.joints.iter().map(|j| j.child.link.as_str()).collect();
+        let root = robot.links.iter().map(|l| l.name.as_str()).find(|name| !children.contains(name));
+        let root = root.ok_or_else(|| ModelError::Unreadable("no link is the root of a tree".into()))?;
+        let mut below: HashMap<&str, Vec<&Joint>> = HashMap::new();
+        robot.joints.iter().for_each(|j| below.entry(&j.parent.link).or_default().push(j));
+        // What is reached twice is a loop, which whoever builds the model refuses.
+        let (mut order, mut open, mut reached) = (Vec::new(), vec![root], HashSet::from([root]));
+        while let Some(link) = open.pop() {
+            for joint in below.get(link).into_iter().flatten() {
+                if reached.insert(&joint.child.link) {
+                    open.push(&joint.child.link);
+                    order.extend((joint.joint_type != JointType::Fixed).then(|| joint.name.clone()));
+                }
+            }
+        }
+        Ok((root.to_owned(), order))
+    }
+
+    /// [`Model::from_urdf`] with some joints held at these coordinates \[rad, m\], as if they were fixed: they are none of `joint_order`.
     pub fn from_urdf_locked(
         urdf: &str,
         base_link: &str,

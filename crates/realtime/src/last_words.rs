@@ -95,6 +95,16 @@ impl LastWords {
     }
 }
 
+/// Abort of the whole process at a panic of any of its threads, after its message. Nothing is unwound: a thread that is left
+/// would go on with half of the outputs. Once per process, before `LastWords::listen`.
+pub fn abort_at_panic() {
+    let before = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        before(info);
+        std::process::abort();
+    }));
+}
+
 /// An address of this program, from which others are counted: it lies elsewhere in every process. That of a function may
 /// be another one in each crate that names it; this one is not.
 pub fn anchor() -> usize {

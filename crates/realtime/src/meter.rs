@@ -39,6 +39,7 @@ impl CycleMeter {
         self.execution = Histogram::new();
         (self.stats.cycles, self.stats.overruns, self.stats.skipped) = (0, 0, 0);
         self.faults_before = page_faults();
+        sanitizer::find();
         allocations::arm();
         self.armed = true;
     }

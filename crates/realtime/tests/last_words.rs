@@ -13,11 +13,15 @@ const PLACE: &str = "GANGWERK_TEST_BOX";
 fn child() {
     let (Ok(cause), Ok(place)) = (std::env::var(CAUSE), std::env::var(PLACE)) else { return };
     let kept: &'static mut BlackBox = Box::leak(Box::new(BlackBox::create(Path::new(&place), 4096).unwrap()));
+    if cause == "thread" {
+        realtime::last_words::abort_at_panic();
+    }
     kept.last_words().listen();
     kept.begin(7);
     kept.keep(3, 42, &[1u64, 2, 3]);
     match cause.as_str() {
         "panic" => panic!("knee joint {} is a number too many", 26),
+        "thread" => drop(std::thread::spawn(|| panic!("knee joint 27 is two too many")).join()),
         "abort" => std::process::abort(),
         "fault" => fault(),
         "overflow" => {
@@ -62,6 +66,14 @@ fn a_panic_leaves_its_message() {
     let (left, _) = die_of("panic");
     assert!(left.message.contains("knee joint 26 is a number too many"), "{left:?}");
     assert!(left.frames.len() > 3, "{left:?}");
+}
+
+/// As the executable does it (decision 1): a panic of a thread beside the main one, which would join it and go on.
+#[test]
+fn a_panic_of_any_thread_ends_the_process() {
+    let (left, signal) = die_of("thread");
+    assert_eq!(signal, Some(6));
+    assert!(left.message.contains("knee joint 27 is two too many"), "{left:?}");
 }
 
 #[test]

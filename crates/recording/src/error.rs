@@ -31,6 +31,8 @@ pub enum RecordingError {
     },
     /// The file is damaged at this message number.
     Damaged(PathBuf, u64, String),
+    /// The file is damaged, or has become shorter, at this byte.
+    DamagedAt(PathBuf, u64, String),
 }
 
 impl RecordingError {
@@ -79,6 +81,11 @@ impl fmt::Display for RecordingError {
             Self::Damaged(path, message, why) => {
                 write!(f, "{}: damaged after message {message}: {why}", path.display())
             }
+            Self::DamagedAt(path, byte, why) => write!(
+                f,
+                "{}: damaged at byte {byte}: {why}; `gangwerk log repair` keeps what is before it",
+                path.display()
+            ),
         }
     }
 }

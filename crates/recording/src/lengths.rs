@@ -13,6 +13,7 @@ pub(crate) fn fit(opcode: u8, body: &[u8]) -> bool {
     let (front, strings, map) = match opcode {
         op::SCHEMA => (2, 2, false),
         op::CHANNEL => (4, 2, true),
+        op::CHUNK => (28, 1, false),
         op::ATTACHMENT => (16, 2, false),
         op::METADATA => (0, 1, true),
         _ => return true,

@@ -2,6 +2,7 @@
 //!
 //! - [`Recorder`]: writes every logged topic of [`messages::TOPICS`] verbatim, and standard messages made from them.
 //! - [`Log`]: reads a log back into records, also one that was cut off by a crash.
+//! - [`IndexedLog`]: reads it at any instant, with bounded memory, also while it is written.
 //! - [`repair`]: gives a log its index that was cut off by a crash.
 //! - [`traffic`]: frames of CAN lines.
 //! - [`payload_hashes`]: two runs are equal if these are.
@@ -12,11 +13,13 @@ pub mod cdr;
 pub mod definition;
 mod error;
 mod hashes;
+mod index;
+mod instants;
 mod lengths;
 mod links;
 mod log;
 mod markers;
-mod odometry;
+pub mod odometry;
 pub mod polygon;
 mod queue;
 mod recorder;
@@ -29,6 +32,7 @@ pub mod traffic;
 
 pub use error::RecordingError;
 pub use hashes::payload_hashes;
+pub use index::{IndexedLog, LogChunk};
 pub use links::{LinkFrame, LinkPoses, RecordedPose};
 pub use log::{FrameTree, Log, LogEnd, LogMessage, Transform};
 pub use recorder::{Recorder, STANDARD_RATE, Sink, channel_name};

@@ -20,7 +20,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// \[B\] No record of ours is longer; a longer one is damage, not a reason to ask for memory.
-const LONGEST_RECORD: usize = 64 * 1024 * 1024;
+pub(crate) const LONGEST_RECORD: usize = 64 * 1024 * 1024;
 
 /// A log on disk.
 #[derive(Clone, Debug)]
@@ -96,6 +96,11 @@ impl Log {
         Ok(Self { path: path.into(), robot, run })
     }
 
+    /// Its file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// The robot.
     pub fn robot(&self) -> &RobotInfo {
         &self.robot
@@ -149,14 +154,20 @@ impl Log {
             }
         })?;
         if !same_layout {
-            return Err(RecordingError::OtherLayout {
-                path: self.path.clone(),
-                topic: Topic::find(topic.name).map_or("", |t| t.name),
-                record: T::NAME,
-                software: self.run.software.clone(),
-            });
+            return Err(self.other_layout(topic));
         }
         Ok(end)
+    }
+
+    /// The error that a topic was written with another layout than this program's.
+    pub fn other_layout(&self, topic: &Topic) -> RecordingError {
+        let known = Topic::find(topic.name);
+        RecordingError::OtherLayout {
+            path: self.path.clone(),
+            topic: known.map_or("", |t| t.name),
+            record: known.map_or("", |t| t.type_name),
+            software: self.run.software.clone(),
+        }
     }
 
     /// All records of a topic.

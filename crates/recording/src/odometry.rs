@@ -75,14 +75,14 @@ fn keep<T: Copy>(waiting: &mut VecDeque<T>, new: &T) {
 }
 
 /// odom_from_planning
-pub(crate) fn planning_frame(state: &ControllerState, height: f64) -> RecordedPose {
+pub fn planning_frame(state: &ControllerState, height: f64) -> RecordedPose {
     let [x, y, heading] = state.origin;
     RecordedPose { position: [x, y, height], orientation: about_z(heading) }
 }
 
 /// odom_from_torso: the inclination is the inertial measurement unit's, heading and place are those that the stabilizer
 /// knows of the right sole, which is at `sole` in the torso frame.
-pub(crate) fn torso(
+pub fn torso(
     sensors: &Sensors,
     state: &ControllerState,
     height: f64,

@@ -91,6 +91,8 @@ fn state(tick: u64) -> SimState {
 fn write(path: &Path, change: impl Fn(u64, &mut Sensors)) {
     let mut recorder =
         Recorder::create(path, &robot(), &run()).unwrap().with_links(Box::new(TwoSticks::new()));
+    // As every log of a run: a file in it ends the chunk that describes the channels.
+    recorder.attach("config/system.toml", b"[system]").unwrap();
     for tick in 0..CYCLES {
         let mut s = sensors(tick);
         change(tick, &mut s);
@@ -328,5 +330,42 @@ fn a_string_that_claims_to_be_longer_than_its_record_is_damage() {
         std::fs::write(&path, bytes).unwrap();
         let error = Log::open(&path).unwrap_err().to_string();
         assert!(error.contains("a string is longer than the record"), "{opcode:#x}: {error}");
+    }
+}
+
+/// By its index a log is read as from its beginning. Its numbers are noise: a chunk that hardly shrinks is read in several parts.
+#[test]
+fn the_index_leads_to_every_record() {
+    let path = file("indexed.mcap");
+    let seed = std::cell::Cell::new(1u64);
+    let noise = || {
+        seed.set(seed.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407));
+        (seed.get() >> 11) as f64
+    };
+    write(&path, |_, sensors| {
+        let all = [&mut sensors.joint_angle, &mut sensors.temperature];
+        all.into_iter().flatten().for_each(|x| *x = noise());
+    });
+    // The whole log, read by another route.
+    let mut indexed = recording::IndexedLog::open(&path).unwrap();
+    assert!(indexed.is_complete() && indexed.other_layouts().is_empty());
+    let sensors: Vec<Sensors> = Log::open(&path).unwrap().records(&SENSORS).unwrap();
+    let of_chunks = |log: &mut recording::IndexedLog| -> Vec<u64> {
+        (0..log.len())
+            .flat_map(|n| {
+                let chunk = log.chunk(n).unwrap();
+                let ticks: Vec<u64> = chunk.payloads(&SENSORS).map(|(tick, _)| tick).collect();
+                assert!(log.holds(n, &SENSORS) || ticks.is_empty());
+                ticks
+            })
+            .collect()
+    };
+    let ticks: Vec<u64> = sensors.iter().map(|s| s.header.tick).collect();
+    assert_eq!(of_chunks(&mut indexed), ticks);
+    assert_eq!(indexed.span().unwrap(), Some((ticks[0], ticks[ticks.len() - 1])));
+    // Each instant, in the order of time.
+    for record in &sensors {
+        let found = indexed.newest::<Sensors>(&SENSORS, record.header.tick, |_| true).unwrap();
+        assert_eq!(found.map(|s| s.header), Some(record.header));
     }
 }

@@ -88,11 +88,15 @@ fn left_over(walk: &PlannedWalk, t: f64, error: [f64; 2], landing: &Landing, sol
     })
 }
 
+fn swings(place: [f64; 2]) -> SwingFoot {
+    SwingFoot { place, loaded: 0.0 }
+}
+
 fn adapted(t: f64, error: [f64; 2]) -> (PlannedWalk, Sole, Option<Landing>) {
     let (walk, rules, sole) = walk();
     let foot = walk.plan.feet[LEFT].sample(t).position;
     let body = Divergence { w: W, error };
-    let landing = adapt(&rules, &walk, (0, t), &body, [foot[0], foot[1]], &sole);
+    let landing = adapt(&rules, &walk, (0, t), &body, &swings([foot[0], foot[1]]), &sole);
     (walk, sole, landing)
 }
 
@@ -145,6 +149,29 @@ fn a_foot_lands_where_the_body_falls() {
     assert_eq!(adapted(s.end - 0.5 * rules.rest, [0.3; 2]).2, None, "too late for another foothold");
 }
 
+/// While the swing foot still carries, a push ahead or back is answered, by a swing of the shortest time at least, and no farther than
+/// its speed allows; one that goes to a side as well is left to both soles.
+#[test]
+fn a_foot_that_carries_answers_pushes_along_the_way_only() {
+    let (walk, rules, sole) = walk();
+    let (t, loaded) = (walk.strides[0].lift - 0.1, 0.06);
+    let [x, y, ..] = walk.plan.feet[LEFT].sample(t).position;
+    let foot = SwingFoot { place: [x, y], loaded };
+    for ahead in [-0.3, -0.2, 0.2, 0.3] {
+        let answer = |side: f64| {
+            adapt(&rules, &walk, (0, t), &Divergence { w: W, error: [ahead, side] }, &foot, &sole)
+        };
+        let landing = answer(0.0).unwrap();
+        assert!(landing.rest >= loaded + rules.swing - 1e-9, "{ahead}: {landing:?}");
+        assert!(landing.pose.x.signum() == ahead.signum(), "{ahead}: {landing:?}");
+        assert!(
+            (landing.pose.x - x).abs() <= rules.speed * (landing.rest - loaded) + 1e-9,
+            "{ahead}: {landing:?}"
+        );
+        assert_eq!((answer(0.2), answer(-0.2)), (None, None));
+    }
+}
+
 /// A push over the stance foot that its outer edge can just stop: the body comes back late, and the swing waits for it. Walked
 /// with the planned time, the same pendulum is not back.
 #[test]
@@ -178,7 +205,7 @@ fn the_search_finds_the_best_landing() {
         let t = s.lift + share * (s.end - s.lift);
         let foot = walk.plan.feet[LEFT].sample(t).position;
         let body = Divergence { w: W, error };
-        let found = adapt(&rules, &walk, (0, t), &body, [foot[0], foot[1]], &sole).unwrap();
+        let found = adapt(&rules, &walk, (0, t), &body, &swings([foot[0], foot[1]]), &sole).unwrap();
         let cost = |landing: &Landing| {
             let off = left_over(&walk, t, error, landing, &sole);
             let moved = [landing.pose.x - s.landing.x, landing.pose.y - s.landing.y];

@@ -69,6 +69,11 @@ impl Running {
         Self { child, run_dir: site.run_dir(), out, err }
     }
 
+    /// Standard output so far.
+    pub fn out(&self) -> String {
+        fs::read_to_string(&self.out).unwrap_or_default()
+    }
+
     /// Standard error so far.
     pub fn err(&self) -> String {
         fs::read_to_string(&self.err).unwrap_or_default()
@@ -129,6 +134,11 @@ impl Running {
         signal(pid, Signal::CONT);
     }
 
+    /// Process id of the program itself.
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
     /// Process id of one process of the run.
     pub fn pid(&self, process: Process) -> u32 {
         let path = self.run_dir.join(format!("{}.lock", process.name()));
@@ -182,7 +192,8 @@ pub fn turn() -> File {
     file
 }
 
-fn signal(pid: u32, signal: Signal) {
+/// A signal to a process.
+pub fn signal(pid: u32, signal: Signal) {
     let pid = Pid::from_raw(pid as i32).expect("no process has id 0");
     // One that is gone has ended.
     let _ = kill_process(pid, signal);

@@ -1,6 +1,6 @@
 """Client of Gangwerk's broker: commands, answers, lease, parameters, events, state. Standard library only.
 
-    with Client.local("/dev/shm/gangwerk") as robot:
+    with Client.local() as robot:
         robot.command("walk/stand")
         robot.command("walk/velocity", forward=0.3)   # raises Refused with reason and limit
         time.sleep(5)
@@ -20,6 +20,7 @@ import hmac
 import math
 import os
 import socket
+import stat
 import struct
 import threading
 import time
@@ -53,6 +54,17 @@ class Refused(Exception):
 
 class Lost(ConnectionError):
     """The connection has ended."""
+
+
+def default_directory():
+    """Run directory of this user: `$XDG_RUNTIME_DIR/gangwerk` if that is private and the user's own, else in /dev/shm."""
+    session, user = os.environ.get("XDG_RUNTIME_DIR", ""), os.geteuid()
+    try:
+        about = os.stat(session)
+        own = os.path.isabs(session) and stat.S_ISDIR(about.st_mode) and about.st_uid == user and not about.st_mode & 0o077
+    except OSError:
+        own = False
+    return os.path.join(session, "gangwerk") if own else f"/dev/shm/gangwerk-{user}"
 
 
 class Client:
@@ -89,10 +101,10 @@ class Client:
         self._threads[1].start()
 
     @classmethod
-    def local(cls, run_directory, name="python", timeout=3.0):
-        """Connects to the robot of this run directory on this machine."""
+    def local(cls, run_directory=None, name="python", timeout=3.0):
+        """Connects to the robot of this run directory on this machine; without one, to that of `gangwerk run`."""
         stream = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        stream.connect(os.path.join(run_directory, "broker.sock"))
+        stream.connect(os.path.join(run_directory or default_directory(), "broker.sock"))
         return cls(stream, name, timeout=timeout)
 
     @classmethod

@@ -1,6 +1,6 @@
 //! Every number of a record with its name and unit: `joint_angle.right_knee_flexion`, rad.
 
-use messages::{Field, MAX_JOINTS, Visit};
+use crate::{Field, MAX_JOINTS, Visit};
 
 /// A number of a record.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +11,8 @@ pub struct Number {
     pub unit: &'static str,
     /// The number.
     pub value: FieldValue,
+    /// Place among all numbers of the record, those of joints that the robot does not have included: for [`pick`].
+    pub place: usize,
 }
 
 /// Name and unit of a number.
@@ -57,13 +59,55 @@ impl FieldValue {
 /// Every number of a record, in the order of declaration. Arrays of joints hold the robot's, by their names; without names all
 /// places of the array, by their numbers.
 pub fn numbers<T: Field>(record: &T, joints: &[String]) -> Vec<Number> {
-    let mut walk = FieldVisitor { joints, open: Vec::new(), about: "", found: Vec::new() };
+    let mut walk = FieldVisitor { joints, open: Vec::new(), about: "", found: Vec::new(), place: 0 };
     record.visit(&mut walk);
     walk.found
 }
 
+/// The numbers at these places of a record, ascending, behind those that `out` holds: without names, for every cycle.
+pub fn pick<T: Field>(record: &T, places: &[usize], out: &mut Vec<f64>) {
+    record.visit(&mut PlacePicker { places, place: 0, out });
+}
+
+struct PlacePicker<'a> {
+    /// Those still to come.
+    places: &'a [usize],
+    place: usize,
+    out: &'a mut Vec<f64>,
+}
+
+impl PlacePicker<'_> {
+    fn number(&mut self, value: f64) {
+        if let [first, rest @ ..] = self.places
+            && *first == self.place
+        {
+            self.places = rest;
+            self.out.push(value);
+        }
+        self.place += 1;
+    }
+}
+
+impl Visit for PlacePicker<'_> {
+    fn f64(&mut self, value: f64) {
+        self.number(value);
+    }
+    fn u64(&mut self, value: u64) {
+        self.number(value as f64);
+    }
+    fn u32(&mut self, value: u32) {
+        self.number(value.into());
+    }
+    fn i32(&mut self, value: i32) {
+        self.number(value.into());
+    }
+    fn u8(&mut self, value: u8) {
+        self.number(value.into());
+    }
+}
+
 /// The first number whose bits differ: its name, and its value in both.
-pub(crate) fn first_difference<T: Field>(a: &T, b: &T) -> Option<(String, String, String)> {
+pub fn first_difference<T: Field>(a: &T, b: &T) -> Option<(String, String, String)> {
     let (a, b) = (numbers(a, &[]), numbers(b, &[]));
     let differs = a.iter().zip(&b).find(|(a, b)| a.name != b.name || a.value.bits() != b.value.bits());
     differs.map(|(a, b)| (a.name.clone(), a.value.exact(), b.value.exact()))
@@ -82,14 +126,16 @@ struct FieldVisitor<'a> {
     open: Vec<OpenPart>,
     about: &'static str,
     found: Vec<Number>,
+    place: usize,
 }
 
 impl FieldVisitor<'_> {
     fn number(&mut self, value: FieldValue) {
         self.element(None);
         if let Some(name) = self.name() {
-            self.found.push(Number { name, unit: self.unit(), value });
+            self.found.push(Number { name, unit: self.unit(), value, place: self.place });
         }
+        self.place += 1;
     }
 
     /// The name of the number that is there now; none: it is of a joint that the robot does not have.
@@ -182,7 +228,7 @@ impl Visit for FieldVisitor<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use messages::{BusFrames, ControllerState, Frame, Sensors};
+    use crate::{BusFrames, ControllerState, Frame, Sensors};
 
     /// 32 places for 24 joints, without names and units.
     #[test]
@@ -201,6 +247,36 @@ mod tests {
         let state = numbers(&ControllerState::default(), &joints);
         assert_eq!((unit(&state, "origin[1]"), unit(&state, "origin[2]")), ("m", "rad"));
         assert_eq!((unit(&state, "feet[1][2]"), unit(&state, "feet[1][3]")), ("m", "rad"));
+    }
+
+    /// Every number by its place is the one that has its name, on a robot with fewer joints than a record has room for.
+    #[test]
+    fn picked_numbers_are_those_with_the_names() {
+        let joints: Vec<String> = ["hip", "knee"].map(String::from).to_vec();
+        let record = ControllerState {
+            tracking_error: std::array::from_fn(|j| j as f64),
+            com: [0.1, 0.2, 0.9],
+            limited: 7,
+            phase: [3, 8],
+            ..ControllerState::default()
+        };
+        let all = numbers(&record, &joints);
+        let places: Vec<usize> = all.iter().map(|n| n.place).collect();
+        let mut picked = Vec::new();
+        pick(&record, &places, &mut picked);
+        assert_eq!(picked.len(), all.len());
+        for (number, picked) in all.iter().zip(picked) {
+            let value = match number.value {
+                FieldValue::Real(x) => x,
+                FieldValue::Whole(n) => n as f64,
+            };
+            assert_eq!(value.to_bits(), picked.to_bits(), "{}", number.name);
+        }
+        let knee = all.iter().find(|n| n.name == "tracking_error.knee").unwrap().place;
+        let last = all.iter().find(|n| n.name == "limited").unwrap().place;
+        let mut two = vec![f64::NAN];
+        pick(&record, &[knee, last], &mut two);
+        assert_eq!(two[1..], [1.0, 7.0]);
     }
 
     #[test]

@@ -1,0 +1,36 @@
+//! The operator's desk: one page in a browser that sees, steers, tunes and plots a running robot (thesis 7.3); `docs/dashboard.md`.
+//!
+//! | module | what |
+//! |---|---|
+//! | [`daemon`] | the process: threads, address, token |
+//! | [`door`], [`socket`], [`admission`] | HTTP on the loopback interface, one WebSocket per page, who may come in |
+//! | [`observer`] | thread that reads the topics of the robot and gives every page its frames; waits for the next robot |
+//! | [`replay`] | the same out of a log in place of a robot |
+//! | [`description`], [`picture`], [`state`], [`belief`], [`plotting`], [`health`] | what a page is told: once, at 60 Hz, as samples, about processes |
+//! | [`guests`] | pages that are there, and what each of them has lost |
+//! | [`operator`] | one client of the broker per page that commands |
+//! | [`book`] | `docs/`, rendered, under `/book/` |
+//! | [`requests`] | what a page asks for |
+//!
+//! It observes: no topic has it as a writer, and no process knows of it or waits for it. What it commands goes through the
+//! broker under the command lease; only the emergency stop has a way of its own.
+
+pub mod admission;
+pub mod belief;
+pub mod book;
+pub mod daemon;
+pub mod description;
+pub mod door;
+pub mod guests;
+pub mod health;
+pub mod observer;
+pub mod operator;
+mod page;
+pub mod picture;
+pub mod plotting;
+pub mod replay;
+pub mod requests;
+pub mod socket;
+pub mod state;
+
+pub use daemon::{Options, serve, serve_recording};

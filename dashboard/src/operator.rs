@@ -1,0 +1,220 @@
+//! One client of the broker for each page that commands: orders out, answers back, and signs of life that only the page gives.
+//!
+//! A thread per page, started with its first order, because the client of the broker waits. When the page goes, so does the
+//! connection, and with it the command lease: the robot comes to a stand.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+use broker::StreamClient;
+use broker::stream_client::News;
+use realtime::clock::{SECOND, now};
+use serde_json::json;
+
+use crate::guests::Outbox;
+use crate::observer::Notice;
+use crate::requests::Order;
+
+/// Between two looks for an answer that is awaited, and for news otherwise.
+const AWAIT: Duration = Duration::from_millis(2);
+const LOOK: Duration = Duration::from_millis(200);
+/// Time that the broker has for an answer \[ns\]; a process that decides has less.
+const PATIENCE: u64 = 3 * SECOND;
+/// Silence after which a connection gets a sign of life that keeps it open, long after its lease is over \[ns\].
+const SILENCE: u64 = 20 * SECOND;
+
+/// Name under which a page commands.
+fn name(page: u64) -> String {
+    format!("dashboard page {page}")
+}
+
+/// True if the holder of the lease, as the broker names it, is this page of this server.
+pub fn is_page(holder: &str, page: u64) -> bool {
+    let pid = std::process::id();
+    holder.contains(&format!("{} ", name(page))) && holder.contains(&format!("pid {pid})"))
+}
+
+/// The answer to an order, for its page.
+pub fn answer(outbox: &Outbox, id: u64, result: &Result<String, String>) {
+    let (accepted, text) = match result {
+        Ok(text) => (true, text),
+        Err(text) => (false, text),
+    };
+    outbox.text(json!({"type": "answer", "id": id, "accepted": accepted, "text": text}).to_string());
+}
+
+/// The way to a page's operator. Dropping it ends its connection.
+#[derive(Debug)]
+pub struct Operator {
+    orders: Sender<Order>,
+}
+
+impl Operator {
+    /// Starts the operator of a page of the robot in `dir`; answers go to `outbox`.
+    ///
+    /// # Errors
+    /// The thread cannot be started.
+    pub fn start(dir: &Path, page: u64, outbox: Outbox) -> Result<Self, String> {
+        let (orders, heard) = channel();
+        let desk = Desk { dir: dir.into(), page, outbox, client: None, awaited: BTreeMap::new(), last: 0 };
+        let spawned =
+            std::thread::Builder::new().name(format!("page {page}")).spawn(move || desk.run(&heard));
+        spawned.map_err(|e| format!("a thread for the page: {e}"))?;
+        Ok(Self { orders })
+    }
+
+    /// Gives an order; it is answered.
+    pub fn give(&self, order: Order) {
+        // The thread ends only after this.
+        let _ = self.orders.send(order);
+    }
+}
+
+/// The thread's state.
+struct Desk {
+    dir: PathBuf,
+    page: u64,
+    outbox: Outbox,
+    client: Option<StreamClient>,
+    /// Number of a frame to the broker, number of the order, and when it is given up \[ns\].
+    awaited: BTreeMap<u64, (u64, u64)>,
+    /// Time of the last frame to the broker \[ns\].
+    last: u64,
+}
+
+impl Desk {
+    fn run(mut self, orders: &Receiver<Order>) {
+        loop {
+            let wait = if self.awaited.is_empty() { LOOK } else { AWAIT };
+            match orders.recv_timeout(wait) {
+                Ok(order) => {
+                    self.carry_out(order);
+                    while let Ok(order) = orders.try_recv() {
+                        self.carry_out(order);
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            if let Err(why) = self.listen() {
+                self.lose(&why);
+            }
+        }
+    }
+
+    /// Sends an order to the broker, over a new connection if there is none.
+    fn carry_out(&mut self, order: Order) {
+        let Some(id) = order.id() else { return self.live() };
+        if let Order::Command(_, Err(why)) = &order {
+            return answer(&self.outbox, id, &Err(why.clone()));
+        }
+        // The first order of a page makes it a client of the broker.
+        let client = match &mut self.client {
+            Some(client) => client,
+            None => match StreamClient::connect(&self.dir, &name(self.page)) {
+                Ok(client) => self.client.insert(client),
+                Err(why) => return answer(&self.outbox, id, &Err(why)),
+            },
+        };
+        let sent = match order {
+            Order::Command(_, Ok(command)) => client.send(&command),
+            Order::Set(_, name, value) => client.set(&name, value),
+            Order::TakeLease(_, over) => client.ask_lease(over),
+            _ => client.give_lease(),
+        };
+        self.last = now();
+        match sent {
+            Ok(sequence) => _ = self.awaited.insert(sequence, (id, self.last + PATIENCE)),
+            Err(why) => {
+                answer(&self.outbox, id, &Err(why.clone()));
+                self.lose(&why);
+            }
+        }
+    }
+
+    /// The page lives; one that only lives needs no connection.
+    fn live(&mut self) {
+        if let Some(client) = &mut self.client {
+            self.last = now();
+            if let Err(why) = client.ping() {
+                self.lose(&why);
+            }
+        }
+    }
+
+    /// Passes answers on.
+    fn listen(&mut self) -> Result<(), String> {
+        let Some(client) = &mut self.client else { return Ok(()) };
+        // A millisecond, in which this client says nothing by itself: the page's life is not ours to claim.
+        while let Some(news) = client.news(Duration::from_millis(1))? {
+            let News::Answer(reply) = news else { continue };
+            if reply.sequence == 0 {
+                return Err(reply.text);
+            }
+            if let Some((id, _)) = self.awaited.remove(&reply.sequence) {
+                answer(&self.outbox, id, &reply.accepted());
+            }
+        }
+        let now = now();
+        if now > self.last + SILENCE {
+            self.last = now;
+            client.ping()?;
+        }
+        if self.awaited.values().any(|(_, until)| now > *until) {
+            return Err("the broker does not answer; it may have to be started again".into());
+        }
+        Ok(())
+    }
+
+    /// The connection is over: whatever waits for an answer has this one.
+    fn lose(&mut self, why: &str) {
+        self.client = None;
+        for (id, _) in std::mem::take(&mut self.awaited).into_values() {
+            answer(&self.outbox, id, &Err(why.to_owned()));
+        }
+    }
+}
+
+/// Looks who holds the command lease and whether the broker is there, until the observer is gone.
+pub fn watch_lease(dir: &Path, observer: &Sender<Notice>) {
+    let mut told = None;
+    loop {
+        let lost = match watch_one_broker(dir, observer, &mut told) {
+            Ok(()) => return,
+            Err(why) => why,
+        };
+        if told.as_ref() != Some(&lost) {
+            let known = observer.send(Notice::Broker(Err(lost.clone())));
+            let known = known.and_then(|()| observer.send(Notice::Lease(String::new())));
+            if known.is_err() {
+                return;
+            }
+            told = Some(lost);
+        }
+        std::thread::park_timeout(LOOK);
+    }
+}
+
+/// The same for as long as one broker lives; `Ok`: the observer is gone.
+fn watch_one_broker(dir: &Path, observer: &Sender<Notice>, told: &mut Option<String>) -> Result<(), String> {
+    let mut client = StreamClient::connect(dir, "dashboard")?;
+    client.watch(0, false)?;
+    *told = None;
+    let mut next_ping = now() + SILENCE;
+    if observer.send(Notice::Broker(Ok(()))).is_err() {
+        return Ok(());
+    }
+    loop {
+        if let Some(News::Lease(_, holder)) = client.news(Duration::from_millis(100))?
+            && observer.send(Notice::Lease(holder)).is_err()
+        {
+            return Ok(());
+        }
+        if now() > next_ping {
+            next_ping = now() + SILENCE;
+            client.ping()?;
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! One WebSocket: what the page asks for goes to observer, operator and emergency stop; what they have for it goes out.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::mpsc::Sender;
+use std::time::Duration;
+
+use axum::extract::ws::{CloseCode, CloseFrame, Message, WebSocket, close_code};
+use futures_util::stream::{SplitSink, SplitStream};
+use futures_util::{SinkExt, StreamExt};
+use realtime::clock::{SECOND, now};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc};
+use tokio::time::timeout;
+
+use crate::guests::Outbox;
+use crate::observer::Notice;
+use crate::operator::{Operator, answer};
+use crate::requests::{Order, PageRequest};
+
+/// Sockets at once.
+pub const MOST_SOCKETS: usize = 64;
+/// Of them, those that command: the broker keeps places for others, too.
+const MOST_OPERATORS: usize = 32;
+/// Messages of a page per second, and at once.
+const MOST_MESSAGES: u64 = 200;
+/// Time in which a page must take a message.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Answer to everything that would move a robot.
+pub const RECORDING: &str = "this is a recording: there is no robot to command";
+
+/// Hall: what all sockets share.
+#[derive(Debug)]
+pub struct Hall {
+    /// Run directory; none: what is shown is a recording, and nothing can be commanded.
+    pub dir: Option<PathBuf>,
+    /// Way to the observer.
+    pub observer: Sender<Notice>,
+    /// Way to the emergency stop.
+    pub stops: Sender<(u64, Outbox)>,
+    /// Places for sockets.
+    pub places: Arc<Semaphore>,
+    /// Places for those that command.
+    desks: Arc<Semaphore>,
+    /// Number of the last page.
+    pages: AtomicU64,
+}
+
+impl Hall {
+    /// Of a server to which no page has come yet.
+    pub fn new(dir: Option<PathBuf>, observer: Sender<Notice>, stops: Sender<(u64, Outbox)>) -> Self {
+        let places = Arc::new(Semaphore::new(MOST_SOCKETS));
+        let desks = Arc::new(Semaphore::new(MOST_OPERATORS));
+        Self { dir, observer, stops, places, desks, pages: AtomicU64::new(0) }
+    }
+}
+
+/// Serves a page until one of both ends goes. Its place is free again then.
+pub async fn serve(socket: WebSocket, hall: Arc<Hall>, _place: OwnedSemaphorePermit) {
+    let number = hall.pages.fetch_add(1, Relaxed) + 1;
+    let (outbox, fed) = Outbox::new();
+    if hall.observer.send(Notice::Arrived(number, outbox.clone())).is_err() {
+        return;
+    }
+    let (sink, stream) = socket.split();
+    let mut page = Page { number, outbox: outbox.clone(), operator: None, hall: hall.clone() };
+    let mut feeding = std::pin::pin!(feed(sink, fed));
+    // Both ways at once: a page that does not read its frames can still stop the robot.
+    let why = tokio::select! {
+        why = page.listen(stream) => why,
+        () = &mut feeding => None,
+        () = outbox.ended() => None,
+    };
+    // With the operator goes the command lease.
+    drop(page);
+    let _ = hall.observer.send(Notice::Left(number));
+    if let Some((code, why)) = why
+        && outbox.close(CloseFrame { code, reason: why.into() })
+    {
+        let _ = timeout(PATIENCE, feeding).await;
+    }
+}
+
+/// Sends what is in the queue, until the page is gone or does not take a message.
+async fn feed(mut sink: SplitSink<WebSocket, Message>, mut fed: mpsc::Receiver<Message>) {
+    while let Some(message) = fed.recv().await {
+        let last = matches!(message, Message::Close(_));
+        if !matches!(timeout(PATIENCE, sink.send(message)).await, Ok(Ok(()))) || last {
+            return;
+        }
+    }
+}
+
+/// Reason for closing a connection.
+type Closing = Option<(CloseCode, String)>;
+
+struct Page {
+    number: u64,
+    outbox: Outbox,
+    operator: Option<(Operator, OwnedSemaphorePermit)>,
+    hall: Arc<Hall>,
+}
+
+impl Page {
+    /// Takes the page's messages until it goes, or is to go for a reason.
+    async fn listen(&mut self, mut stream: SplitStream<WebSocket>) -> Closing {
+        // As many messages as there are seconds in it, up to one second's.
+        let (mut budget, mut last) = (SECOND, now());
+        loop {
+            let text = match stream.next().await? {
+                Ok(Message::Text(text)) => text,
+                Ok(Message::Binary(_)) => return Some((close_code::POLICY, "a frame is no text".into())),
+                Ok(Message::Ping(_) | Message::Pong(_)) => "".into(),
+                Ok(Message::Close(_)) => return None,
+                Err(e) if e.to_string().contains("too long") => {
+                    return Some((close_code::SIZE, "a frame is too long".into()));
+                }
+                Err(_) => return None,
+            };
+            let now = now();
+            budget = (budget + (now - last)).min(SECOND);
+            last = now;
+            match budget.checked_sub(SECOND / MOST_MESSAGES) {
+                Some(left) => budget = left,
+                None => return Some((close_code::POLICY, "too many messages".into())),
+            }
+            if text.is_empty() {
+                continue;
+            }
+            match PageRequest::parse(&text) {
+                Ok(request) => self.take(request)?,
+                Err(why) => return Some((close_code::POLICY, shortened(why))),
+            }
+        }
+    }
+
+    /// Passes a message on; none: the server ends.
+    fn take(&mut self, request: PageRequest) -> Option<()> {
+        match request {
+            PageRequest::Plot(fields, rate) => {
+                self.hall.observer.send(Notice::Plot(self.number, fields, rate)).ok()
+            }
+            PageRequest::Recording(what) => {
+                self.hall.observer.send(Notice::Recording(self.number, what)).ok()
+            }
+            PageRequest::EmergencyStop(id) if self.hall.dir.is_none() => {
+                answer(&self.outbox, id, &Err(RECORDING.into()));
+                Some(())
+            }
+            PageRequest::EmergencyStop(id) => self.hall.stops.send((id, self.outbox.clone())).ok(),
+            PageRequest::Order(order) => {
+                self.order(order);
+                Some(())
+            }
+        }
+    }
+
+    /// Gives an order to the operator, who comes with the first one.
+    fn order(&mut self, order: Order) {
+        // A page that only lives needs no operator.
+        let Some(id) = order.id().or(self.operator.is_some().then_some(0)) else { return };
+        let Some(dir) = &self.hall.dir else {
+            return answer(&self.outbox, id, &Err(RECORDING.into()));
+        };
+        if self.operator.is_none() {
+            let desk = self.hall.desks.clone().try_acquire_owned();
+            let desk = desk.map_err(|_| {
+                format!("{MOST_OPERATORS} pages command already; close one that does not need to")
+            });
+            let operator =
+                desk.and_then(|desk| Ok((Operator::start(dir, self.number, self.outbox.clone())?, desk)));
+            match operator {
+                Ok(operator) => self.operator = Some(operator),
+                Err(why) => return answer(&self.outbox, id, &Err(why)),
+            }
+        }
+        if let Some((operator, _)) = &self.operator {
+            operator.give(order);
+        }
+    }
+}
+
+/// A reason as long as a close frame holds.
+fn shortened(mut text: String) -> String {
+    const LONGEST: usize = 120;
+    if text.len() > LONGEST {
+        text.truncate((0..=LONGEST).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0));
+    }
+    text
+}
