@@ -1,7 +1,11 @@
 //! Place of a space: run directory, prefix in /dev/shm, and the iceoryx2 configuration made from them.
 
 use crate::error::{IpcError, because};
+use crate::run_dir::{NAMES, RunDir};
 use iceoryx2::prelude::*;
+use rustix::fs::OFlags;
+use rustix::rand::{GetRandomFlags, getrandom};
+use std::io::{Read, Write};
 use std::os::unix::fs::DirBuilderExt;
 use std::path::{Path as StdPath, PathBuf};
 
@@ -12,6 +16,9 @@ const SHM: &str = "/dev/shm";
 #[derive(Clone, Debug)]
 pub(crate) struct RunPlace {
     pub(crate) dir: PathBuf,
+    /// First part of all names in shared memory, of whatever run in this directory.
+    base: String,
+    /// First part of the names of one run, after [`RunPlace::begin`] or [`RunPlace::join`].
     pub(crate) prefix: String,
 }
 
@@ -27,18 +34,43 @@ pub(crate) fn resolved(dir: &StdPath) -> PathBuf {
 }
 
 impl RunPlace {
-    /// `dir` must exist. The prefix is a hash of its full path, so that a new supervisor finds what the last one left.
+    /// `dir` must exist. The base is a hash of its full path, so that a new supervisor finds what the last one left.
     pub(crate) fn of(dir: &StdPath) -> Result<Self, IpcError> {
         let dir = dir
             .canonicalize()
             .map_err(|e| IpcError::Other(format!("run directory {}: {e}", dir.display())))?;
-        // 48 bits: root, prefix, a 39-digit number and a suffix must fit into the 107 bytes of a socket's path.
-        Ok(Self { prefix: format!("gangwerk_{:012x}_", key(&dir)), dir })
+        // 48 bits, and 24 for the run: root, prefix, a 39-digit number and ".event" must fit into the 107 bytes of a socket's path.
+        let base = format!("gangwerk_{:012x}_", key(&dir));
+        Ok(Self { prefix: base.clone(), base, dir })
+    }
+
+    /// Names of a new run, drawn and left for the other processes. Only under the supervisor's lock.
+    ///
+    /// Each run has its own, because an observer that lets go of a run long after its end removes files by their names.
+    pub(crate) fn begin(&mut self) -> Result<(), IpcError> {
+        let mut drawn = [0; 4];
+        getrandom(&mut drawn[1..], GetRandomFlags::empty()).map_err(|e| because("random numbers", e))?;
+        let run = format!("{:06x}", u32::from_be_bytes(drawn));
+        let (dir, unfinished) = (RunDir::open(&self.dir)?, format!("{NAMES}.new"));
+        let written = dir.new_file(&unfinished)?.write_all(run.as_bytes());
+        written.map_err(|e| because(self.dir.join(NAMES).display(), e))?;
+        dir.rename(&unfinished, NAMES)?;
+        self.prefix = format!("{}{run}_", self.base);
+        Ok(())
+    }
+
+    /// Names of the run that is there.
+    pub(crate) fn join(&mut self) -> Result<(), IpcError> {
+        let mut run = String::new();
+        let read = RunDir::open(&self.dir)?.file(NAMES, OFlags::RDONLY)?.take(6).read_to_string(&mut run);
+        read.map_err(|e| because(self.dir.join(NAMES).display(), e))?;
+        self.prefix = format!("{}{run}_", self.base);
+        Ok(())
     }
 
     /// Root of iceoryx2's own files: on the tmpfs, because it syncs each of them, and short, because some are sockets.
     pub(crate) fn root(&self) -> PathBuf {
-        StdPath::new(SHM).join(self.prefix.trim_end_matches('_'))
+        StdPath::new(SHM).join(self.base.trim_end_matches('_'))
     }
 
     /// The black box of a process.
@@ -66,7 +98,7 @@ impl RunPlace {
         Ok(config)
     }
 
-    /// Removes what a former run of this very space left behind. Only under the supervisor's lock.
+    /// Removes what former runs in this directory left behind. Only under the supervisor's lock.
     pub(crate) fn wipe(&self) -> Result<(), IpcError> {
         let root = self.root();
         if root.exists() {
@@ -74,7 +106,7 @@ impl RunPlace {
                 .map_err(|e| IpcError::Other(format!("{}: {e}", root.display())))?;
         }
         for entry in std::fs::read_dir(SHM).map_err(|e| IpcError::Other(format!("{SHM}: {e}")))?.flatten() {
-            if entry.file_name().as_encoded_bytes().starts_with(self.prefix.as_bytes()) {
+            if entry.file_name().as_encoded_bytes().starts_with(self.base.as_bytes()) {
                 let path = entry.path();
                 std::fs::remove_file(&path)
                     .map_err(|e| IpcError::Other(format!("{}: {e}", path.display())))?;

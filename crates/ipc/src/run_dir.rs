@@ -13,7 +13,9 @@ use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
 /// What a run puts there, besides a `.lock` of each process.
-const FILES: [&str; 3] = ["run", "run.new", "broker.sock"];
+const FILES: [&str; 5] = ["run", "run.new", NAMES, "names.new", "broker.sock"];
+/// What the names of a run's shared memory have in common.
+pub(crate) const NAMES: &str = "names";
 /// The configuration of the run: read once by the supervisor, and by nobody from anywhere else.
 pub const CONFIG: &str = "config";
 

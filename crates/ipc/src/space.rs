@@ -78,7 +78,7 @@ impl Space {
 
     fn create_topics(dir: &StdPath, topics: &[Topic]) -> Result<Self, IpcError> {
         RunDir::make(dir)?;
-        let place = RunPlace::of(dir)?;
+        let mut place = RunPlace::of(dir)?;
         // A run that is ending removes the directory under our feet: then it is made once more.
         let lock = Lock::take(&place.dir, SUPERVISOR).or_else(|e| {
             if place.dir.exists() {
@@ -99,6 +99,7 @@ impl Space {
         if free < needed {
             return Err(IpcError::NoRoom { needed, free });
         }
+        place.begin()?;
         place.make_root()?;
         let node = node::<RealTime>(&place, SUPERVISOR)?;
         let mut made = Vec::new();
@@ -115,7 +116,7 @@ impl Space {
     /// For a process: enters the space in `dir`. Each process but the observer may enter once at a time.
     pub fn open(dir: &StdPath, process: Process) -> Result<Self, IpcError> {
         let _private = RunDir::open(dir)?;
-        let place = RunPlace::of(dir)?;
+        let mut place = RunPlace::of(dir)?;
         if Lock::owner(&place.dir, SUPERVISOR).is_none() {
             let dir = place.dir.display();
             return Err(IpcError::Other(format!("no run in {dir}: start one with `gangwerk run SCENE`")));
@@ -124,6 +125,7 @@ impl Space {
             Process::Observer => None,
             _ => Some(Lock::take(&place.dir, process.name())?),
         };
+        place.join()?;
         let node = node::<RealTime>(&place, process.name())?;
         if process == Process::Observer {
             // Observers end by Ctrl-C, without a farewell, and a topic bears only so many: each clears up after the last ones.

@@ -4,7 +4,7 @@ mod place;
 
 use ipc::{IpcError, Space};
 use messages::topics::SENSORS;
-use messages::{Process, Sensors};
+use messages::{Header, Process, Sensors};
 use place::RunDir;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -113,6 +113,29 @@ fn what_killed_ones_left_is_cleared_away() {
     assert!(mine.reader::<Sensors>(&SENSORS).unwrap().latest().is_none());
     let reader = Space::open(other.path(), Process::Observer).unwrap();
     assert!(reader.reader::<Sensors>(&SENSORS).is_ok());
+}
+
+/// A page that is open when a run ends holds its memory for a while, and removes files by their names when it lets go.
+#[test]
+fn an_observer_that_lets_go_late_takes_nothing_from_the_next_run() {
+    let dir = RunDir::new("late");
+    let first = Space::create(dir.path()).unwrap();
+    let late = Space::open(dir.path(), Process::Observer).unwrap();
+    let reader = late.reader::<Sensors>(&SENSORS).unwrap();
+    let (waiter, queue) = (late.waiter(Process::Observer).unwrap(), late.queue_receiver("commands").unwrap());
+    drop(first);
+    let second = Space::create(dir.path()).unwrap();
+    drop((reader, waiter, queue, late));
+    // Everything of the second run is there and works.
+    let lowlevel = Space::open(dir.path(), Process::Lowlevel).unwrap();
+    let mut writer = lowlevel.writer::<Sensors>(&SENSORS).unwrap();
+    let bell = lowlevel.bell(&SENSORS).unwrap();
+    writer.write(&Sensors { header: Header { tick: 3, ..Header::default() }, ..Sensors::default() });
+    bell.ring();
+    let observer = Space::open(dir.path(), Process::Observer).unwrap();
+    let found = observer.reader::<Sensors>(&SENSORS).unwrap().latest();
+    assert_eq!(found.map(|sensors| sensors.header.tick), Some(3));
+    drop(second);
 }
 
 #[test]
