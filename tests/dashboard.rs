@@ -11,15 +11,15 @@ mod page;
 mod replay;
 
 use harness::{Running, Signal, Site, WALK, doze, turn};
+use measured::number_of;
 use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, SENSORS};
 use messages::{ControllerState, GaitState, JointTargets, Sensors};
 use page::{Page, PageFrame, Received, Server};
 use realtime::clock;
-use recording::Log;
+use recording::{Log, payload_hashes};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::net::TcpStream;
-use std::path::Path;
 
 const EXE: &str = harness::executable!();
 /// Lola stands up and waits for what she is told.
@@ -328,42 +328,74 @@ fn who_does_not_read_is_left_and_others_go_on() {
     server.page().text("hello");
 }
 
+/// Ten pages come, plot, command what they may not, read and go, and their server is killed or stands still, all at random
+/// instants, for 8 s or `GANGWERK_SOAK_SECONDS`.
 #[test]
-fn a_killed_server_with_ten_pages_changes_no_bit_of_the_walk() {
+fn pages_and_servers_that_die_change_no_bit_of_the_walk() {
     let _turn = turn();
-    let targets =
-        |path: &Path| -> Vec<JointTargets> { Log::open(path).unwrap().records(&JOINT_TARGETS).unwrap() };
+    let seconds = number_of("GANGWERK_SOAK_SECONDS").unwrap_or(8) as u64;
+    let walk = |site: &Site, more: &[&str]| {
+        site.scene("walk", seconds as f64 + 4.0, WALK);
+        site.run("walk", &[&["--lockstep"], more].concat())
+    };
+    let targets = |site: &Site| {
+        payload_hashes(&site.path("walk.mcap"), |name| name == "/gangwerk/joint_targets").unwrap()
+    };
     let alone = Site::patient(EXE);
-    alone.scene("walk", 5.0, WALK);
-    alone.run("walk", &["--lockstep"]).end().well();
-    let expected = targets(&alone.path("walk.mcap"));
+    walk(&alone, &[]).end().well();
     let site = Site::patient(EXE);
-    site.scene("walk", 5.0, WALK);
-    let server = Server::start(&site);
-    let run = site.run("walk", &["--lockstep", "--paced"]);
-    let mut pages: Vec<Page> = (0..10).map(|_| server.page()).collect();
-    for page in &mut pages {
-        let hello = page.text("hello");
-        let names: Vec<&Value> =
-            hello["fields"].as_array().unwrap().iter().map(|f| &f["name"]).step_by(9).take(60).collect();
-        page.send(&json!({"type": "plot", "fields": names, "rate": 500}));
+    let mut server = Server::start(&site);
+    let mut run = walk(&site, &["--paced"]);
+    // A visit: hello, if a robot runs, sixty fields to plot, and a command that is refused.
+    let visit = |server: &Server| {
+        let (mut page, begun) = (server.page(), clock::now());
+        while page.hello.is_null() && clock::now() - begun < 5 * clock::SECOND {
+            page.receive();
+        }
+        let fields = page.hello["fields"].as_array().into_iter().flatten().map(|field| &field["name"]);
+        let names: Vec<&Value> = fields.step_by(9).take(60).collect();
+        if !names.is_empty() {
+            page.send(&json!({"type": "plot", "fields": names, "rate": 500}));
+        }
+        let faster = json!({"type": "command", "name": "walk/velocity", "values": {"forward": 7}});
+        assert!(!page.order(faster).0);
+        page
+    };
+    let mut pages: Vec<Page> = (0..10).map(|_| visit(&server)).collect();
+    let mut state = 20_261_127u64;
+    let mut draw = |below: u64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % below
+    };
+    let (mut killed, mut stopped, mut left, begun) = (0, 0, 0, clock::now());
+    while clock::now() - begun < seconds * clock::SECOND {
+        match draw(12) {
+            0 => {
+                server.running.signal_supervisor(Signal::KILL);
+                doze(1e-3 * draw(500) as f64);
+                server = Server::start(&site);
+                pages = (0..10).map(|_| visit(&server)).collect();
+                killed += 1;
+            }
+            1 => {
+                server.running.signal_supervisor(Signal::STOP);
+                doze(1e-3 * draw(1000) as f64);
+                server.running.signal_supervisor(Signal::CONT);
+                stopped += 1;
+            }
+            2..=5 => {
+                pages[draw(10) as usize] = visit(&server);
+                left += 1;
+            }
+            // Between them some read, and the others do not.
+            _ => _ = (0..draw(20)).map(|_| pages[draw(10) as usize].receive()).count(),
+        }
     }
-    // One of them tries what it may not: the scene's commands go on, and no command of a page comes in.
-    let refused = json!({"type": "command", "name": "walk/velocity", "values": {"forward": 7}});
-    assert!(!pages[0].order(refused).0);
-    let time = pages[9].until_entry("time", |time| time[0] > 2.5)[0];
-    server.running.signal_supervisor(Signal::KILL);
-    assert!(time < 4.5, "it is killed while she walks");
-    assert_eq!(run.end().code, Some(0));
-    let seen = targets(&site.path("walk.mcap"));
-    assert_eq!(seen.len(), expected.len());
-    for (a, b) in expected.iter().zip(&seen) {
-        let bits =
-            |t: &JointTargets| (t.header.tick, t.mode, t.angle.map(f64::to_bits), t.speed.map(f64::to_bits));
-        assert_eq!(bits(a), bits(b), "tick {}", a.header.tick);
-    }
-    // The next server is there at once, in the same place.
-    Server::start(&site).page().text("link");
+    assert!(run.is_alive() && killed + stopped + left > 0);
+    run.end().well();
+    println!("{seconds} s: a server killed {killed} times and stopped {stopped} times, {left} pages left");
+    assert_eq!(targets(&alone), targets(&site));
+    assert_eq!(targets(&alone).len(), 1);
 }
 
 #[test]

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 /// Emergency stops, unless more are asked for.
 const TRIALS: usize = 5;
 
-fn number_of(variable: &str) -> Option<usize> {
+pub(crate) fn number_of(variable: &str) -> Option<usize> {
     std::env::var(variable).ok()?.parse().ok()
 }
 

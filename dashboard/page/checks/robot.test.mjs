@@ -106,22 +106,26 @@ test("from no power to walking, a push, and the emergency stop", { skip, timeout
   await next("Stand");
   await page.locator('.steps button[aria-current=step]:text-is("Walk")').waitFor({ timeout: 60000 });
   await passed(page, 3);
-  // Walking at the slider's speed, and faster when it is moved.
+  // Walking at the slider's speed, and faster when it is moved. A machine too busy for a pulse within 0.5 s loses the lease,
+  // she stands and the slider goes back to zero, as they shall: then once more.
   const slider = page.getByRole("slider", { name: "Forward" });
-  await slider.focus();
-  for (let i = 0; i < 20; i++) await page.keyboard.press("ArrowRight");
-  await page.getByText(/✓ accepted .* walk\/velocity/).waitFor();
-  await until(page, "gait", 3);
-  const mean = async () => {
-    const from = [await value(page, "time"), await value(page, "torso_truth")];
-    await passed(page, 4.8);
-    return ((await value(page, "torso_truth")) - from[1]) / ((await value(page, "time")) - from[0]);
+  const shown = async () => Number(await slider.inputValue());
+  const mean = async (speed) => {
+    for (let k = 0; k < 3; k++) {
+      await slider.focus();
+      for (let key = 0; key < 100 && (await shown()) < speed - 0.005; key++) await page.keyboard.press("ArrowRight");
+      await page.getByText(/✓ accepted .* walk\/velocity/).waitFor();
+      await until(page, "gait", 3);
+      await passed(page, 3);
+      const from = [await value(page, "time"), await value(page, "torso_truth")];
+      await passed(page, 4.8);
+      const walked = ((await value(page, "torso_truth")) - from[1]) / ((await value(page, "time")) - from[0]);
+      if ((await shown()) > speed - 0.005) return walked;
+      t.diagnostic(`lease lost at ${speed} m/s`);
+    }
+    return assert.fail(`lease lost three times at ${speed} m/s`);
   };
-  await passed(page, 2.5);
-  const slow = await mean();
-  for (let i = 0; i < 20; i++) await page.keyboard.press("ArrowRight");
-  await passed(page, 3);
-  const fast = await mean();
+  const [slow, fast] = [await mean(0.2), await mean(0.4)];
   t.diagnostic(`walks at ${slow.toFixed(3)} m/s with the slider at 0.20, ${fast.toFixed(3)} at 0.40`);
   assert.ok(Math.abs(slow - 0.2) < 0.05 && Math.abs(fast - 0.4) < 0.06, `${slow} ${fast} m/s`);
   // Joint angles of the scene graph are those of the newest state.
