@@ -133,7 +133,8 @@ fn an_observer_that_lets_go_late_takes_nothing_from_the_next_run() {
     writer.write(&Sensors { header: Header { tick: 3, ..Header::default() }, ..Sensors::default() });
     bell.ring();
     let observer = Space::open(dir.path(), Process::Observer).unwrap();
-    let found = observer.reader::<Sensors>(&SENSORS).unwrap().latest();
+    let mut reader = observer.reader::<Sensors>(&SENSORS).unwrap();
+    let found = reader.latest();
     assert_eq!(found.map(|sensors| sensors.header.tick), Some(3));
     drop(second);
 }
