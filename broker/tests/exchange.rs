@@ -10,8 +10,7 @@ use broker::message::{HEAD, MAX_BYTES, Message, domain_mask, service, service_me
 use harness::{System, pause, play_role};
 use ipc::{QueueReceiver, QueueSender, Space};
 use messages::command::{Domain, Priority, VelocityCommand};
-use messages::command_answer::Reason;
-use messages::{Command, Stamp};
+use messages::{Command, Reason, Stamp};
 use proptest::prelude::*;
 use realtime::clock::now;
 
