@@ -375,9 +375,11 @@ export class Mock {
   #slow() {
     if (!this.robot) return;
     const times = (p50) => ({ p50, p99: p50 * 3, p999: p50 * 6, max: p50 * 15 });
+    // A thousand cycles about the median, fewer around it, one that was late.
+    const octaves = (us) => Array.from({ length: 20 }, (_, i) => (i === 15 ? 1 : Math.floor(1000 / 10 ** Math.abs(i - Math.ceil(Math.log2(us / 1.024))))));
     const list = [["watchdog", 4], ["sim-backend", 120], ["lowlevel", 30], ["planner", 15], ["controller", 70]].map(([name, us]) => (
-      { name, state: "running", degraded: false, cycles: this.#tick(), overruns: 0, skipped: 0, lateness_us: times(6), execution_us: times(us) }));
-    list.push({ name: "broker", state: "running", degraded: false, cycles: null, overruns: null, skipped: null, lateness_us: null, execution_us: null });
+      { name, state: "running", degraded: false, cycles: this.#tick(), overruns: 0, skipped: 0, lateness_us: times(6), execution_us: times(us), lateness_octaves: octaves(6), execution_octaves: octaves(us) }));
+    list.push({ name: "broker", state: "running", degraded: false, cycles: null, overruns: null, skipped: null, lateness_us: null, execution_us: null, lateness_octaves: null, execution_octaves: null });
     for (const socket of this.#sockets) this.#send(socket, { type: "processes", real_time_factor: 1, estimated_error: null, model: "type 2, semi_implicit", list });
   }
 }
