@@ -69,6 +69,7 @@ export class Mock {
   robot = true;
   /** State of the run as a server of --start tells it; null: it starts none. */
   run = null;
+  #next = 0;
   joystick = joystick();
   push = [0, 0, 0, 0];
 
@@ -129,6 +130,7 @@ export class Mock {
 
   /** Starts runs from now on, of which there is this one. */
   setRun(state, scene = "", why = "") {
+    clearTimeout(this.#next);
     this.run = { type: "run", state, scene, why };
     for (const socket of this.#sockets) this.#send(socket, this.run);
   }
@@ -256,7 +258,7 @@ export class Mock {
       case "end":
         if (this.run?.state !== "running") return answer(false, "no run was started here");
         this.setRun("stopping", this.run.scene);
-        setTimeout(() => { this.setRobot(false); this.setRun("none"); }, START_MS);
+        this.#next = setTimeout(() => { this.setRobot(false); this.setRun("none"); }, START_MS);
         answer(true, `${this.run.scene} is ending: its robot comes to a stand first`);
         break;
     }
@@ -268,7 +270,7 @@ export class Mock {
     if (!SCENES.some(({ name }) => name === scene)) return answer(false, `there is no scene ${scene}`);
     if (this.run.state !== "none") return answer(false, `${this.run.scene} runs already; end it first`);
     this.setRun("starting", scene);
-    setTimeout(() => {
+    this.#next = setTimeout(() => {
       if (depth === 5) return this.setRun("none", "", `${scene} ended (exit status: 1)\nerror: robot lola has no [contact.pads]`);
       this.setRobot(true);
       this.setRun("running", scene);

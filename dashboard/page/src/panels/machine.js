@@ -29,7 +29,7 @@ export class Machine {
     this.element = h("div", { class: "stack" },
       h("section", { class: "card", "aria-labelledby": "cycles-title" },
         h("h2", { id: "cycles-title" }, "Cycles"), this.#summary,
-        h("p", { class: "legend" }, h("span", { class: "key execution" }), "execution ", h("span", { class: "key lateness" }), "lateness · columns: cycles by octaves, in digits; bars: half, 99 %, 99.9 %, all of the cycles are below"),
+        h("p", { class: "legend" }, h("span", { class: "key execution" }), "execution ", h("span", { class: "key lateness" }), "lateness · columns: cycles by octaves, logarithmic; bars: half, 99 %, 99.9 %, all of the cycles are below"),
         this.#processes, axis),
       h("section", { class: "card", "aria-labelledby": "joints-title" },
         h("h2", { id: "joints-title" }, "Joints"),
@@ -102,7 +102,7 @@ export class Machine {
   }
 }
 
-/** Cycles by octaves of their times: a column each, as high as its count has digits. */
+/** Cycles by octaves of their times: a column each, its height the logarithm of its count. */
 function columns(kind) {
   const bars = Array.from({ length: OCTAVES }, () => h("span"));
   const element = h("div", { class: `columns ${kind}`, role: "img" }, bars);

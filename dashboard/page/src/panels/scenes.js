@@ -33,7 +33,7 @@ export class Scenes {
     const [started, ended] = [new Answer("Answer to the start"), new Answer("Answer to the end")];
     const form = h("form", { class: "card", "aria-label": "Start a scene" },
       h("h2", {}, h("label", { for: this.#list.id }, "Scenes")), this.#list, this.#about, this.#facts,
-      h("div", { class: "fields" }, this.#depth.element, this.#integrator.element),
+      h("div", { class: "fields halves" }, this.#depth.element, this.#integrator.element),
       h("div", { class: "row" }, this.#start, started.element));
     form.addEventListener("submit", (event) => {
       event.preventDefault();
@@ -78,6 +78,6 @@ export class Scenes {
 /** Choice in place of what the scene says: {element, select}. */
 function choice(label, options) {
   const id = newId("choice");
-  const select = h("select", { id }, h("option", { value: "" }, "as the scene says"), options.map(([value, text]) => h("option", { value }, text)));
+  const select = h("select", { id }, h("option", { value: "" }, "the scene's"), options.map(([value, text]) => h("option", { value }, text)));
   return { element: h("div", { class: "field" }, h("label", { for: id }, label), select), select };
 }
