@@ -226,6 +226,7 @@ mod tests {
         assert_eq!(parse(take), Ok(PageRequest::Order(Order::TakeLease(9, true))));
         assert_eq!(parse(r#"{"type":"pulse"}"#), Ok(PageRequest::Order(Order::Pulse)));
         assert_eq!(parse(r#"{"type":"emergency_stop","id":1}"#), Ok(PageRequest::EmergencyStop(1)));
+        // Runs: as the scene says, and with another model.
         let run = |depth, integrator| {
             let order = StartOrder { scene: "demo".into(), depth, integrator };
             Ok(PageRequest::Run(2, Ok(RunTask::Start(order))))
