@@ -50,6 +50,21 @@ fn real_time_that_is_required_and_not_to_be_had_is_refused_before_anything_is_ar
 }
 
 #[test]
+fn a_depth_or_integrator_that_cannot_be_is_refused() {
+    let site = Site::patient(EXE);
+    for (option, value, text) in [
+        ("--depth", "6", "1..=5"),
+        ("--depth", "two", "two"),
+        ("--integrator", "eulr", "did you mean euler?"),
+    ] {
+        let said = site.run("stand", &["--lockstep", option, value]).end();
+        assert!(said.code == Some(2) && said.err.contains(text), "{said:#?}");
+    }
+    let said = site.run("walk_auto", &["--lockstep", "--integrator", "euler"]).end();
+    one_error(&said, &["scene walk_auto", "--depth"]);
+}
+
+#[test]
 fn a_misspelt_key_is_named_with_its_line_and_the_nearest_one() {
     let site = Site::patient(EXE);
     site.edit("gaits/lola.toml", "swing_height", "swing_heigth");

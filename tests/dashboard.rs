@@ -9,6 +9,8 @@ mod measured;
 mod page;
 #[path = "dashboard/replay.rs"]
 mod replay;
+#[path = "dashboard/scenes.rs"]
+mod scenes;
 
 use harness::{Running, Signal, Site, WALK, doze, turn};
 use measured::number_of;

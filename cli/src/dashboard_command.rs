@@ -7,6 +7,7 @@ use std::process::{Command, Stdio};
 
 use dashboard::Options;
 use dashboard::daemon::LINK_FILE;
+use dashboard::starter::StartOptions;
 use realtime::Stop;
 
 #[derive(clap::Args)]
@@ -23,6 +24,9 @@ pub(crate) struct DashboardArguments {
     /// Scene, by name or path, that stands in for a configuration that is not in the log.
     #[arg(long, value_name = "SCENE", requires = "replay")]
     scene: Option<String>,
+    /// Let the page start and end runs of scenes with a simulated robot; with a SCENE: start it at once.
+    #[arg(long, value_name = "SCENE", num_args = 0..=1, conflicts_with = "replay")]
+    start: Option<Option<String>>,
     /// Address on the loopback interface; default: 127.0.0.1:8720, or any free port if that is taken.
     #[arg(long, value_name = "ADDRESS")]
     listen: Option<SocketAddr>,
@@ -36,13 +40,19 @@ pub(crate) struct DashboardArguments {
 
 /// Serves the page until Ctrl-C.
 pub(crate) fn run(arguments: DashboardArguments, config: Option<&Path>) -> Result<(), Box<dyn Error>> {
-    let DashboardArguments { dir, replay, against, scene, listen, no_open, with_parent } = arguments;
+    let DashboardArguments { dir, replay, against, scene, start, listen, no_open, with_parent } = arguments;
     let stop = Stop::on_signals()?;
     if with_parent {
         Stop::with_parent()?;
     }
     let dir = dir.unwrap_or_else(|| if replay.is_some() { replay_dir() } else { ipc::default_dir() });
-    let options = Options { dir: dir.clone(), listen };
+    let start = match start {
+        None => None,
+        Some(first) => {
+            Some(StartOptions { command: std::env::current_exe()?, config: config::find(config)?.dir, first })
+        }
+    };
+    let options = Options { dir: dir.clone(), listen, start };
     let ready = |url: &str| {
         println!("{url}");
         if !no_open {

@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
+use cli::choose::MethodWish;
 use cli::exit::Exit;
 use cli::run::{RunOptions, RunOutcome};
+use config::method::Integrator;
 use config::{BusAddress, Setup};
 use ipc::Mode;
 use realtime::{Stop, clock};
@@ -23,6 +25,12 @@ const LAST_WORDS: Duration = Duration::from_secs(2);
 pub(crate) struct RunArguments {
     /// Name of a scene, see `gangwerk scene list`, or path of a scene file.
     scene: String,
+    /// Depth of the model, 1 to 5, instead of the scene's: docs/howto/scenes.md.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=5), conflicts_with = "no_robot")]
+    depth: Option<u8>,
+    /// Integrator instead of the scene's: euler, rk4, semi_implicit or bdf; default with another depth: the one made for it.
+    #[arg(long, value_name = "NAME", conflicts_with = "no_robot")]
+    integrator: Option<Integrator>,
     /// Simulated time: every process waits for the others, and two runs are bit for bit the same.
     #[arg(long)]
     lockstep: bool,
@@ -59,6 +67,9 @@ pub(crate) struct RunArguments {
     /// Directory in which the processes meet; a second robot needs another one.
     #[arg(long, value_name = "DIR", default_value_os_t = ipc::default_dir())]
     dir: PathBuf,
+    /// End, as with Ctrl-C, when this process, which started it, ends.
+    #[arg(long, hide = true, value_name = "PID")]
+    with_parent: Option<u32>,
 }
 
 impl RunArguments {
@@ -68,6 +79,8 @@ impl RunArguments {
         let watched = io::stdout().is_terminal() && io::stderr().is_terminal();
         Self {
             scene: "demo".into(),
+            depth: None,
+            integrator: None,
             lockstep: true,
             paced: true,
             stays: watched,
@@ -80,6 +93,7 @@ impl RunArguments {
             no_plots: false,
             json: false,
             dir: ipc::default_dir(),
+            with_parent: None,
         }
     }
 }
@@ -87,9 +101,17 @@ impl RunArguments {
 /// `gangwerk run` with the configuration in `config`.
 ///
 /// # Errors
-/// There is no place for the log, or the run cannot be started.
+/// There is no place for the log, the process that it is to end with is gone, or the run cannot be started.
 pub(crate) fn main(arguments: RunArguments, config: PathBuf) -> Result<ExitCode, Box<dyn Error>> {
     let RunArguments { scene, lockstep, paced, stays, desk, bus, no_robot, out, no_log, rt, .. } = arguments;
+    let wish = MethodWish { depth: arguments.depth, integrator: arguments.integrator };
+    if let Some(parent) = arguments.with_parent {
+        Stop::with_parent()?;
+        // One that ended before that sends no signal.
+        if std::os::unix::process::parent_id() != parent {
+            return Err(format!("--with-parent {parent}: this process is gone").into());
+        }
+    }
     let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
     let log = match no_log {
         true => None,
@@ -108,7 +130,7 @@ pub(crate) fn main(arguments: RunArguments, config: PathBuf) -> Result<ExitCode,
         log,
         rt_required: rt.is_some(),
     };
-    run(order, Results::of(arguments.json, arguments.no_plots), desk)
+    run(order, wish, Results::of(arguments.json, arguments.no_plots), desk)
 }
 
 /// Directory for log and pictures: the one asked for, else `runs/latest`, else the user's data directory.
@@ -161,9 +183,14 @@ impl Results {
 
 /// A run, with nothing printed but through the console: a paused terminal holds up neither robot nor end. With a `desk` its page
 /// is served besides.
-fn run(mut order: RunOptions, wanted: Results, desk: bool) -> Result<ExitCode, Box<dyn Error>> {
-    let (setup, choice) = cli::choose::load(&order.config, &order.scene, true)?;
-    order.method = choice.map(|choice| choice.method);
+fn run(
+    mut order: RunOptions,
+    wish: MethodWish,
+    wanted: Results,
+    desk: bool,
+) -> Result<ExitCode, Box<dyn Error>> {
+    let (setup, method) = cli::choose::load_with(&order.config, &order.scene, wish)?;
+    order.method = method;
     // First of all that starts a thread: one with signals of its own would be where Ctrl-C ends everything.
     let stop = Stop::on_signals()?;
     let length = Some((setup.scene.duration * 10.0) as u64).filter(|_| !order.stays);

@@ -21,6 +21,21 @@ impl Integrator {
     pub const ALL: [Self; 4] = [Self::Euler, Self::RungeKutta4, Self::SemiImplicit, Self::Bdf];
     /// Their names in scene files.
     pub const WORDS: [&str; 4] = ["euler", "rk4", "semi_implicit", "bdf"];
+
+    /// Its name in scene files.
+    pub fn word(self) -> &'static str {
+        Self::WORDS[self as usize]
+    }
+}
+
+impl FromStr for Integrator {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|integrator| integrator.word() == text);
+        let all = format!("integrators are {}", Self::WORDS.join(", "));
+        found.ok_or_else(|| messages::unknown("integrator", text, &Self::WORDS, &all))
+    }
 }
 
 /// Depth of a model and how it is integrated; as text `type 2, semi_implicit x 4`.
@@ -36,8 +51,7 @@ pub struct Method {
 
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let integrator = Integrator::ALL.iter().position(|i| *i == self.integrator).unwrap_or(0);
-        write!(f, "type {}, {} x {}", self.depth, Integrator::WORDS[integrator], self.substeps)
+        write!(f, "type {}, {} x {}", self.depth, self.integrator.word(), self.substeps)
     }
 }
 
@@ -48,9 +62,8 @@ impl FromStr for Method {
         let parts = text.strip_prefix("type ").and_then(|rest| {
             let (depth, rest) = rest.split_once(", ")?;
             let (word, substeps) = rest.split_once(" x ")?;
-            let integrator = Integrator::WORDS.iter().position(|w| *w == word)?;
             let (depth, substeps) = (depth.parse().ok()?, substeps.parse().ok()?);
-            Some(Self { depth, integrator: Integrator::ALL[integrator], substeps })
+            Some(Self { depth, integrator: word.parse().ok()?, substeps })
         });
         parts
             .filter(|m| (1..=5).contains(&m.depth) && (1..=1000).contains(&m.substeps))
@@ -71,5 +84,7 @@ mod tests {
         for wrong in ["", "type 2", "type 6, euler x 1", "type 2, euler x 0", "type 2, eulr x 1"] {
             assert!(wrong.parse::<Method>().is_err(), "{wrong}");
         }
+        let error = "eulr".parse::<Integrator>().unwrap_err();
+        assert!(error.contains("did you mean euler?") && error.contains("semi_implicit"), "{error}");
     }
 }

@@ -67,12 +67,16 @@ impl Setup {
         Ok(self)
     }
 
-    /// The same with a method for the scene; one whose depth is "auto" needs it.
+    /// The same with a method instead of the scene's; one whose depth is "auto" needs it.
     ///
     /// # Errors
-    /// There is none, and the scene does not say one.
+    /// There is none, and the scene does not say one; or the scene changes components that a model of this depth lacks.
     pub fn with_method(mut self, method: Option<Method>) -> Result<Self, String> {
         if let Some(method) = method {
+            let (name, depth) = (&self.scene.name, method.depth);
+            if let Some((key, why)) = self.scene.components.problem(depth, &self.robot) {
+                return Err(format!("scene {name}: components.{key} with depth {depth}: {why}"));
+            }
             self.scene.choose(method);
         }
         match self.scene.auto {

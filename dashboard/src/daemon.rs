@@ -1,7 +1,7 @@
 //! The process: `gangwerk dashboard`.
 //!
 //! tokio serves HTTP and sockets on one thread. Beside it are ordinary threads: the observer, the emergency stop, the look at
-//! the command lease, and one operator per page that commands. Of a recording there is one thread, which reads it.
+//! the command lease, one operator per page that commands, and the starter of runs if it may start some. Of a recording there is one thread, which reads it.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -25,6 +25,7 @@ use crate::observer::{Notice, Observer};
 use crate::operator::{answer, watch_lease};
 use crate::replay::{Player, Recorded, side_by_side};
 use crate::socket::Hall;
+use crate::starter::{StartOptions, Starter, StarterCall};
 
 /// Address unless another one is asked for.
 pub const ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 8720);
@@ -46,13 +47,16 @@ pub struct Options {
     pub dir: PathBuf,
     /// Address; none: [`ADDRESS`], or another port if that one is taken.
     pub listen: Option<SocketAddr>,
+    /// Start of runs from the page; none: it can start nothing.
+    pub start: Option<StartOptions>,
 }
 
 /// Serves the robot of a directory until `stop`. `ready` is told the address of the page, with its token.
 ///
 /// # Errors
-/// The address is taken or not on the loopback interface, or the run directory is not private.
+/// The address is taken or not on the loopback interface, the run directory is not private, or there is no such scene to start.
 pub fn serve(options: &Options, stop: &Stop, ready: impl FnOnce(&str)) -> Result<(), String> {
+    options.start.as_ref().map_or(Ok(()), StartOptions::check)?;
     let house = House::open(options)?;
     // Threads that wait, each for its own.
     let (observer, notices) = channel();
@@ -65,7 +69,9 @@ pub fn serve(options: &Options, stop: &Stop, ready: impl FnOnce(&str)) -> Result
     spawn("lease", move || watch_lease(&own, &way))?;
     let own = dir.clone();
     spawn("stop", move || answer_stops(&own, &requests))?;
-    house.serve(Hall::new(Some(dir), observer, stops), robot_files, watching, stop, ready)
+    let starter = options.start.as_ref().map(|start| Starter::open(&dir, start, observer.clone()));
+    let hall = Hall::new(Some(dir), observer, stops, starter.transpose()?);
+    house.serve(hall, robot_files, watching, stop, ready)
 }
 
 /// Serves a log, and perhaps another one beside it, until `stop`: no robot, no broker, no emergency stop.
@@ -86,7 +92,7 @@ pub fn serve_recording(
     let (_files, robot_files) = watch::channel(files);
     let house = House::open(options)?;
     let watching = spawn("player", move || Player::new(films, notices).run())?;
-    house.serve(Hall::new(None, player, stops), robot_files, watching, stop, ready)
+    house.serve(Hall::new(None, player, stops, None), robot_files, watching, stop, ready)
 }
 
 /// Server with its address, before anybody comes.
@@ -123,19 +129,30 @@ impl House {
         ready: impl FnOnce(&str),
     ) -> Result<(), String> {
         let Self { runtime, listener, admission, dir, url } = self;
-        let observer = hall.observer.clone();
-        let door = Arc::new(Door { admission, hall: Arc::new(hall), files });
+        let hall = Arc::new(hall);
+        let door = Arc::new(Door { admission, hall: hall.clone(), files });
         ready(&url);
         runtime.block_on(async {
             let serving = tokio::spawn(door::serve(listener, door));
             while !stop.asked() && !watching.is_finished() {
                 tokio::time::sleep(LOOK).await;
             }
+            // The run that was started here ends first: pages see its robot come to a stand, and can cut its supply.
+            if let Some(starter) = &hall.starter {
+                stop.taken();
+                starter.call(StarterCall::Leave);
+                while !starter.is_finished() {
+                    if stop.taken() {
+                        starter.call(StarterCall::Leave);
+                    }
+                    tokio::time::sleep(LOOK).await;
+                }
+            }
             serving.abort();
         });
         // Open sockets go with the runtime, and with them the operators and their leases.
         drop(runtime);
-        let _ = observer.send(Notice::End);
+        let _ = hall.observer.send(Notice::End);
         let ended = watching.join().map_err(|_| "the observer's thread ended by an error".to_owned());
         ipc::withdraw_file(&dir, LINK_FILE, &link(&url));
         ipc::withdraw_file(&dir, URL_FILE, &line(&url));

@@ -45,7 +45,8 @@ impl Health {
         let stats = self.stats.iter_mut().find(|(of, _)| *of == process);
         let Some(s) = stats.and_then(|(_, reader)| reader.latest()) else {
             return json!({"name": process.name(), "state": state, "degraded": false, "cycles": null,
-                "overruns": null, "skipped": null, "lateness_us": null, "execution_us": null});
+                "overruns": null, "skipped": null, "lateness_us": null, "execution_us": null,
+                "lateness_octaves": null, "execution_octaves": null});
         };
         let times = |ns: &[u64; 4]| {
             let [p50, p99, p999, max] = ns.map(|ns| ns as f64 * 1e-3);
@@ -53,6 +54,7 @@ impl Health {
         };
         json!({"name": process.name(), "state": state, "degraded": s.degraded != 0, "cycles": s.cycles,
             "overruns": s.overruns, "skipped": s.skipped, "lateness_us": times(&s.lateness_ns),
-            "execution_us": times(&s.execution_ns)})
+            "execution_us": times(&s.execution_ns), "lateness_octaves": s.lateness_octaves,
+            "execution_octaves": s.execution_octaves})
     }
 }

@@ -9,15 +9,18 @@
 //! | [`description`], [`picture`], [`state`], [`belief`], [`plotting`], [`health`] | what a page is told: once, at 60 Hz, as samples, about processes |
 //! | [`guests`] | pages that are there, and what each of them has lost |
 //! | [`operator`] | one client of the broker per page that commands |
+//! | [`catalogue`], [`starter`] | scenes, and runs of them that a page starts and ends; only where `--start` allows it |
 //! | [`book`] | `docs/`, rendered, under `/book/` |
 //! | [`requests`] | what a page asks for |
 //!
 //! It observes: no topic has it as a writer, and no process knows of it or waits for it. What it commands goes through the
-//! broker under the command lease; only the emergency stop has a way of its own.
+//! broker under the command lease; only the emergency stop has a way of its own. It starts simulated robots only, and only if
+//! whoever started it allows that.
 
 pub mod admission;
 pub mod belief;
 pub mod book;
+pub mod catalogue;
 pub mod daemon;
 pub mod description;
 pub mod door;
@@ -31,6 +34,7 @@ pub mod plotting;
 pub mod replay;
 pub mod requests;
 pub mod socket;
+pub mod starter;
 pub mod state;
 
 pub use daemon::{Options, serve, serve_recording};

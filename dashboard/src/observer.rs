@@ -52,6 +52,10 @@ pub enum Notice {
     Lease(String),
     /// Presence of the broker, or why it is not there.
     Broker(Result<(), String>),
+    /// The message `scenes`: what a page can start.
+    Scenes(Utf8Bytes),
+    /// The message `run`: state of the run that was started from here.
+    Run(Utf8Bytes),
     /// The server ends.
     End,
 }
@@ -71,6 +75,9 @@ pub struct Observer {
     /// The message `link` as it was told last.
     link: Utf8Bytes,
     holder: String,
+    /// Messages `scenes` and `run`; empty: runs are not started here.
+    scenes: Utf8Bytes,
+    run: Utf8Bytes,
     next_search: u64,
 }
 
@@ -91,6 +98,8 @@ impl Observer {
             broker,
             link,
             holder,
+            scenes: Utf8Bytes::default(),
+            run: Utf8Bytes::default(),
             next_search: 0,
         }
     }
@@ -123,6 +132,8 @@ impl Observer {
                 }
                 guest.text(&self.link_message());
                 guest.text(&lease_message(&self.holder, number));
+                let started = [&self.scenes, &self.run].into_iter().filter(|text| !text.is_empty());
+                started.for_each(|text| guest.text(text));
                 self.guests.push(guest);
             }
             Notice::Left(number) => {
@@ -138,6 +149,14 @@ impl Observer {
             Notice::Broker(state) => {
                 self.broker = state;
                 self.tell_link();
+            }
+            Notice::Scenes(text) => {
+                self.guests.iter_mut().for_each(|guest| guest.text(&text));
+                self.scenes = text;
+            }
+            Notice::Run(text) => {
+                self.guests.iter_mut().for_each(|guest| guest.text(&text));
+                self.run = text;
             }
             // A running robot is only seen as it is now.
             Notice::Recording(..) | Notice::End => {}

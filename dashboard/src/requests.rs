@@ -1,5 +1,6 @@
 //! Requests of a page: one JSON object each, checked here once.
 
+use config::method::Integrator;
 use messages::Command;
 use serde_json::{Map, Value};
 
@@ -22,8 +23,30 @@ pub enum PageRequest {
     Order(Order),
     /// Supply off, now; its number.
     EmergencyStop(u64),
+    /// Start or end of a run, by its number, or why it cannot be.
+    Run(u64, Result<RunTask, String>),
     /// Request for a part of a recording.
     Recording(RecordingRequest),
+}
+
+/// Task for the starter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RunTask {
+    /// Start of a run.
+    Start(StartOrder),
+    /// End of the run that was started here.
+    End,
+}
+
+/// Run that a page wants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StartOrder {
+    /// Name of a scene, which the catalogue may have.
+    pub scene: String,
+    /// Modelling depth, 1 to 5; none: the scene's.
+    pub depth: Option<u8>,
+    /// Integrator; none: the scene's, or the one made for another depth.
+    pub integrator: Option<Integrator>,
 }
 
 /// Part of a recording that a page wants.
@@ -66,8 +89,8 @@ impl PageRequest {
     /// Reads a message.
     ///
     /// # Errors
-    /// It is none of `docs/dashboard.md`: which field is wrong, and what it may be. A command that does not exist or is out of
-    /// range is one of the page all the same, to be answered.
+    /// It is none of `docs/dashboard.md`: which field is wrong, and what it may be. A command or run that does not exist or is out
+    /// of range is one of the page all the same, to be answered.
     pub fn parse(text: &str) -> Result<Self, String> {
         let value: Value = serde_json::from_str(text).map_err(|e| format!("no JSON: {e}"))?;
         let object = value.as_object().ok_or("no JSON object")?;
@@ -92,6 +115,8 @@ impl PageRequest {
                 let command = command(text("name")?, values.unwrap_or(&Map::new()));
                 Self::Order(Order::Command(whole("id")?, command))
             }
+            "start" => Self::Run(whole("id")?, start(object).map(RunTask::Start)),
+            "end" => Self::Run(whole("id")?, Ok(RunTask::End)),
             "set" => Self::Order(Order::Set(whole("id")?, text("name")?.to_owned(), number("value")?)),
             "lease" if flag("give") => Self::Order(Order::GiveLease(whole("id")?)),
             "lease" if flag("take") => Self::Order(Order::TakeLease(whole("id")?, flag("over"))),
@@ -105,11 +130,38 @@ impl PageRequest {
             }
             "window" => window(whole("log")?, [number("from")?, number("to")?])?,
             other => {
-                let known = ["pulse", "emergency_stop", "command", "set", "lease", "plot", "seek", "window"];
+                let known = [
+                    "pulse",
+                    "emergency_stop",
+                    "command",
+                    "start",
+                    "end",
+                    "set",
+                    "lease",
+                    "plot",
+                    "seek",
+                    "window",
+                ];
                 return Err(messages::unknown("type", other, &known, "docs/dashboard.md has them all"));
             }
         })
     }
+}
+
+fn start(object: &Map<String, Value>) -> Result<StartOrder, String> {
+    // Null is as absent: as the scene says.
+    let given = |key: &str| object.get(key).filter(|value| !value.is_null());
+    let depth = |value: &Value| {
+        let depth = value.as_u64().and_then(|depth| u8::try_from(depth).ok());
+        depth.filter(|d| (1..=5).contains(d)).ok_or_else(|| format!("depth: {value} is none of 1 to 5"))
+    };
+    Ok(StartOrder {
+        scene: given("scene").and_then(Value::as_str).ok_or("scene: a name is needed")?.to_owned(),
+        depth: given("depth").map(depth).transpose()?,
+        integrator: given("integrator")
+            .map(|word| word.as_str().unwrap_or_default().parse::<Integrator>())
+            .transpose()?,
+    })
 }
 
 fn plot(fields: Option<&Value>, rate: Result<f64, String>) -> Result<PageRequest, String> {
@@ -174,6 +226,15 @@ mod tests {
         assert_eq!(parse(take), Ok(PageRequest::Order(Order::TakeLease(9, true))));
         assert_eq!(parse(r#"{"type":"pulse"}"#), Ok(PageRequest::Order(Order::Pulse)));
         assert_eq!(parse(r#"{"type":"emergency_stop","id":1}"#), Ok(PageRequest::EmergencyStop(1)));
+        // Runs: as the scene says, and with another model.
+        let run = |depth, integrator| {
+            let order = StartOrder { scene: "demo".into(), depth, integrator };
+            Ok(PageRequest::Run(2, Ok(RunTask::Start(order))))
+        };
+        assert_eq!(parse(r#"{"type":"start","id":2,"scene":"demo","depth":null}"#), run(None, None));
+        let deep = r#"{"type":"start","id":2,"scene":"demo","depth":3,"integrator":"semi_implicit"}"#;
+        assert_eq!(parse(deep), run(Some(3), Some(Integrator::SemiImplicit)));
+        assert_eq!(parse(r#"{"type":"end","id":3}"#), Ok(PageRequest::Run(3, Ok(RunTask::End))));
         let seek = |time, other| Ok(PageRequest::Recording(RecordingRequest::Seek(time, other)));
         assert_eq!(parse(r#"{"type":"seek","time":12.345}"#), seek(12.345, None));
         assert_eq!(parse(r#"{"type":"seek","time":-1,"other":2.5}"#), seek(-1.0, Some(2.5)));
@@ -191,6 +252,7 @@ mod tests {
             ("{}", "type"),
             (r#"{"type":"puls"}"#, "pulse"),
             (r#"{"type":"emergency_stop","id":-1}"#, "id"),
+            (r#"{"type":"start","scene":"demo"}"#, "id"),
             (r#"{"type":"set","id":1,"name":"k","value":"1"}"#, "value"),
             (r#"{"type":"set","id":1,"name":"k","value":1e999}"#, "JSON"),
             (r#"{"type":"lease","id":1}"#, "take or give"),
@@ -206,7 +268,19 @@ mod tests {
             let error = parse(text).unwrap_err();
             assert!(error.contains(named), "{text}: {error}");
         }
-        // Commands are answered with the reason.
+        // Runs and commands are answered with the reason.
+        for (start, named) in [
+            (r#""scene":7"#, "scene"),
+            (r#""scene":"demo","depth":6"#, "6 is none of 1 to 5"),
+            (r#""scene":"demo","depth":257"#, "257"),
+            (r#""scene":"demo","depth":"2""#, "depth"),
+            (r#""scene":"demo","integrator":"--bus""#, "semi_implicit"),
+        ] {
+            match parse(&format!(r#"{{"type":"start","id":3,{start}}}"#)) {
+                Ok(PageRequest::Run(3, Err(reason))) => assert!(reason.contains(named), "{start}: {reason}"),
+                other => panic!("{start}: {other:?}"),
+            }
+        }
         let reason = |values: &str| {
             let text = format!(r#"{{"type":"command","id":3,"name":"walk/velocity","values":{values}}}"#);
             match parse(&text) {

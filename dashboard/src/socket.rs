@@ -1,4 +1,4 @@
-//! One WebSocket: what the page asks for goes to observer, operator and emergency stop; what they have for it goes out.
+//! One WebSocket: what the page asks for goes to observer, operator, starter and emergency stop; what they have for it goes out.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,7 +16,8 @@ use tokio::time::timeout;
 use crate::guests::Outbox;
 use crate::observer::Notice;
 use crate::operator::{Operator, answer};
-use crate::requests::{Order, PageRequest};
+use crate::requests::{Order, PageRequest, RunTask};
+use crate::starter::{NO_STARTER, Starter, StarterCall};
 
 /// Sockets at once.
 pub const MOST_SOCKETS: usize = 64;
@@ -39,6 +40,8 @@ pub struct Hall {
     pub observer: Sender<Notice>,
     /// Way to the emergency stop.
     pub stops: Sender<(u64, Outbox)>,
+    /// Starter of runs; none: nobody allowed them.
+    pub starter: Option<Starter>,
     /// Places for sockets.
     pub places: Arc<Semaphore>,
     /// Places for those that command.
@@ -49,10 +52,15 @@ pub struct Hall {
 
 impl Hall {
     /// Of a server to which no page has come yet.
-    pub fn new(dir: Option<PathBuf>, observer: Sender<Notice>, stops: Sender<(u64, Outbox)>) -> Self {
+    pub fn new(
+        dir: Option<PathBuf>,
+        observer: Sender<Notice>,
+        stops: Sender<(u64, Outbox)>,
+        starter: Option<Starter>,
+    ) -> Self {
         let places = Arc::new(Semaphore::new(MOST_SOCKETS));
         let desks = Arc::new(Semaphore::new(MOST_OPERATORS));
-        Self { dir, observer, stops, places, desks, pages: AtomicU64::new(0) }
+        Self { dir, observer, stops, starter, places, desks, pages: AtomicU64::new(0) }
     }
 }
 
@@ -148,12 +156,27 @@ impl Page {
                 answer(&self.outbox, id, &Err(RECORDING.into()));
                 Some(())
             }
+            PageRequest::Run(id, task) => self.run(id, task),
             PageRequest::EmergencyStop(id) => self.hall.stops.send((id, self.outbox.clone())).ok(),
             PageRequest::Order(order) => {
                 self.order(order);
                 Some(())
             }
         }
+    }
+
+    /// Gives a task to the starter; none: the server ends.
+    fn run(&self, id: u64, task: Result<RunTask, String>) -> Option<()> {
+        let refused = match (&self.hall.starter, task) {
+            (Some(starter), Ok(task)) => {
+                return starter.call(StarterCall::Page(id, self.outbox.clone(), task));
+            }
+            (Some(_), Err(why)) => why,
+            (None, _) if self.hall.dir.is_none() => RECORDING.into(),
+            (None, _) => NO_STARTER.into(),
+        };
+        answer(&self.outbox, id, &Err(refused));
+        Some(())
     }
 
     /// Gives an order to the operator, who comes with the first one.

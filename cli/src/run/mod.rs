@@ -47,7 +47,7 @@ pub struct RunOptions {
     pub paced: bool,
     /// Name of the scene, or path of its file.
     pub scene: String,
-    /// Method of simulation, if the scene leaves it open: [`crate::choose`].
+    /// Method of simulation, if the scene leaves it open or somebody asked for another one: [`crate::choose`].
     pub method: Option<Method>,
     /// The configuration directory.
     pub config: PathBuf,

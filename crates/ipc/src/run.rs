@@ -5,7 +5,7 @@
 //! ```text
 //! mode = lockstep            # or real-time
 //! scene = walk_1kmh
-//! method = type 2, semi_implicit x 4 # what was chosen for a scene that leaves it open; else empty
+//! method = type 2, semi_implicit x 4 # chosen for a scene that leaves it open, or asked for instead of the scene's; else empty
 //! config = /home/me/gangwerk/config
 //! bus = can:vcan0,vcan1      # or shm, canfd:..., sercos:...
 //! robot = simulated          # or elsewhere
@@ -44,7 +44,7 @@ pub struct Run {
     pub paced: bool,
     /// Name of the scene.
     pub scene: String,
-    /// Method of simulation, if the scene leaves it open (`depth = "auto"`).
+    /// Method of simulation, if the scene leaves it open (`depth = "auto"`) or somebody asked for another one.
     pub method: Option<String>,
     /// The configuration directory: `system.toml`, `robots/`, `scenes/`, `gaits/`.
     pub config: PathBuf,

@@ -2,6 +2,11 @@
 
 use crate::{Header, record};
 
+/// Octaves by which times of cycles are counted.
+pub const OCTAVES: usize = 20;
+/// Binary logarithm of the end of the first one \[ns\].
+pub const FIRST_OCTAVE: usize = 10;
+
 record! {
     /// Frame errors of the field bus since start.
     part BusCounters {
@@ -35,6 +40,10 @@ record! {
         lateness_ns: [u64; 4],
         /// \[ns\] Execution time: p50, p99, p99.9, max.
         execution_ns: [u64; 4],
+        /// \[1\] Cycles by octaves of lateness: below 2^10 ns, from there below 2^11 ns, and so on; the last one from 2^28 ns on.
+        lateness_octaves: [u64; OCTAVES],
+        /// \[1\] Cycles by octaves of execution time, as above.
+        execution_octaves: [u64; OCTAVES],
         /// \[1\] Minor and major page faults since arming.
         page_faults: [u64; 2],
         /// \[1\] Heap allocations and frees on the cycle's thread since arming.

@@ -41,7 +41,7 @@ pub use command_answer::{CommandSource, NoCommands, Reason, Verdict};
 pub use command_stamp::{Lease, Live, Stamp};
 pub use controller_state::ControllerState;
 pub use cycle_inputs::{CommandTaken, CycleInputs, Used};
-pub use cycle_stats::{BusCounters, CycleStats};
+pub use cycle_stats::{BusCounters, CycleStats, FIRST_OCTAVE, OCTAVES};
 pub use event::{Event, EventCode};
 pub use event_detail::{ControlLimit, Detail, RefusedFrame, TableFault};
 pub use event_queue::EventQueue;

@@ -3,11 +3,12 @@
 //! 64 buckets per octave: a percentile is too large by at most 1/64. Recording is a shift and an addition; all
 //! percentiles come from one pass.
 
+use messages::{FIRST_OCTAVE, OCTAVES};
+
 const SUB_BITS: u32 = 6;
 const SUB: usize = 1 << SUB_BITS;
 /// 2^38 ns is more than four minutes; longer ones count as that.
-const OCTAVES: usize = 38 - SUB_BITS as usize;
-const BUCKETS: usize = SUB * (OCTAVES + 1);
+const BUCKETS: usize = SUB * (38 - SUB_BITS as usize + 1);
 
 /// A histogram of durations \[ns\].
 #[derive(Clone, Debug)]
@@ -66,6 +67,17 @@ impl Histogram {
         }
         found
     }
+
+    /// Records by octaves: below 2^10 ns, from there below 2^11 ns, and so on; all that are longer in the last one.
+    pub fn octaves(&self) -> [u64; OCTAVES] {
+        let mut found = [0; OCTAVES];
+        // The first buckets hold what is below 2^6 ns, each later run of as many the next octave.
+        for (run, counts) in self.counts.chunks_exact(SUB).enumerate() {
+            let octave = (run + SUB_BITS as usize).saturating_sub(FIRST_OCTAVE).min(OCTAVES - 1);
+            found[octave] += counts.iter().map(|count| u64::from(*count)).sum::<u64>();
+        }
+        found
+    }
 }
 
 fn bucket(ns: u64) -> usize {
@@ -102,21 +114,47 @@ mod tests {
         assert_eq!(bucket(u64::MAX), BUCKETS - 1);
     }
 
-    #[test]
-    fn percentiles_agree_with_a_sorted_list() {
+    /// Durations over so many octaves, below 2^`bits` ns: in a histogram, and as a sorted list.
+    fn samples(bits: u32, spread: u64) -> (Histogram, Vec<u64>) {
         let mut state = 0x1234_5678_9abc_def0u64;
-        let mut histogram = Histogram::new();
-        let mut list = Vec::new();
-        for _ in 0..100_000 {
-            // xorshift64; exponents spread over six decades.
+        let draw = || {
+            // xorshift64
             state ^= state << 13;
             state ^= state >> 7;
             state ^= state << 17;
-            let ns = (state >> 44) >> (state % 20);
-            histogram.record(ns);
-            list.push(ns);
+            (state >> (64 - bits)) >> (state % spread)
+        };
+        let mut list: Vec<u64> = std::iter::repeat_with(draw).take(100_000).collect();
+        let mut histogram = Histogram::new();
+        list.iter().for_each(|ns| histogram.record(*ns));
+        list.sort_unstable();
+        (histogram, list)
+    }
+
+    #[test]
+    fn octaves_agree_with_a_sorted_list() {
+        let (mut histogram, mut list) = samples(34, 34);
+        for k in 0..40 {
+            // Ends of octaves, on both sides.
+            let ends = [(1u64 << k) - 1, 1 << k];
+            ends.iter().for_each(|ns| histogram.record(*ns));
+            list.extend(ends);
         }
         list.sort_unstable();
+        let below = |end: u64| list.partition_point(|ns| *ns < end) as u64;
+        let found = histogram.octaves();
+        assert_eq!(found[0], below(1024));
+        for k in 1..OCTAVES - 1 {
+            assert_eq!(found[k], below(1 << (10 + k)) - below(1 << (9 + k)), "octave {k}");
+            assert!(found[k] > 100, "octave {k}: {}", found[k]);
+        }
+        assert_eq!(found[OCTAVES - 1], list.len() as u64 - below(1 << 28));
+        assert_eq!(found.iter().sum::<u64>(), histogram.len());
+    }
+
+    #[test]
+    fn percentiles_agree_with_a_sorted_list() {
+        let (histogram, list) = samples(20, 20);
         for (got, rank) in histogram.percentiles().into_iter().zip([50_000, 99_000, 99_900, 100_000]) {
             let exact = list[rank - 1];
             assert!(got >= exact && got - exact <= exact / SUB as u64, "{got} for {exact}");

@@ -77,6 +77,8 @@ impl CycleMeter {
     pub fn stats(&mut self) -> &mut CycleStats {
         self.stats.lateness_ns = self.lateness.percentiles();
         self.stats.execution_ns = self.execution.percentiles();
+        self.stats.lateness_octaves = self.lateness.octaves();
+        self.stats.execution_octaves = self.execution.octaves();
         let faults = page_faults();
         self.stats.page_faults = [faults[0] - self.faults_before[0], faults[1] - self.faults_before[1]];
         self.stats.allocations = allocations::counted();

@@ -7,9 +7,12 @@ import { after, afterEach, before, test } from "node:test";
 import { Bench } from "./harness.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const TABS = ["Steer", "Tune", "Plot", "Machine", "Events"];
+const TABS = ["Scenes", "Steer", "Tune", "Plot", "Machine", "Events"];
 const bench = new Bench();
-before(() => bench.open("walk_2kmh"));
+before(async () => {
+  await bench.open("walk_2kmh");
+  bench.mock.setRun("elsewhere", "", "demo ended (exit status: 1)\nerror: a sentence that is longer than the panel is wide and says what was wrong and what to do");
+});
 after(() => bench.close());
 afterEach(() => bench.clean());
 

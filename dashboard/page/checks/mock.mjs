@@ -45,6 +45,15 @@ const joystick = () => ({
   buttons: { dead_man: ["BTN_TL"], emergency_stop: ["BTN_EAST"], stop: ["BTN_WEST", "BTN_NORTH"], walk: ["BTN_SOUTH"], stand: ["BTN_START"], next: ["BTN_SELECT"] },
 });
 
+/** Scenes of a server that starts runs: one with a depth, one that leaves it open, one with a mistake. */
+const SCENES = [
+  { name: "demo", about: "Lola stands up, walks, turns and stops.", robot: "lola", duration: 34, depth: 1, integrator: "euler" },
+  { name: "walk_auto", about: "Lola walks with the cheapest model that is accurate enough.", robot: "lola", duration: 6, depth: null, integrator: null },
+  { name: "wrong", problem: "config/scenes/wrong.toml: line 3: dept: unknown key; the nearest is `depth`" },
+  ...Array.from({ length: 40 }, (_, i) => ({ name: `walk_with_a_rather_long_name_${i}`, about: "Lola walks straight on and stops, with a sentence about it that is longer than the panel is wide.", robot: "lola", duration: 20, depth: 3, integrator: "semi_implicit" })),
+];
+const START_MS = 400;
+
 /** A running mock: {url, received, close, ...}; `received` are all messages of all pages, in their order. */
 export class Mock {
   received = [];
@@ -58,6 +67,9 @@ export class Mock {
   #timers = [];
   #run = 1;
   robot = true;
+  /** State of the run as a server of --start tells it; null: it starts none. */
+  run = null;
+  #next = 0;
   joystick = joystick();
   push = [0, 0, 0, 0];
 
@@ -116,6 +128,13 @@ export class Mock {
     }
   }
 
+  /** Starts runs from now on, of which there is this one. */
+  setRun(state, scene = "", why = "") {
+    clearTimeout(this.#next);
+    this.run = { type: "run", state, scene, why };
+    for (const socket of this.#sockets) this.#send(socket, this.run);
+  }
+
   /** Tells all pages of an event. */
   event(process, name, text) {
     for (const s of this.#sockets) this.#send(s, { type: "event", tick: this.#tick(), time: this.#tick() / 1000, process, name, text });
@@ -142,6 +161,8 @@ export class Mock {
     if (this.robot) this.#hello(socket);
     this.#send(socket, this.#link());
     this.#send(socket, this.#leaseOf(socket));
+    if (this.run) this.#send(socket, { type: "scenes", list: SCENES });
+    if (this.run) this.#send(socket, this.run);
     this.#send(socket, { type: "event", tick: 210, time: 0.21, process: "planner", name: "PlanMade", text: "a plan of the mock" });
     client.on("message", (data) => this.#take(socket, JSON.parse(data)));
     client.on("error", () => {});
@@ -231,7 +252,30 @@ export class Mock {
       case "command":
         this.#command(socket, message, answer);
         break;
+      case "start":
+        this.#start(message, answer);
+        break;
+      case "end":
+        if (this.run?.state !== "running") return answer(false, "no run was started here");
+        this.setRun("stopping", this.run.scene);
+        this.#next = setTimeout(() => { this.setRobot(false); this.setRun("none"); }, START_MS);
+        answer(true, `${this.run.scene} is ending: its robot comes to a stand first`);
+        break;
     }
+  }
+
+  /** A start of type 5 fails, as one does whose robot lacks data. */
+  #start({ scene, depth }, answer) {
+    if (!this.run) return answer(false, "this dashboard starts and ends no runs");
+    if (!SCENES.some(({ name }) => name === scene)) return answer(false, `there is no scene ${scene}`);
+    if (this.run.state !== "none") return answer(false, `${this.run.scene} runs already; end it first`);
+    this.setRun("starting", scene);
+    this.#next = setTimeout(() => {
+      if (depth === 5) return this.setRun("none", "", `${scene} ended (exit status: 1)\nerror: robot lola has no [contact.pads]`);
+      this.setRobot(true);
+      this.setRun("running", scene);
+    }, START_MS);
+    answer(true, `${scene} is starting`);
   }
 
   #mayMove(socket) {
@@ -333,9 +377,11 @@ export class Mock {
   #slow() {
     if (!this.robot) return;
     const times = (p50) => ({ p50, p99: p50 * 3, p999: p50 * 6, max: p50 * 15 });
+    // A thousand cycles about the median, fewer around it, one that was late.
+    const octaves = (us) => Array.from({ length: 20 }, (_, i) => (i === 15 ? 1 : Math.floor(1000 / 10 ** Math.abs(i - Math.ceil(Math.log2(us / 1.024))))));
     const list = [["watchdog", 4], ["sim-backend", 120], ["lowlevel", 30], ["planner", 15], ["controller", 70]].map(([name, us]) => (
-      { name, state: "running", degraded: false, cycles: this.#tick(), overruns: 0, skipped: 0, lateness_us: times(6), execution_us: times(us) }));
-    list.push({ name: "broker", state: "running", degraded: false, cycles: null, overruns: null, skipped: null, lateness_us: null, execution_us: null });
+      { name, state: "running", degraded: false, cycles: this.#tick(), overruns: 0, skipped: 0, lateness_us: times(6), execution_us: times(us), lateness_octaves: octaves(6), execution_octaves: octaves(us) }));
+    list.push({ name: "broker", state: "running", degraded: false, cycles: null, overruns: null, skipped: null, lateness_us: null, execution_us: null, lateness_octaves: null, execution_octaves: null });
     for (const socket of this.#sockets) this.#send(socket, { type: "processes", real_time_factor: 1, estimated_error: null, model: "type 2, semi_implicit", list });
   }
 }

@@ -146,3 +146,19 @@ test("processes and joints are listed", async () => {
   await page.waitForFunction(() => /°$/.test(document.querySelector("tbody tr td.number").textContent));
   await page.done();
 });
+
+test("the machine panel shows cycles by octaves, the one that was late among them", async () => {
+  const page = await bench.page();
+  await page.getByRole("tab", { name: "Machine" }).click();
+  const name = "cycles by octaves of execution";
+  await page.getByRole("img", { name }).first().waitFor();
+  assert.equal(await page.getByRole("img", { name }).count(), 5, "processes with cycles");
+  const told = await page.getByRole("img", { name }).first().getAttribute("aria-label");
+  assert.match(told, /1000 below 4.10 µs, 100 below 8.19 µs.* 1 below 33554 µs/);
+  const heights = await page.getByRole("img", { name }).first().evaluate((e) => [...e.children].map((bar) => bar.getBoundingClientRect().height));
+  assert.equal(heights.length, 20);
+  // The median is the highest, the late one is seen, and between them is nothing.
+  assert.equal(heights.indexOf(Math.max(...heights)), 2);
+  assert.ok(heights[15] > 3 && heights[15] < heights[2] / 2 && heights[12] === 0, `${heights}`);
+  await page.done();
+});

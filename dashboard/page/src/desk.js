@@ -41,6 +41,16 @@ export class Desk {
     return this.#ask({ type: "emergency_stop" }, "emergency stop", at);
   }
 
+  /** Starts a run of a scene: {scene, depth, integrator}; null: as the scene says. */
+  start(order, at) {
+    return this.#ask({ type: "start", ...order }, `start ${order.scene}`, at);
+  }
+
+  /** Ends the run that was started here. */
+  end(at) {
+    return this.#ask({ type: "end" }, "stop", at);
+  }
+
   async #ask(message, what, at) {
     at?.wait(what);
     const answer = await this.#link.ask(message);

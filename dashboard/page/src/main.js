@@ -14,6 +14,7 @@ import { Joystick } from "./panels/joystick.js";
 import { leaseControl } from "./panels/lease.js";
 import { Machine } from "./panels/machine.js";
 import { Push } from "./panels/push.js";
+import { Scenes } from "./panels/scenes.js";
 import { StartUp } from "./panels/startup.js";
 import { emergencyStop } from "./panels/stop.js";
 import { Tune } from "./panels/tune.js";
@@ -65,12 +66,15 @@ stage.append(hud.element, h("div", { class: "notes" }, stop.answer, trouble));
 
 let tabs = null;
 tabs = new Tabs([
+  ["scenes", new Scenes(desk, hub).element, "Scenes", true],
   ["steer", h("div", { class: "stack" }, startUp.element, walk.element, push.element, new Commands(desk, hub).element), "Steer"],
   ["tune", tune.element, "Tune"],
   ["plot", plots.element, "Plot"],
   ["machine", h("div", { class: "stack" }, machine.element, h("p", { class: "hint" }, h("a", { href: "/licenses.txt" }, "Licences of this page"))), "Machine"],
   ["events", events.element, "Events"],
 ]);
+// A server that starts runs says so. Where none is there yet, they come first.
+hub.on("scenes", () => tabs.reveal("scenes") && !hub.last("link")?.robot && tabs.open("scenes"));
 document.body.append(header.element, h("main", {}, stage, tabs.element));
 
 /** URDF of the robot that runs, or null; the answer that was asked for first serves once. */

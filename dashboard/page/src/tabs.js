@@ -4,27 +4,42 @@ import { h, mark, newId } from "./dom.js";
 
 const KEPT = "gangwerk.tab";
 
-/** Tabs over `panels` ([name, element, title]); `changed(name)` after each change. */
+/** Tabs over `panels` ([name, element, title, hidden at first]); `changed(name)` after each change. */
 export class Tabs {
   #tabs = new Map();
   current = "";
   #changed;
+  #kept = sessionStorage.getItem(KEPT);
 
   constructor(panels, changed) {
     this.#changed = changed;
     const list = h("div", { class: "tabs", role: "tablist", "aria-label": "Panels" });
     this.element = h("aside", { class: "side", "aria-label": "Desk" }, list);
-    for (const [name, content, title] of panels) {
+    for (const [name, content, title, hidden] of panels) {
       const id = newId("tab");
       const panel = h("div", { id: newId("panel"), class: `panel panel-${name}`, role: "tabpanel", "aria-labelledby": id, hidden: true, tabindex: -1 }, content);
-      const tab = h("button", { id, type: "button", role: "tab", "aria-controls": panel.id, "aria-selected": "false", tabindex: -1, onclick: () => this.open(name) }, title);
+      const tab = h("button", { id, type: "button", role: "tab", "aria-controls": panel.id, "aria-selected": "false", tabindex: -1, hidden, onclick: () => this.open(name) }, title);
       list.append(tab);
       this.element.append(panel);
       this.#tabs.set(name, { tab, panel });
     }
     list.addEventListener("keydown", (event) => this.#key(event));
-    const kept = sessionStorage.getItem(KEPT);
-    this.open(this.#tabs.has(kept) ? kept : panels[0][0]);
+    const names = this.#names();
+    this.open(names.includes(this.#kept) ? this.#kept : names[0]);
+  }
+
+  /** Shows a tab that was hidden, and its panel if it was the open one before a reload; false: it is there already. */
+  reveal(name) {
+    const { tab } = this.#tabs.get(name);
+    if (!tab.hidden) return false;
+    tab.hidden = false;
+    if (this.#kept === name) this.open(name);
+    return true;
+  }
+
+  /** Names of the tabs that are there. */
+  #names() {
+    return [...this.#tabs].filter(([, { tab }]) => !tab.hidden).map(([name]) => name);
   }
 
   /** Shows a panel. */
@@ -49,7 +64,7 @@ export class Tabs {
 
   #key(event) {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    const names = [...this.#tabs.keys()];
+    const names = this.#names();
     const to = step ? (names.indexOf(this.current) + step + names.length) % names.length : event.key === "Home" ? 0 : event.key === "End" ? names.length - 1 : -1;
     if (to < 0) return;
     event.preventDefault();

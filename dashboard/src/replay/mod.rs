@@ -178,7 +178,7 @@ impl Player {
                     RecordingRequest::Window(log, stretch) => guest.plot.asked[log] = Some(stretch),
                 }
             }
-            Notice::Lease(_) | Notice::Broker(_) | Notice::End => {}
+            Notice::Lease(_) | Notice::Broker(_) | Notice::Scenes(_) | Notice::Run(_) | Notice::End => {}
         }
     }
 

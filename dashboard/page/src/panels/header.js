@@ -55,6 +55,7 @@ export class Header {
       return this.#why || "No connection to the dashboard's server. It is tried again and again; if it was started anew, open the address that it printed. The emergency stop does not reach her from here: use `gangwerk estop`.";
     }
     if (this.recording) return this.#link.why;
+    if (!this.#link.robot && this.#hub.last("run")?.state === "none") return "No robot runs. Start one in the panel Scenes.";
     if (!this.#link.robot) return this.#link.why || "No robot runs. The page goes on by itself when one does: gangwerk run SCENE.";
     if (!this.#link.broker) return this.#link.why || "The broker does not answer: commands do not reach the robot.";
     return "";

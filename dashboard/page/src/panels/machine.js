@@ -4,8 +4,11 @@ import { h, mark, say } from "../dom.js";
 import { state } from "../frames.js";
 import { fixed, short } from "../numbers.js";
 
-// Axis of times: 1 us to 100 ms, logarithmic.
-const [FROM, TO] = [0, 5];
+// Octaves of the server's counts: the first one ends at 1.024 us, the last one is open.
+const OCTAVES = 20;
+const FIRST_END = 1.024; // us
+// Axis of times, logarithmic: an octave is a column.
+const [FROM, TO] = [Math.log10(FIRST_END / 2), Math.log10(FIRST_END * 2 ** (OCTAVES - 1))];
 const MARKS = [[0, "1 µs"], [1, "10"], [2, "100"], [3, "1 ms"], [4, "10"], [5, "100"]];
 const QUANTILES = [["p50", 0.5], ["p99", 0.99], ["p999", 0.999], ["max", 1]];
 
@@ -22,11 +25,11 @@ export class Machine {
   #layout = null;
 
   constructor(hub) {
-    const axis = h("div", { class: "time-axis", "aria-hidden": "true" }, MARKS.map(([x, text]) => h("span", { style: `left:${(x / TO) * 100}%` }, text)));
+    const axis = h("div", { class: "time-axis", "aria-hidden": "true" }, MARKS.map(([x, text]) => h("span", { style: `left:${place(10 ** x)}%` }, text)));
     this.element = h("div", { class: "stack" },
       h("section", { class: "card", "aria-labelledby": "cycles-title" },
         h("h2", { id: "cycles-title" }, "Cycles"), this.#summary,
-        h("p", { class: "legend" }, h("span", { class: "key execution" }), "execution ", h("span", { class: "key lateness" }), "lateness · half, 99 %, 99.9 %, all of the cycles are below"),
+        h("p", { class: "legend" }, h("span", { class: "key execution" }), "execution ", h("span", { class: "key lateness" }), "lateness · columns: cycles by octaves, logarithmic; bars: half, 99 %, 99.9 %, all of the cycles are below"),
         this.#processes, axis),
       h("section", { class: "card", "aria-labelledby": "joints-title" },
         h("h2", { id: "joints-title" }, "Joints"),
@@ -82,8 +85,8 @@ export class Machine {
   #show(process) {
     let row = this.#rows.get(process.name);
     if (!row) {
-      row = { name: h("span", { class: "process-name" }), numbers: h("span", { class: "hint" }), execution: strip("execution"), lateness: strip("lateness") };
-      row.element = h("div", { class: "process-row" }, h("div", { class: "process-head" }, row.name, row.numbers), row.execution.element, row.lateness.element);
+      row = { name: h("span", { class: "process-name" }), numbers: h("span", { class: "hint" }), execution: strip("execution"), lateness: strip("lateness"), columns: ["execution", "lateness"].map((kind) => [kind, columns(kind)]) };
+      row.element = h("div", { class: "process-row" }, h("div", { class: "process-head" }, row.name, row.numbers), row.columns.map(([kind, { element }]) => [element, row[kind].element]).flat());
       this.#rows.set(process.name, row);
       this.#processes.append(row.element);
     }
@@ -95,7 +98,27 @@ export class Machine {
     say(row.numbers, parts.filter(Boolean).join(" · "));
     row.execution.show(process.execution_us, "execution");
     row.lateness.show(process.lateness_us, "lateness");
+    for (const [kind, { show }] of row.columns) show(process[`${kind}_octaves`]);
   }
+}
+
+/** Cycles by octaves of their times: a column each, its height the logarithm of its count. */
+function columns(kind) {
+  const bars = Array.from({ length: OCTAVES }, () => h("span"));
+  const element = h("div", { class: `columns ${kind}`, role: "img" }, bars);
+  return {
+    element,
+    show(counts) {
+      element.hidden = !counts;
+      if (!counts) return;
+      const most = Math.max(1, ...counts);
+      // One cycle is seen beside a million.
+      for (const [i, bar] of bars.entries()) bar.style.height = `${((100 * Math.log10(1 + 9 * counts[i])) / Math.log10(1 + 9 * most)).toFixed(1)}%`;
+      const words = counts.map((count, i) => (count ? `${count} ${i < OCTAVES - 1 ? `below ${short(FIRST_END * 2 ** i)} µs` : "longer"}` : "")).filter(Boolean);
+      mark(element, "aria-label", `cycles by octaves of ${kind}: ${words.join(", ")}`);
+      element.title = element.getAttribute("aria-label");
+    },
+  };
 }
 
 /** Distribution of times as far as four quantiles tell it: a bar to each of them, the fainter the rarer. */
