@@ -8,7 +8,8 @@
 //! | [`replay`] | the same out of a log in place of a robot |
 //! | [`description`], [`picture`], [`state`], [`belief`], [`plotting`], [`health`] | what a page is told: once, at 60 Hz, as samples, about processes |
 //! | [`guests`] | pages that are there, and what each of them has lost |
-//! | [`operator`] | one client of the broker per page that commands |
+//! | [`operator`] | one client of the broker per page or viewer that commands |
+//! | [`foxglove`] | second door, for Foxglove and Lichtblick |
 //! | [`book`] | `docs/`, rendered, under `/book/` |
 //! | [`requests`] | what a page asks for |
 //!
@@ -21,6 +22,7 @@ pub mod book;
 pub mod daemon;
 pub mod description;
 pub mod door;
+pub mod foxglove;
 pub mod guests;
 pub mod health;
 pub mod observer;
@@ -33,4 +35,4 @@ pub mod requests;
 pub mod socket;
 pub mod state;
 
-pub use daemon::{Options, serve, serve_recording};
+pub use daemon::{Addresses, Options, serve, serve_recording};
