@@ -3,6 +3,8 @@
 
 #[path = "dashboard/book.rs"]
 mod book;
+#[path = "dashboard/foxglove.rs"]
+mod foxglove;
 #[path = "dashboard/measured.rs"]
 mod measured;
 #[path = "dashboard/page.rs"]
@@ -328,11 +330,26 @@ fn who_does_not_read_is_left_and_others_go_on() {
     server.page().text("hello");
 }
 
+/// Joint targets of a log.
+fn targets(log: &Path) -> Vec<JointTargets> {
+    Log::open(log).unwrap().records(&JOINT_TARGETS).unwrap()
+}
+
+/// Every joint target of a log is the expected one, bit for bit.
+#[track_caller]
+fn assert_same_targets(expected: &[JointTargets], log: &Path) {
+    let seen = targets(log);
+    assert_eq!(seen.len(), expected.len());
+    for (a, b) in expected.iter().zip(&seen) {
+        let bits =
+            |t: &JointTargets| (t.header.tick, t.mode, t.angle.map(f64::to_bits), t.speed.map(f64::to_bits));
+        assert_eq!(bits(a), bits(b), "tick {}", a.header.tick);
+    }
+}
+
 #[test]
 fn a_killed_server_with_ten_pages_changes_no_bit_of_the_walk() {
     let _turn = turn();
-    let targets =
-        |path: &Path| -> Vec<JointTargets> { Log::open(path).unwrap().records(&JOINT_TARGETS).unwrap() };
     let alone = Site::patient(EXE);
     alone.scene("walk", 5.0, WALK);
     alone.run("walk", &["--lockstep"]).end().well();
@@ -355,13 +372,7 @@ fn a_killed_server_with_ten_pages_changes_no_bit_of_the_walk() {
     server.running.signal_supervisor(Signal::KILL);
     assert!(time < 4.5, "it is killed while she walks");
     assert_eq!(run.end().code, Some(0));
-    let seen = targets(&site.path("walk.mcap"));
-    assert_eq!(seen.len(), expected.len());
-    for (a, b) in expected.iter().zip(&seen) {
-        let bits =
-            |t: &JointTargets| (t.header.tick, t.mode, t.angle.map(f64::to_bits), t.speed.map(f64::to_bits));
-        assert_eq!(bits(a), bits(b), "tick {}", a.header.tick);
-    }
+    assert_same_targets(&expected, &site.path("walk.mcap"));
     // The next server is there at once, in the same place.
     Server::start(&site).page().text("link");
 }

@@ -73,6 +73,8 @@ impl Watcher {
 
     /// Until the server ends.
     pub fn run(mut self) {
+        // The first one who comes is told whether a robot is there.
+        self.look();
         let mut next = now();
         loop {
             let wait = Duration::from_nanos(next.saturating_sub(now()));
