@@ -36,7 +36,7 @@ impl TwoDoors {
     /// Status of the attempt to open a socket.
     fn knock(&self, query: &str, host: &str, more: &[&str]) -> u16 {
         let host = format!("Host: {host}");
-        knock(&self.host, &format!("/{query}"), &[&[host.as_str()], more].concat())
+        knock(&self.host, &format!("/{query}"), &[&[host.as_str()][..], more].concat())
     }
 
     /// A viewer without the token, or the status with which it was refused.
@@ -80,28 +80,29 @@ fn closed(mut socket: WebSocket<TcpStream>) -> Option<u16> {
 fn strangers_long_frames_and_nonsense_are_refused_at_the_second_door() {
     let site = Site::new(EXE);
     let doors = TwoDoors::open(&site);
-    let (host, right) = (doors.host.as_str(), format!("?token={}", doors.token));
-    let wrong = format!("?token={}", "0".repeat(32));
-    let protocol = format!("Sec-WebSocket-Protocol: {SUBPROTOCOL}");
-    let port = host.rsplit(':').next().unwrap();
+    let (host, page) = (doors.host.as_str(), doors.server.host.as_str());
+    let local = format!("localhost:{}", host.rsplit(':').next().unwrap());
+    let [right, wrong] = [&doors.token, &"0".repeat(32)].map(|token| format!("?token={token}"));
+    let (protocol, from_page) =
+        (format!("Sec-WebSocket-Protocol: {SUBPROTOCOL}"), format!("Origin: http://{page}"));
+    let (protocol, from_page) = (protocol.as_str(), from_page.as_str());
     // Host, then Origin and token, then subprotocol.
-    let page = format!("Origin: http://{}", doors.server.host);
     for (query, named, more, status) in [
-        ("", host, vec![protocol.as_str()], 101),
-        ("", &format!("localhost:{port}"), vec![&protocol, "Origin: file://"], 101),
-        (&right, host, vec![&protocol, "Origin: https://app.foxglove.dev"], 101),
-        ("", host, vec![&protocol, &page], 101),
+        ("", host, vec![protocol], 101),
+        ("", local.as_str(), vec![protocol, "Origin: file://"], 101),
+        (&right, host, vec![protocol, "Origin: https://app.foxglove.dev"], 101),
+        ("", host, vec![protocol, from_page], 101),
         ("", host, vec!["Sec-WebSocket-Protocol: other, foxglove.sdk.v1"], 101),
-        ("", "evil.example:8765", vec![&protocol], 403),
-        (&right, &doors.server.host, vec![&protocol], 403),
-        (&right, host, vec![&protocol, "Origin: http://evil.example"], 403),
-        (&right, host, vec![&protocol, "Origin: https://app.foxglove.dev.evil.example"], 403),
-        (&right, host, vec![&protocol, "Origin: null"], 403),
-        (&wrong, host, vec![&protocol], 403),
-        ("?token=", host, vec![&protocol], 403),
+        ("", "evil.example:8765", vec![protocol], 403),
+        (&right, page, vec![protocol], 403),
+        (&right, host, vec![protocol, "Origin: http://evil.example"], 403),
+        (&right, host, vec![protocol, "Origin: https://app.foxglove.dev.evil.example"], 403),
+        (&right, host, vec![protocol, "Origin: null"], 403),
+        (&wrong, host, vec![protocol], 403),
+        ("?token=", host, vec![protocol], 403),
         ("", host, vec!["Sec-WebSocket-Protocol: graphql-ws"], 400),
         ("", host, vec![], 400),
-        ("socket", host, vec![&protocol], 404),
+        ("socket", host, vec![protocol], 404),
     ] {
         assert_eq!(doors.knock(query, named, &more), status, "{query} {named} {more:?}");
     }
@@ -176,8 +177,8 @@ fn viewers_of_all_channels_that_do_not_read_change_no_bit_of_the_walk() {
     let site = Site::patient(EXE);
     site.scene("walk", 6.0, WALK);
     let doors = TwoDoors::open(&site);
-    let viewers: Vec<_> = (0..4).map(|_| doors.viewer().unwrap()).collect();
-    let mut viewers = viewers.into_iter().map(|mut viewer| {
+    let mut viewers = (0..4).map(|_| {
+        let mut viewer = doors.viewer().unwrap();
         let channels = text(&mut viewer, "advertise")["channels"].as_array().unwrap().len();
         let all: Vec<Value> = (0..channels).map(|id| json!({"id": 100 + id, "channelId": id})).collect();
         viewer.send(Message::text(json!({"op": "subscribe", "subscriptions": all}).to_string())).unwrap();

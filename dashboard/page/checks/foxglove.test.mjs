@@ -3,6 +3,7 @@
 
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
+import { readFileSync } from "node:fs";
 import path from "node:path";
 import { after, afterEach, before, test } from "node:test";
 import { parse } from "@foxglove/rosmsg";
@@ -132,6 +133,21 @@ test("channels are described, and their messages are sensible and change", { ski
   const angles = [...seen.sensors.values()].map(({ angle }) => angle[knee]);
   assert.ok(angles.every((angle) => angle > -0.1 && angle < 2.5) && new Set(angles).size > 100, `knee ${Math.min(...angles)} to ${Math.max(...angles)} rad`);
   t.diagnostic(`${ticks.length} cycles, ${gaps} gaps, ${seen.joints.size} joint states, ${viewer.times.length} times`);
+});
+
+test("the shipped layout shows what there is", { skip, timeout: 30000 }, async () => {
+  const { channels } = await new Viewer().ready();
+  const { configById } = JSON.parse(readFileSync(path.join(import.meta.dirname, "../../../config/foxglove/lola.json"), "utf8"));
+  const panels = Object.values(configById);
+  const paths = panels.flatMap(({ paths = [], topicPath = [], topicToRender = [], topics = {} }) => [...paths.map(({ value }) => value), topicPath, topicToRender, ...Object.keys(topics)].flat());
+  assert.ok(paths.length > 20, `${paths.length} paths`);
+  for (const whole of paths) {
+    const [, topic, name, index] = whole.match(/^(\/[\w/]+)(?:\.(\w+)(?:\[(\d+)\])?)?$/);
+    const channel = channels.find((c) => c.topic === topic) ?? assert.fail(`no channel ${topic}`);
+    const field = parse(channel.schema, { ros2: true }).find((d) => d.name === undefined).definitions.find((f) => f.name === name);
+    assert.ok(name === undefined || field, `${topic} has no ${name}`);
+    assert.ok(index === undefined || Number(index) < field.arrayLength, whole);
+  }
 });
 
 test("a parameter is set with the token, answered, and told to those that follow it", { skip, timeout: 60000 }, async () => {
