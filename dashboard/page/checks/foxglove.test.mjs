@@ -17,7 +17,10 @@ import { table } from "./recording.mjs";
 const { FoxgloveClient } = protocol;
 const able = spawnSync(binary(), ["dashboard", "--help"], { encoding: "utf8" }).stdout?.includes("--foxglove");
 const skip = able ? false : "this gangwerk has no door for Foxglove";
-const STAND = '[[command]]\ntime = 0.2\ntopic = "walk/stand"\n';
+/** Walks a little by herself, so that there is something to see, and then waits for somebody. */
+const TIMELINE = [["0.2", "walk/stand"], ["3.0", "walk/velocity", "forward = 0.278"], ["8.0", "walk/stop"]]
+  .map(([time, topic, more = ""]) => `[[command]]\ntime = ${time}\ntopic = "${topic}"\n${more}\n`).join("");
+const STOPPED = 12000; // [ticks] after that
 const [STANDING, WALKING] = [1n, 3n];
 const [WARNING, ERROR] = [1, 2];
 const processes = new Processes();
@@ -94,7 +97,7 @@ class Viewer {
 
 before(async () => {
   if (!able) return;
-  const run = [processes.scene("fox", "walk_1kmh", STAND), "--lockstep", "--paced", "--out", processes.folder, "--no-plots"];
+  const run = [processes.scene("fox", "walk_1kmh", TIMELINE), "--lockstep", "--paced", "--out", processes.folder, "--no-plots"];
   ({ child: robot } = await processes.start(/joined|supply/, "run", ...run, "--dir", processes.run));
   const { line } = await processes.start(/ws:\/\/127\.0\.0\.1:\d+\/\?token=[0-9a-f]{32}/, "dashboard", "--dir", processes.run, "--no-open", "--listen", "127.0.0.1:0", "--foxglove", "127.0.0.1:0");
   address = line.match(/ws:\S+/)[0];
@@ -123,7 +126,8 @@ test("channels are described, and their messages are sensible and change", { ski
   viewer.subscribe("/joint_states", ({ name, position }, time) => seen.joints.set(Number(time / 1000000n), { name, position: [...position] }));
   let frames = 0;
   viewer.subscribe("/tf", ({ transforms }) => { frames += transforms.length; });
-  await until("3000 cycles", () => seen.sensors.size >= 3000 && seen.joints.size >= 280 && frames > 0, 60000);
+  const newest = () => [...seen.sensors.keys()].at(-1) ?? 0;
+  await until("a walk", () => seen.sensors.size >= 3000 && newest() > 5000 && frames > 0, 60000);
   const ticks = [...seen.sensors.keys()];
   const gaps = ticks.filter((tick, i) => i > 0 && tick !== ticks[i - 1] + 1).length;
   assert.ok(gaps < 5, `${gaps} gaps`);
@@ -131,7 +135,11 @@ test("channels are described, and their messages are sensible and change", { ski
   const last = [...seen.joints.values()].at(-1);
   const knee = last.name.findIndex((name) => /right.*knee/.test(name));
   const angles = [...seen.sensors.values()].map(({ angle }) => angle[knee]);
-  assert.ok(angles.every((angle) => angle > -0.1 && angle < 2.5) && new Set(angles).size > 100, `knee ${Math.min(...angles)} to ${Math.max(...angles)} rad`);
+  const [least, most] = [Math.min(...angles), Math.max(...angles)];
+  assert.ok(least > 0 && most < 2.01 && most - least > 0.1 && new Set(angles).size > 1000, `knee ${least} to ${most} rad`);
+  const weight = [...seen.sensors.values()].map(({ force }) => force[0] + force[1]);
+  assert.ok(Math.max(...weight) > 400 && Math.max(...weight) < 3000, `${Math.max(...weight)} N on both feet`);
+  assert.ok(seen.joints.size >= ticks.length / 11, `${seen.joints.size} joint states`);
   t.diagnostic(`${ticks.length} cycles, ${gaps} gaps, ${seen.joints.size} joint states, ${viewer.times.length} times`);
 });
 
@@ -188,9 +196,9 @@ test("without the token nothing is set and nothing moves", { skip, timeout: 6000
 
 test("walks while velocities come, and stands when they come no more", { skip, timeout: 120000 }, async () => {
   const viewer = await new Viewer({ token: true }).ready();
-  let gait;
-  viewer.subscribe("/gangwerk/controller_state", (state) => { gait = state.gait; });
-  await until("standing", () => gait === STANDING, 60000);
+  let [gait, tick] = [0n, 0];
+  viewer.subscribe("/gangwerk/controller_state", (state) => { [gait, tick] = [state.gait, Number(state.header.tick)]; });
+  await until("standing", () => gait === STANDING && tick > STOPPED, 60000);
   const channel = viewer.client.advertise({ topic: "/command/velocity", encoding: "json", schemaName: "geometry_msgs/Twist" });
   const say = (velocity) => viewer.client.sendMessage(channel, Buffer.from(JSON.stringify(velocity)));
   say({ forward: 9 });
