@@ -151,6 +151,7 @@ impl House {
     ) -> Result<(), String> {
         let Self { runtime, listener, admission, second, dir, addresses } = self;
         let (observer, hall) = (hall.observer.clone(), Arc::new(hall));
+        // Doors, and the threads behind them.
         let (watcher, notices) = channel();
         let mut threads = vec![watching];
         let mut doors = vec![(listener, door::router(Door { admission, hall: hall.clone(), files }))];

@@ -46,11 +46,13 @@ async fn enter(
     RawQuery(query): RawQuery,
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Response {
+    // Who asks, before anything else: strangers learn nothing.
     let refuse = |status: StatusCode, why: &str| (status, format!("{why}\n")).into_response();
     let may_command = match admit(&door.admission, &headers, token(query.as_deref())) {
         Ok(may_command) => may_command,
         Err(why) => return refuse(StatusCode::FORBIDDEN, why),
     };
+    // What is asked for.
     let upgrade = match upgrade {
         Ok(upgrade) => upgrade.protocols(SUBPROTOCOLS),
         Err(rejection) => return rejection.into_response(),

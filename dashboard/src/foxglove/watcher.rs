@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
+use axum::extract::ws::Utf8Bytes;
 use broker::observation::Observation;
 use config::Setup;
 use ipc::{IpcError, Reader, Run, Space};
@@ -55,7 +56,7 @@ pub struct Watcher {
     viewers: Vec<Viewer>,
     channels: Vec<LogChannel>,
     /// Messages that every viewer is told first.
-    greeting: [String; 2],
+    greeting: [Utf8Bytes; 2],
     session: Option<Session>,
     /// Why no robot is seen.
     why: String,
@@ -66,7 +67,7 @@ impl Watcher {
     /// Of the robot in `dir`.
     pub fn new(dir: PathBuf, notices: Receiver<ViewerNotice>) -> Self {
         let channels = channels();
-        let greeting = [server_info(&now().to_string()), advertise(&channels)];
+        let greeting = [server_info(&now().to_string()), advertise(&channels)].map(Utf8Bytes::from);
         let (viewers, session, why) = (Vec::new(), None, String::new());
         Self { dir, notices, viewers, channels, greeting, session, why, next_search: 0 }
     }
@@ -95,7 +96,7 @@ impl Watcher {
         match notice {
             ViewerNotice::Arrived(number, outbox) => {
                 let mut viewer = Viewer::new(number, outbox);
-                self.greeting.iter().for_each(|text| viewer.text(text.as_str()));
+                self.greeting.iter().for_each(|text| viewer.text(text.clone()));
                 if self.session.is_none() {
                     viewer.status(StatusLevel::Warning, &self.why);
                 }
@@ -208,10 +209,8 @@ impl Watcher {
     /// Looks whether the robot is still there, or a new one.
     fn search(&mut self) {
         let supervisor = ipc::supervisor(&self.dir);
-        if self.session.as_ref().is_some_and(|session| supervisor != Some(session.supervisor)) {
-            // Its ports go before the next run makes others in their place.
-            self.session = None;
-        }
+        // Its ports go before the next run makes others in their place.
+        let gone = self.session.take_if(|session| supervisor != Some(session.supervisor)).is_some();
         let dir = self.dir.display();
         match (supervisor, &self.session) {
             (Some(_), Some(_)) => {}
@@ -226,6 +225,10 @@ impl Watcher {
                 Ok(session) => self.begin(session),
                 Err(e) => self.why = format!("the robot in {dir} cannot be observed: {e}"),
             },
+        }
+        if gone && self.session.is_none() {
+            let why = &self.why;
+            self.viewers.iter_mut().for_each(|viewer| viewer.status(StatusLevel::Warning, why));
         }
     }
 
