@@ -32,12 +32,12 @@ use crate::socket::Hall;
 pub const ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 8720);
 /// File of the run directory with the address of the page.
 pub const URL_FILE: &str = "dashboard.url";
+/// Page of the run directory that leads there: a browser's command line, which everybody may read, names it instead of the token.
+pub const LINK_FILE: &str = "dashboard.html";
 /// Address of the door for Foxglove unless another one is asked for: the port that Foxglove proposes.
 pub const FOXGLOVE_ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 8765);
 /// File of the run directory with the address for Foxglove.
 pub const FOXGLOVE_FILE: &str = "foxglove.url";
-/// Page of the run directory that leads there: a browser's command line, which everybody may read, names it instead of the token.
-pub const LINK_FILE: &str = "dashboard.html";
 /// Bytes of the kernel's that wait for one page: who does not read is noticed soon.
 const SEND_BUFFER: u32 = 64 << 10;
 /// Connections that wait to be taken.
