@@ -5,9 +5,9 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use dashboard::Options;
 use dashboard::daemon::LINK_FILE;
 use dashboard::starter::StartOptions;
+use dashboard::{Addresses, Options};
 use realtime::Stop;
 
 #[derive(clap::Args)]
@@ -30,6 +30,10 @@ pub(crate) struct DashboardArguments {
     /// Address on the loopback interface; default: 127.0.0.1:8720, or any free port if that is taken.
     #[arg(long, value_name = "ADDRESS")]
     listen: Option<SocketAddr>,
+    /// Serve Foxglove and Lichtblick, too, at this address on the loopback interface; without one: 127.0.0.1:8765, or any free port
+    /// if that is taken: docs/foxglove.md.
+    #[arg(long, value_name = "ADDRESS", conflicts_with = "replay")]
+    foxglove: Option<Option<SocketAddr>>,
     /// Print the address only, and open no browser.
     #[arg(long)]
     no_open: bool,
@@ -40,7 +44,8 @@ pub(crate) struct DashboardArguments {
 
 /// Serves the page until Ctrl-C.
 pub(crate) fn run(arguments: DashboardArguments, config: Option<&Path>) -> Result<(), Box<dyn Error>> {
-    let DashboardArguments { dir, replay, against, scene, start, listen, no_open, with_parent } = arguments;
+    let DashboardArguments { dir, replay, against, scene, start, listen, foxglove, no_open, with_parent } =
+        arguments;
     let stop = Stop::on_signals()?;
     if with_parent {
         Stop::with_parent()?;
@@ -52,9 +57,12 @@ pub(crate) fn run(arguments: DashboardArguments, config: Option<&Path>) -> Resul
             Some(StartOptions { command: std::env::current_exe()?, config: config::find(config)?.dir, first })
         }
     };
-    let options = Options { dir: dir.clone(), listen, start };
-    let ready = |url: &str| {
-        println!("{url}");
+    let options = Options { dir: dir.clone(), listen, start, foxglove };
+    let ready = |addresses: &Addresses| {
+        println!("{}", addresses.page);
+        if let Some(url) = &addresses.foxglove {
+            println!("Foxglove, Lichtblick: {url}");
+        }
         if !no_open {
             open(&dir.join(LINK_FILE));
         }

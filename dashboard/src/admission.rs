@@ -32,6 +32,16 @@ impl Admission {
         format!("http://{}/#{}", self.address, self.token)
     }
 
+    /// Conditions at another address of the same server: its token is the same.
+    pub fn at(&self, address: SocketAddr) -> Self {
+        Self { token: self.token.clone(), port: address.port(), address }
+    }
+
+    /// Address for viewers that are no page of ours, with the token.
+    pub fn viewer_url(&self) -> String {
+        format!("ws://{}/?token={}", self.address, self.token)
+    }
+
     /// True if a request names this server: by its address, or as localhost.
     pub fn is_host(&self, host: Option<&str>) -> bool {
         let port = self.port;
@@ -45,8 +55,8 @@ impl Admission {
         self.is_host(Some(host)) && origin.strip_prefix("http://") == Some(host) && self.is_token(token)
     }
 
-    /// In a time that does not tell how much of it is right.
-    fn is_token(&self, token: &str) -> bool {
+    /// True if it is the token, in a time that does not tell how much of it is right.
+    pub fn is_token(&self, token: &str) -> bool {
         let differences = self.token.bytes().zip(token.bytes()).fold(0, |sum, (a, b)| sum | (a ^ b));
         token.len() == self.token.len() && differences == 0
     }

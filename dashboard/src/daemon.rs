@@ -1,7 +1,8 @@
 //! The process: `gangwerk dashboard`.
 //!
 //! tokio serves HTTP and sockets on one thread. Beside it are ordinary threads: the observer, the emergency stop, the look at
-//! the command lease, one operator per page that commands, and the starter of runs if it may start some. Of a recording there is one thread, which reads it.
+//! the command lease, one operator per page that commands, the starter of runs if it may start some, and the watcher for Foxglove if
+//! it is asked for. Of a recording there is one thread, which reads it.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -20,6 +21,7 @@ use watchdog::stop_request::{StopOutcome, stop};
 use crate::admission::Admission;
 use crate::description::RobotFiles;
 use crate::door::{self, Door};
+use crate::foxglove::{self, Lobby, ViewerDoor, ViewerNotice, Watcher};
 use crate::guests::Outbox;
 use crate::observer::{Notice, Observer};
 use crate::operator::{answer, watch_lease};
@@ -33,6 +35,10 @@ pub const ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST),
 pub const URL_FILE: &str = "dashboard.url";
 /// Page of the run directory that leads there: a browser's command line, which everybody may read, names it instead of the token.
 pub const LINK_FILE: &str = "dashboard.html";
+/// Address of the door for Foxglove unless another one is asked for: the port that Foxglove proposes.
+pub const FOXGLOVE_ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 8765);
+/// File of the run directory with the address for Foxglove.
+pub const FOXGLOVE_FILE: &str = "foxglove.url";
 /// Bytes of the kernel's that wait for one page: who does not read is noticed soon.
 const SEND_BUFFER: u32 = 64 << 10;
 /// Connections that wait to be taken.
@@ -49,13 +55,27 @@ pub struct Options {
     pub listen: Option<SocketAddr>,
     /// Start of runs from the page; none: it can start nothing.
     pub start: Option<StartOptions>,
+    /// Door for Foxglove, which a recording has not.
+    pub foxglove: Option<FoxgloveAddress>,
 }
 
-/// Serves the robot of a directory until `stop`. `ready` is told the address of the page, with its token.
+/// Address of the door for Foxglove; none: [`FOXGLOVE_ADDRESS`], or another port if that one is taken.
+pub type FoxgloveAddress = Option<SocketAddr>;
+
+/// Addresses of a server, with their token.
+#[derive(Clone, Debug)]
+pub struct Addresses {
+    /// Of the page.
+    pub page: String,
+    /// For Foxglove.
+    pub foxglove: Option<String>,
+}
+
+/// Serves the robot of a directory until `stop`. `ready` is told the addresses.
 ///
 /// # Errors
 /// The address is taken or not on the loopback interface, the run directory is not private, or there is no such scene to start.
-pub fn serve(options: &Options, stop: &Stop, ready: impl FnOnce(&str)) -> Result<(), String> {
+pub fn serve(options: &Options, stop: &Stop, ready: impl FnOnce(&Addresses)) -> Result<(), String> {
     options.start.as_ref().map_or(Ok(()), StartOptions::check)?;
     let house = House::open(options)?;
     // Threads that wait, each for its own.
@@ -83,7 +103,7 @@ pub fn serve_recording(
     log: Recorded,
     other: Option<Recorded>,
     stop: &Stop,
-    ready: impl FnOnce(&str),
+    ready: impl FnOnce(&Addresses),
 ) -> Result<(), String> {
     let (player, notices) = channel();
     let (stops, _) = channel();
@@ -95,28 +115,35 @@ pub fn serve_recording(
     house.serve(Hall::new(None, player, stops, None), robot_files, watching, stop, ready)
 }
 
-/// Server with its address, before anybody comes.
+/// Server with its addresses, before anybody comes.
 struct House {
     runtime: Runtime,
     listener: TcpListener,
     admission: Admission,
+    /// Door for Foxglove.
+    second: Option<(TcpListener, Admission)>,
     dir: PathBuf,
-    url: String,
+    addresses: Addresses,
 }
 
 impl House {
-    /// Takes the address, and leaves it in the run directory.
+    /// Takes the addresses, and leaves them in the run directory.
     fn open(options: &Options) -> Result<Self, String> {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|e| format!("no runtime: {e}"))?;
         let entered = runtime.enter();
-        let listener = listen(options.listen)?;
-        let address = listener.local_addr().map_err(|e| e.to_string())?;
-        drop(entered);
+        let (listener, address) = listen("--listen", options.listen, ADDRESS)?;
         let admission = Admission::new(address)?;
-        let url = admission.url();
-        publish(&options.dir, &url)?;
-        Ok(Self { runtime, listener, admission, dir: options.dir.clone(), url })
+        let second = options.foxglove.map(|asked| {
+            let (listener, address) = listen("--foxglove", asked, FOXGLOVE_ADDRESS)?;
+            Ok::<_, String>((listener, admission.at(address)))
+        });
+        let second = second.transpose()?;
+        drop(entered);
+        let foxglove = second.as_ref().map(|(_, admission)| admission.viewer_url());
+        let addresses = Addresses { page: admission.url(), foxglove };
+        publish(&options.dir, &addresses)?;
+        Ok(Self { runtime, listener, admission, second, dir: options.dir.clone(), addresses })
     }
 
     /// Serves the pages that come, until `stop` or the end of the thread that has something for them.
@@ -126,15 +153,26 @@ impl House {
         files: watch::Receiver<RobotFiles>,
         watching: JoinHandle<()>,
         stop: &Stop,
-        ready: impl FnOnce(&str),
+        ready: impl FnOnce(&Addresses),
     ) -> Result<(), String> {
-        let Self { runtime, listener, admission, dir, url } = self;
+        let Self { runtime, listener, admission, second, dir, addresses } = self;
         let hall = Arc::new(hall);
-        let door = Arc::new(Door { admission, hall: hall.clone(), files });
-        ready(&url);
+        // Doors, and the threads behind them.
+        let (watcher, notices) = channel();
+        let mut threads = vec![watching];
+        let mut doors = vec![(listener, door::router(Door { admission, hall: hall.clone(), files }))];
+        if let Some((listener, admission)) = second {
+            let own = dir.clone();
+            threads.push(spawn("foxglove", move || Watcher::new(own, notices).run())?);
+            let lobby = Lobby::new(hall.clone(), watcher.clone());
+            doors.push((listener, foxglove::door::router(ViewerDoor { admission, lobby })));
+        }
+        ready(&addresses);
         runtime.block_on(async {
-            let serving = tokio::spawn(door::serve(listener, door));
-            while !stop.asked() && !watching.is_finished() {
+            for (listener, router) in doors {
+                tokio::spawn(door::serve(listener, router));
+            }
+            while !stop.asked() && !threads.iter().any(JoinHandle::is_finished) {
                 tokio::time::sleep(LOOK).await;
             }
             // The run that was started here ends first: pages see its robot come to a stand, and can cut its supply.
@@ -148,23 +186,32 @@ impl House {
                     tokio::time::sleep(LOOK).await;
                 }
             }
-            serving.abort();
         });
-        // Open sockets go with the runtime, and with them the operators and their leases.
+        // Doors and open sockets go with the runtime, and with them the operators and their leases.
         drop(runtime);
-        let _ = hall.observer.send(Notice::End);
-        let ended = watching.join().map_err(|_| "the observer's thread ended by an error".to_owned());
-        ipc::withdraw_file(&dir, LINK_FILE, &link(&url));
-        ipc::withdraw_file(&dir, URL_FILE, &line(&url));
-        ended
+        let _ = (hall.observer.send(Notice::End), watcher.send(ViewerNotice::End));
+        let ended: Vec<_> = threads.into_iter().map(JoinHandle::join).collect();
+        withdraw(&dir, &addresses);
+        let failed = ended.iter().any(Result::is_err);
+        if failed { Err("a thread that reads topics ended by an error".into()) } else { Ok(()) }
     }
 }
 
-/// Leaves the address in the run directory, for its user only.
-fn publish(dir: &Path, url: &str) -> Result<(), String> {
-    let put = |name, text: &str| ipc::publish_file(dir, name, text).map_err(|e| e.to_string());
-    put(URL_FILE, &line(url))?;
-    put(LINK_FILE, &link(url))
+/// Leaves the addresses in the run directory, for its user only.
+fn publish(dir: &Path, addresses: &Addresses) -> Result<(), String> {
+    let mut files = files(addresses);
+    files.try_for_each(|(name, text)| ipc::publish_file(dir, name, &text).map_err(|e| e.to_string()))
+}
+
+fn withdraw(dir: &Path, addresses: &Addresses) {
+    files(addresses).for_each(|(name, text)| ipc::withdraw_file(dir, name, &text));
+}
+
+/// Files of the run directory that tell the addresses, and their texts; the one of the page comes last: where it is, all are.
+fn files(addresses: &Addresses) -> impl Iterator<Item = (&'static str, String)> {
+    let Addresses { page, foxglove } = addresses;
+    let second = foxglove.as_ref().map(|url| (FOXGLOVE_FILE, line(url)));
+    second.into_iter().chain([(LINK_FILE, link(page)), (URL_FILE, line(page))])
 }
 
 fn line(url: &str) -> String {
@@ -181,19 +228,26 @@ fn spawn(name: &str, run: impl FnOnce() + Send + 'static) -> Result<JoinHandle<(
     std::thread::Builder::new().name(name.into()).spawn(run).map_err(|e| format!("thread {name}: {e}"))
 }
 
-/// Takes the address.
-fn listen(asked: Option<SocketAddr>) -> Result<TcpListener, String> {
-    match asked {
+/// Takes the address that an option asks for, or the usual one, or another port of it; and what it is.
+fn listen(
+    option: &str,
+    asked: Option<SocketAddr>,
+    usual: SocketAddr,
+) -> Result<(TcpListener, SocketAddr), String> {
+    let listener = match asked {
         Some(address) if !address.ip().is_loopback() => Err(format!(
-            "--listen {address}: must be an address of the loopback interface, such as 127.0.0.1:8720; \
-             from another machine: ssh -L 8720:127.0.0.1:8720"
+            "{option} {address}: must be an address of the loopback interface, such as {usual}; \
+             from another machine: ssh -L {port}:{usual}",
+            port = usual.port()
         )),
         Some(address) => bind(address)
-            .map_err(|e| format!("--listen {address}: {e}; another port, or 0 for any: 127.0.0.1:0")),
-        None => bind(ADDRESS)
-            .or_else(|_| bind(SocketAddr::new(ADDRESS.ip(), 0)))
-            .map_err(|e| format!("no port of {} is free: {e}", ADDRESS.ip())),
-    }
+            .map_err(|e| format!("{option} {address}: {e}; another port, or 0 for any: 127.0.0.1:0")),
+        None => bind(usual)
+            .or_else(|_| bind(SocketAddr::new(usual.ip(), 0)))
+            .map_err(|e| format!("no port of {} is free: {e}", usual.ip())),
+    }?;
+    let address = listener.local_addr().map_err(|e| e.to_string())?;
+    Ok((listener, address))
 }
 
 fn bind(address: SocketAddr) -> std::io::Result<TcpListener> {
@@ -224,7 +278,10 @@ mod tests {
 
     #[test]
     fn an_address_beyond_the_loopback_interface_is_refused() {
-        let error = listen(Some("0.0.0.0:0".parse().unwrap())).unwrap_err();
-        assert!(error.contains("loopback") && error.contains("ssh -L"), "{error}");
+        for (option, usual) in [("--listen", ADDRESS), ("--foxglove", FOXGLOVE_ADDRESS)] {
+            let error = listen(option, Some("0.0.0.0:0".parse().unwrap()), usual).unwrap_err();
+            let told = [option, "loopback", &format!("ssh -L {}", usual.port())];
+            assert!(told.iter().all(|part| error.contains(part)), "{error}");
+        }
     }
 }

@@ -29,7 +29,7 @@ const MOST_CONNECTIONS: usize = 128;
 /// Time for the head of a request.
 const HEAD_TIME: Duration = Duration::from_secs(5);
 /// Bytes that wait for one page inside the server, besides its queue.
-const WRITE_BUFFER: usize = 1 << 20;
+pub(crate) const WRITE_BUFFER: usize = 1 << 20;
 
 /// No foreign origin, no inline script, no frame; styles may be set by the page's own elements.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; \
@@ -53,10 +53,15 @@ pub struct Door {
     pub files: watch::Receiver<RobotFiles>,
 }
 
-/// Serves connections for ever.
-pub async fn serve(listener: TcpListener, door: Arc<Door>) {
+/// Everything behind the door.
+pub fn router(door: Door) -> Router {
+    let door = Arc::new(door);
     let guard = axum::middleware::from_fn_with_state(door.clone(), guard);
-    let router = Router::new().route("/socket", get(enter)).fallback(get(file)).layer(guard).with_state(door);
+    Router::new().route("/socket", get(enter)).fallback(get(file)).layer(guard).with_state(door)
+}
+
+/// Serves connections for ever.
+pub async fn serve(listener: TcpListener, router: Router) {
     let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
     loop {
         // No descriptor free: somebody must end first.
@@ -92,6 +97,11 @@ async fn guard(State(door): State<Arc<Door>>, request: Request, next: Next) -> R
 
 fn text(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     headers.get(name)?.to_str().ok()
+}
+
+/// Token of a query.
+pub(crate) fn token(query: Option<&str>) -> Option<&str> {
+    query?.split('&').find_map(|part| part.strip_prefix("token="))
 }
 
 /// A file of the page, of the book or of the robot.
@@ -132,9 +142,7 @@ async fn enter(
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Response {
     let (host, origin) = (text(&headers, header::HOST), text(&headers, header::ORIGIN));
-    let token =
-        query.as_deref().and_then(|query| query.split('&').find_map(|part| part.strip_prefix("token=")));
-    if !door.admission.admits(host, origin, token) {
+    if !door.admission.admits(host, origin, token(query.as_deref())) {
         return (StatusCode::FORBIDDEN, "the address that `gangwerk dashboard` printed opens the page\n")
             .into_response();
     }

@@ -43,7 +43,12 @@ pub struct Outbox {
 impl Outbox {
     /// A queue, and its end from which a socket is fed.
     pub fn new() -> (Self, mpsc::Receiver<Message>) {
-        let (queue, fed) = mpsc::channel(ROOM);
+        Self::with_room(ROOM)
+    }
+
+    /// The same for so many messages, more than the texts that have their places among them.
+    pub fn with_room(room: usize) -> (Self, mpsc::Receiver<Message>) {
+        let (queue, fed) = mpsc::channel(room);
         (Self { queue, lost: Arc::default(), end: Arc::default() }, fed)
     }
 
@@ -62,14 +67,19 @@ impl Outbox {
         self.end.notified().await;
     }
 
-    /// Puts a frame into the queue; false: there is no room, and it is counted.
-    fn frame(&self, kind: FrameKind, tick: u64, content: &[u8]) -> bool {
+    /// Bytes of a frame.
+    fn frame(&self, kind: FrameKind, tick: u64, content: &[u8]) -> Vec<u8> {
         let lost = self.lost.load(Relaxed);
         let mut bytes = Vec::with_capacity(HEAD + content.len());
         bytes.extend([kind as u8, 0, 0, 0]);
         bytes.extend(lost.to_le_bytes());
         bytes.extend(tick.to_le_bytes());
         bytes.extend(content);
+        bytes
+    }
+
+    /// Puts a message of bytes into the queue; false: there is no room, and it is counted.
+    fn bytes(&self, bytes: Vec<u8>) -> bool {
         let sent = self.queue.capacity() > FOR_TEXT
             && self.queue.try_send(Message::Binary(Bytes::from(bytes))).is_ok();
         if !sent {
@@ -106,12 +116,19 @@ impl<P: Default> Guest<P> {
 
     /// A frame for it, if it has room.
     pub fn frame(&mut self, kind: FrameKind, tick: u64, content: &[u8], now: u64) {
-        if self.outbox.frame(kind, tick, content) {
+        self.bytes(self.outbox.frame(kind, tick, content), now);
+    }
+
+    /// A message of bytes for it, if it has room; false: it is lost.
+    pub fn bytes(&mut self, bytes: Vec<u8>, now: u64) -> bool {
+        let sent = self.outbox.bytes(bytes);
+        if sent {
             self.losing = None;
         } else {
             let since = *self.losing.get_or_insert(now);
             self.gone |= now > since + PATIENCE;
         }
+        sent
     }
 
     /// True if it has room for some frames: who sends no faster than that loses none.

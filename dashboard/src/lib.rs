@@ -8,8 +8,9 @@
 //! | [`replay`] | the same out of a log in place of a robot |
 //! | [`description`], [`picture`], [`state`], [`belief`], [`plotting`], [`health`] | what a page is told: once, at 60 Hz, as samples, about processes |
 //! | [`guests`] | pages that are there, and what each of them has lost |
-//! | [`operator`] | one client of the broker per page that commands |
+//! | [`operator`] | one client of the broker per page or viewer that commands |
 //! | [`catalogue`], [`starter`] | scenes, and runs of them that a page starts and ends; only where `--start` allows it |
+//! | [`foxglove`] | second door, for Foxglove and Lichtblick |
 //! | [`book`] | `docs/`, rendered, under `/book/` |
 //! | [`requests`] | what a page asks for |
 //!
@@ -24,6 +25,7 @@ pub mod catalogue;
 pub mod daemon;
 pub mod description;
 pub mod door;
+pub mod foxglove;
 pub mod guests;
 pub mod health;
 pub mod observer;
@@ -37,4 +39,4 @@ pub mod socket;
 pub mod starter;
 pub mod state;
 
-pub use daemon::{Options, serve, serve_recording};
+pub use daemon::{Addresses, Options, serve, serve_recording};

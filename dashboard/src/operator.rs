@@ -1,6 +1,6 @@
-//! One client of the broker for each page that commands: orders out, answers back, and signs of life that only the page gives.
+//! One client of the broker for each page or viewer that commands: orders out, answers back, and signs of life that only the page gives.
 //!
-//! A thread per page, started with its first order, because the client of the broker waits. When the page goes, so does the
+//! A thread each, started with its first order, because the client of the broker waits. When the page goes, so does the
 //! connection, and with it the command lease: the robot comes to a stand.
 
 use std::collections::BTreeMap;
@@ -25,8 +25,11 @@ const PATIENCE: u64 = 3 * SECOND;
 /// Silence after which a connection gets a sign of life that keeps it open, long after its lease is over \[ns\].
 const SILENCE: u64 = 20 * SECOND;
 
+/// Receiver of answers: number of an order, and who accepted it, or why nobody did.
+pub type Answers = Box<dyn Fn(u64, &Result<String, String>) + Send>;
+
 /// Name under which a page commands.
-fn name(page: u64) -> String {
+pub fn name(page: u64) -> String {
     format!("dashboard page {page}")
 }
 
@@ -45,23 +48,23 @@ pub fn answer(outbox: &Outbox, id: u64, result: &Result<String, String>) {
     outbox.text(json!({"type": "answer", "id": id, "accepted": accepted, "text": text}).to_string());
 }
 
-/// The way to a page's operator. Dropping it ends its connection.
+/// The way to an operator. Dropping it ends its connection.
 #[derive(Debug)]
 pub struct Operator {
     orders: Sender<Order>,
 }
 
 impl Operator {
-    /// Starts the operator of a page of the robot in `dir`; answers go to `outbox`.
+    /// Starts an operator of the robot in `dir`, who has this name at the broker.
     ///
     /// # Errors
     /// The thread cannot be started.
-    pub fn start(dir: &Path, page: u64, outbox: Outbox) -> Result<Self, String> {
+    pub fn start(dir: &Path, name: String, answers: Answers) -> Result<Self, String> {
         let (orders, heard) = channel();
-        let desk = Desk { dir: dir.into(), page, outbox, client: None, awaited: BTreeMap::new(), last: 0 };
-        let spawned =
-            std::thread::Builder::new().name(format!("page {page}")).spawn(move || desk.run(&heard));
-        spawned.map_err(|e| format!("a thread for the page: {e}"))?;
+        let (client, awaited) = (None, BTreeMap::new());
+        let thread = std::thread::Builder::new().name(name.clone());
+        let desk = Desk { dir: dir.into(), name, answers, client, awaited, last: 0 };
+        thread.spawn(move || desk.run(&heard)).map_err(|e| format!("a thread for the operator: {e}"))?;
         Ok(Self { orders })
     }
 
@@ -75,8 +78,8 @@ impl Operator {
 /// The thread's state.
 struct Desk {
     dir: PathBuf,
-    page: u64,
-    outbox: Outbox,
+    name: String,
+    answers: Answers,
     client: Option<StreamClient>,
     /// Number of a frame to the broker, number of the order, and when it is given up \[ns\].
     awaited: BTreeMap<u64, (u64, u64)>,
@@ -108,14 +111,14 @@ impl Desk {
     fn carry_out(&mut self, order: Order) {
         let Some(id) = order.id() else { return self.live() };
         if let Order::Command(_, Err(why)) = &order {
-            return answer(&self.outbox, id, &Err(why.clone()));
+            return (self.answers)(id, &Err(why.clone()));
         }
         // The first order of a page makes it a client of the broker.
         let client = match &mut self.client {
             Some(client) => client,
-            None => match StreamClient::connect(&self.dir, &name(self.page)) {
+            None => match StreamClient::connect(&self.dir, &self.name) {
                 Ok(client) => self.client.insert(client),
-                Err(why) => return answer(&self.outbox, id, &Err(why)),
+                Err(why) => return (self.answers)(id, &Err(why)),
             },
         };
         let sent = match order {
@@ -128,7 +131,7 @@ impl Desk {
         match sent {
             Ok(sequence) => _ = self.awaited.insert(sequence, (id, self.last + PATIENCE)),
             Err(why) => {
-                answer(&self.outbox, id, &Err(why.clone()));
+                (self.answers)(id, &Err(why.clone()));
                 self.lose(&why);
             }
         }
@@ -154,7 +157,7 @@ impl Desk {
                 return Err(reply.text);
             }
             if let Some((id, _)) = self.awaited.remove(&reply.sequence) {
-                answer(&self.outbox, id, &reply.accepted());
+                (self.answers)(id, &reply.accepted());
             }
         }
         let now = now();
@@ -172,7 +175,7 @@ impl Desk {
     fn lose(&mut self, why: &str) {
         self.client = None;
         for (id, _) in std::mem::take(&mut self.awaited).into_values() {
-            answer(&self.outbox, id, &Err(why.to_owned()));
+            (self.answers)(id, &Err(why.to_owned()));
         }
     }
 }

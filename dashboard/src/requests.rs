@@ -190,7 +190,7 @@ fn window(log: u64, [from, to]: [f64; 2]) -> Result<PageRequest, String> {
 }
 
 /// The command of that name with these numbers.
-fn command(name: &str, values: &Map<String, Value>) -> Result<Command, String> {
+pub(crate) fn command(name: &str, values: &Map<String, Value>) -> Result<Command, String> {
     let mut fields = String::new();
     for (key, value) in values {
         // As text of a command line, which the one parser of commands reads: nothing may end a word early.

@@ -15,7 +15,7 @@ use tokio::time::timeout;
 
 use crate::guests::Outbox;
 use crate::observer::Notice;
-use crate::operator::{Operator, answer};
+use crate::operator::{self, Answers, Operator, answer};
 use crate::requests::{Order, PageRequest, RunTask};
 use crate::starter::{NO_STARTER, Starter, StarterCall};
 
@@ -62,7 +62,23 @@ impl Hall {
         let desks = Arc::new(Semaphore::new(MOST_OPERATORS));
         Self { dir, observer, stops, starter, places, desks, pages: AtomicU64::new(0) }
     }
+
+    /// An operator of this name, with the place that he takes.
+    ///
+    /// # Errors
+    /// There is no robot to command, no place is free, or no thread.
+    pub(crate) fn operator(&self, name: String, answers: Answers) -> Result<Commanding, String> {
+        let dir = self.dir.as_deref().ok_or(RECORDING)?;
+        let desk = self.desks.clone().try_acquire_owned();
+        let desk = desk.map_err(|_| {
+            format!("{MOST_OPERATORS} pages and viewers command already; close one that does not need to")
+        })?;
+        Ok((Operator::start(dir, name, answers)?, desk))
+    }
 }
+
+/// An operator and his place.
+pub(crate) type Commanding = (Operator, OwnedSemaphorePermit);
 
 /// Serves a page until one of both ends goes. Its place is free again then.
 pub async fn serve(socket: WebSocket, hall: Arc<Hall>, _place: OwnedSemaphorePermit) {
@@ -73,16 +89,27 @@ pub async fn serve(socket: WebSocket, hall: Arc<Hall>, _place: OwnedSemaphorePer
     }
     let (sink, stream) = socket.split();
     let mut page = Page { number, outbox: outbox.clone(), operator: None, hall: hall.clone() };
+    let left = || _ = hall.observer.send(Notice::Left(number));
+    // With the page goes its operator, and the command lease.
+    converse(sink, fed, &outbox, async move { page.listen(stream).await }, left).await;
+}
+
+/// Sends what is in the queue and listens at the same time, until one of both ends or nobody feeds the queue any more: a page
+/// that does not read its frames can still stop the robot. Whoever listens is gone when `left` is called.
+pub(crate) async fn converse(
+    sink: SplitSink<WebSocket, Message>,
+    fed: mpsc::Receiver<Message>,
+    outbox: &Outbox,
+    listening: impl Future<Output = Closing>,
+    left: impl FnOnce(),
+) {
     let mut feeding = std::pin::pin!(feed(sink, fed));
-    // Both ways at once: a page that does not read its frames can still stop the robot.
     let why = tokio::select! {
-        why = page.listen(stream) => why,
+        why = listening => why,
         () = &mut feeding => None,
         () = outbox.ended() => None,
     };
-    // With the operator goes the command lease.
-    drop(page);
-    let _ = hall.observer.send(Notice::Left(number));
+    left();
     if let Some((code, why)) = why
         && outbox.close(CloseFrame { code, reason: why.into() })
     {
@@ -94,44 +121,71 @@ pub async fn serve(socket: WebSocket, hall: Arc<Hall>, _place: OwnedSemaphorePer
 async fn feed(mut sink: SplitSink<WebSocket, Message>, mut fed: mpsc::Receiver<Message>) {
     while let Some(message) = fed.recv().await {
         let last = matches!(message, Message::Close(_));
-        if !matches!(timeout(PATIENCE, sink.send(message)).await, Ok(Ok(()))) || last {
+        // Of many small messages that wait the last one takes the others along.
+        let more = !last && !fed.is_empty();
+        let sending = async { if more { sink.feed(message).await } else { sink.send(message).await } };
+        if !matches!(timeout(PATIENCE, sending).await, Ok(Ok(()))) || last {
             return;
         }
     }
 }
 
 /// Reason for closing a connection.
-type Closing = Option<(CloseCode, String)>;
+pub(crate) type Closing = Option<(CloseCode, String)>;
+
+/// Messages that may still come: as many as there are seconds in it, up to one second's.
+pub(crate) struct Budget {
+    left: u64,
+    last: u64,
+}
+
+impl Budget {
+    /// Of a client that has just come.
+    pub(crate) fn new() -> Self {
+        Self { left: SECOND, last: now() }
+    }
+
+    /// Reason for closing, if a message is one too many.
+    pub(crate) fn spend(&mut self) -> Closing {
+        let now = now();
+        let saved = (self.left + (now - self.last)).min(SECOND);
+        self.last = now;
+        match saved.checked_sub(SECOND / MOST_MESSAGES) {
+            Some(left) => {
+                self.left = left;
+                None
+            }
+            None => Some((close_code::POLICY, "too many messages".into())),
+        }
+    }
+}
+
+/// Reason for closing after a message that cannot be read; none: the connection is lost.
+pub(crate) fn unreadable(error: &axum::Error) -> Closing {
+    error.to_string().contains("too long").then(|| (close_code::SIZE, "a frame is too long".into()))
+}
 
 struct Page {
     number: u64,
     outbox: Outbox,
-    operator: Option<(Operator, OwnedSemaphorePermit)>,
+    operator: Option<Commanding>,
     hall: Arc<Hall>,
 }
 
 impl Page {
     /// Takes the page's messages until it goes, or is to go for a reason.
     async fn listen(&mut self, mut stream: SplitStream<WebSocket>) -> Closing {
-        // As many messages as there are seconds in it, up to one second's.
-        let (mut budget, mut last) = (SECOND, now());
+        let mut budget = Budget::new();
         loop {
             let text = match stream.next().await? {
                 Ok(Message::Text(text)) => text,
                 Ok(Message::Binary(_)) => return Some((close_code::POLICY, "a frame is no text".into())),
                 Ok(Message::Ping(_) | Message::Pong(_)) => "".into(),
                 Ok(Message::Close(_)) => return None,
-                Err(e) if e.to_string().contains("too long") => {
-                    return Some((close_code::SIZE, "a frame is too long".into()));
-                }
-                Err(_) => return None,
+                Err(e) => return unreadable(&e),
             };
-            let now = now();
-            budget = (budget + (now - last)).min(SECOND);
-            last = now;
-            match budget.checked_sub(SECOND / MOST_MESSAGES) {
-                Some(left) => budget = left,
-                None => return Some((close_code::POLICY, "too many messages".into())),
+            if let Some(flood) = budget.spend() {
+                return Some(flood);
             }
             if text.is_empty() {
                 continue;
@@ -183,17 +237,10 @@ impl Page {
     fn order(&mut self, order: Order) {
         // A page that only lives needs no operator.
         let Some(id) = order.id().or(self.operator.is_some().then_some(0)) else { return };
-        let Some(dir) = &self.hall.dir else {
-            return answer(&self.outbox, id, &Err(RECORDING.into()));
-        };
         if self.operator.is_none() {
-            let desk = self.hall.desks.clone().try_acquire_owned();
-            let desk = desk.map_err(|_| {
-                format!("{MOST_OPERATORS} pages command already; close one that does not need to")
-            });
-            let operator =
-                desk.and_then(|desk| Ok((Operator::start(dir, self.number, self.outbox.clone())?, desk)));
-            match operator {
+            let outbox = self.outbox.clone();
+            let answers: Answers = Box::new(move |id, result| answer(&outbox, id, result));
+            match self.hall.operator(operator::name(self.number), answers) {
                 Ok(operator) => self.operator = Some(operator),
                 Err(why) => return answer(&self.outbox, id, &Err(why)),
             }
@@ -205,7 +252,7 @@ impl Page {
 }
 
 /// A reason as long as a close frame holds.
-fn shortened(mut text: String) -> String {
+pub(crate) fn shortened(mut text: String) -> String {
     const LONGEST: usize = 120;
     if text.len() > LONGEST {
         text.truncate((0..=LONGEST).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0));

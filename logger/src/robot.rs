@@ -4,7 +4,10 @@ use crate::kinematics::Kinematics;
 use config::{Robot, Setup};
 use ipc::Run;
 use messages::MAX_JOINTS;
-use recording::{FootInfo, LinkPoses, RecordedPose, Recorder, RecordingError, RobotInfo, RunInfo, WallClock};
+use multibody::ModelError;
+use recording::{
+    Composer, FootInfo, LinkPoses, RecordedPose, Recorder, RecordingError, RobotInfo, RunInfo, WallClock,
+};
 use std::path::Path;
 
 /// Of a run what its configuration does not say.
@@ -56,6 +59,29 @@ pub const CONFIG: &str = "config/";
 
 /// Makes a log of a robot in a scene, with the poses of its links and the files of the configuration.
 pub fn recorder(path: &Path, setup: &Setup, origin: &Origin) -> Result<Recorder, RecordingError> {
+    let (robot, run, kinematics) = describe(setup, origin);
+    let mut recorder = Recorder::create(path, &robot, &run)?;
+    for (name, bytes) in setup.files.iter() {
+        recorder.attach(&format!("{CONFIG}{name}"), bytes)?;
+    }
+    Ok(match kinematics {
+        Some(kinematics) => recorder.with_links(Box::new(kinematics)),
+        None => recorder,
+    })
+}
+
+/// Maker of the messages that such a log holds, for viewers of the running robot.
+pub fn composer(setup: &Setup, origin: &Origin) -> Composer {
+    let (robot, run, kinematics) = describe(setup, origin);
+    let composer = Composer::new(&robot, &run);
+    match kinematics {
+        Some(kinematics) => composer.with_links(Box::new(kinematics)),
+        None => composer,
+    }
+}
+
+/// Robot and run as a log describes them, and the kinematics of the links; none: there are no pictures of links.
+fn describe(setup: &Setup, origin: &Origin) -> (RobotInfo, RunInfo, Option<Kinematics>) {
     let run = RunInfo {
         scene: setup.scene.name.clone(),
         config_hash: setup.hash,
@@ -66,23 +92,14 @@ pub fn recorder(path: &Path, setup: &Setup, origin: &Origin) -> Result<Recorder,
         clock: origin.clock.clone(),
     };
     let robot = &setup.robot;
-    let mut kinematics = Kinematics::new(robot);
+    // A log is worth having without pictures of links.
+    let warn = |error: &ModelError| tracing::warn!("messages without poses of links: {error}");
+    let mut kinematics = Kinematics::new(robot).inspect_err(warn).ok();
     let mut info = robot_info(robot);
-    if let (true, Ok(kinematics)) = (origin.simulated, &mut kinematics) {
+    if let (true, Some(kinematics)) = (origin.simulated, &mut kinematics) {
         info.odom = between_soles(kinematics, &info, &robot.poses[&setup.scene.start_pose]);
     }
-    let mut recorder = Recorder::create(path, &info, &run)?;
-    for (name, bytes) in setup.files.iter() {
-        recorder.attach(&format!("{CONFIG}{name}"), bytes)?;
-    }
-    match kinematics {
-        Ok(kinematics) => Ok(recorder.with_links(Box::new(kinematics))),
-        // The log is worth having without pictures of links.
-        Err(error) => {
-            tracing::warn!("log without poses of links: {error}");
-            Ok(recorder)
-        }
-    }
+    (info, run, kinematics)
 }
 
 /// \[m, m, rad\] Start of odometry: the middle of the soles, the torso being upright at the world's origin.

@@ -74,18 +74,9 @@ impl Server {
 
     /// Status of the attempt to open a socket.
     pub(crate) fn knock(&self, host: &str, origin: Option<&str>, query: &str) -> u16 {
-        let (get, host) = (format!("GET /socket{query} HTTP/1.1"), format!("Host: {host}"));
-        let origin = origin.map(|origin| format!("Origin: {origin}"));
-        let mut lines = vec![get.as_str(), &host, "Connection: Upgrade", "Upgrade: websocket"];
-        lines.extend(["Sec-WebSocket-Version: 13", "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ=="]);
-        lines.extend(origin.as_deref());
-        // One that is opened says nothing more by itself: its first line is enough.
-        let mut stream = TcpStream::connect(&self.host).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
-        stream.write_all((lines.join("\r\n") + "\r\n\r\n").as_bytes()).unwrap();
-        let mut first = [0; 12];
-        stream.read_exact(&mut first).unwrap();
-        std::str::from_utf8(&first[9..]).unwrap().parse().unwrap()
+        let (host, origin) = (format!("Host: {host}"), origin.map(|origin| format!("Origin: {origin}")));
+        let named: Vec<&str> = std::iter::once(host.as_str()).chain(origin.as_deref()).collect();
+        knock(&self.host, &format!("/socket{query}"), &named)
     }
 
     /// A page, or the status with which it was refused.
@@ -108,6 +99,21 @@ impl Server {
     pub(crate) fn page(&self) -> Page {
         self.try_page().unwrap_or_else(|status| panic!("refused with {status}"))
     }
+}
+
+/// Status of the attempt to open a socket at an address, with these headers besides those of every attempt.
+pub(crate) fn knock(address: &str, target: &str, headers: &[&str]) -> u16 {
+    let get = format!("GET {target} HTTP/1.1");
+    let mut lines = vec![get.as_str(), "Connection: Upgrade", "Upgrade: websocket"];
+    lines.extend(["Sec-WebSocket-Version: 13", "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ=="]);
+    lines.extend(headers);
+    // One that is opened says nothing more by itself: its first line is enough.
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+    stream.write_all((lines.join("\r\n") + "\r\n\r\n").as_bytes()).unwrap();
+    let mut first = [0; 12];
+    stream.read_exact(&mut first).unwrap();
+    std::str::from_utf8(&first[9..]).unwrap().parse().unwrap()
 }
 
 /// A frame of the server.

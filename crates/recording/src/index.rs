@@ -14,11 +14,11 @@ use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOp
 use messages::topics::{ForType, with_type};
 use messages::{Record, TOPICS, Topic};
 
+use crate::composer::channel_name;
 use crate::definition::definition;
 use crate::error::RecordingError;
 use crate::lengths;
 use crate::log::{LONGEST_RECORD, Log};
-use crate::recorder::channel_name;
 
 /// \[B\] Opcode and length in front of each record.
 const HEAD: usize = 9;

@@ -1,11 +1,11 @@
 //! Reads a log, also one that ends in the middle because its writer was killed.
 
 use crate::cdr::{CdrDecoder, decode};
+use crate::composer::channel_name;
 use crate::definition::definition;
 use crate::error::RecordingError;
 use crate::lengths;
 use crate::links::RecordedPose;
-use crate::recorder::channel_name;
 use crate::robot::{METADATA, RobotInfo, RunInfo, from_metadata};
 use crate::standard::{ODOM, TRUTH, WORLD};
 use crate::standard_definitions::{ROBOT_DESCRIPTION, TF, TF_STATIC};

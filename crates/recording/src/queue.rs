@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use crate::robot::WallClock;
+use crate::time::LogTime;
 
 /// \[ns\] Tolerated lag of topics behind each other.
 const HORIZON: u64 = 100_000_000;
@@ -19,61 +20,45 @@ pub(crate) struct QueuedMessage {
     pub(crate) payload: Vec<u8>,
 }
 
-/// Waiting messages, and the time of the log.
+/// Waiting messages.
 #[derive(Debug, Default)]
 pub(crate) struct MessageQueue {
-    clock: Option<WallClock>,
+    time: LogTime,
     /// By time of the log \[ns\], then as they came.
     waiting: BTreeMap<(u64, u64), QueuedMessage>,
     /// Written before the first bus cycle, whose time is theirs.
     early: Vec<QueuedMessage>,
     count: u64,
-    /// \[ns\] Newest stamp; 0: no cycle so far.
-    newest: u64,
-    /// \[ns\] Time of the newest message of each channel: none overtakes another one.
-    last: Vec<u64>,
 }
 
 impl MessageQueue {
     pub(crate) fn new(clock: Option<WallClock>) -> Self {
-        Self { clock, ..Self::default() }
-    }
-
-    /// Time of the log \[ns\] at a stamp: in simulated time the stamp, otherwise that of the clock on the wall; without a
-    /// stamp the start of the run.
-    pub(crate) fn time(&self, stamp_ns: u64) -> u64 {
-        match &self.clock {
-            None => stamp_ns,
-            Some(clock) if stamp_ns == 0 => clock.unix_ns,
-            Some(clock) => clock.unix_ns(stamp_ns),
-        }
+        Self { time: LogTime::new(clock), ..Self::default() }
     }
 
     /// Adds a message of this stamp. In real time one without a stamp is of the newest cycle, or of the first one to come.
     pub(crate) fn add(&mut self, stamp_ns: u64, message: QueuedMessage) {
-        self.newest = self.newest.max(stamp_ns);
-        if self.clock.is_none() {
-            return self.put(stamp_ns, message);
-        }
-        if self.newest == 0 {
+        self.time.hear(stamp_ns);
+        if !self.time.has_begun() {
             return self.early.push(message);
         }
-        let first = self.time(self.newest);
-        std::mem::take(&mut self.early).into_iter().for_each(|early| self.put(first, early));
-        self.put(self.time(if stamp_ns == 0 { self.newest } else { stamp_ns }), message);
+        self.put_early();
+        self.put(stamp_ns, message);
     }
 
-    fn put(&mut self, time: u64, message: QueuedMessage) {
-        self.last.resize(self.last.len().max(message.channel + 1), 0);
-        let last = &mut self.last[message.channel];
-        *last = time.max(*last);
-        self.waiting.insert((*last, self.count), message);
+    fn put_early(&mut self) {
+        std::mem::take(&mut self.early).into_iter().for_each(|early| self.put(0, early));
+    }
+
+    fn put(&mut self, stamp_ns: u64, message: QueuedMessage) {
+        let time = self.time.next(message.channel, stamp_ns);
+        self.waiting.insert((time, self.count), message);
         self.count += 1;
     }
 
     /// The next message that none can come before any more, and its time \[ns\].
     pub(crate) fn next(&mut self) -> Option<(u64, QueuedMessage)> {
-        let until = self.time(self.newest).saturating_sub(HORIZON);
+        let until = self.time.newest().saturating_sub(HORIZON);
         let entry = self.waiting.first_entry()?;
         let time = entry.key().0;
         (time < until).then(|| (time, entry.remove()))
@@ -86,8 +71,7 @@ impl MessageQueue {
 
     /// The same at the end of a log, also of a run that never began a cycle.
     pub(crate) fn end(&mut self) -> Option<(u64, QueuedMessage)> {
-        let start = self.time(0);
-        std::mem::take(&mut self.early).into_iter().for_each(|early| self.put(start, early));
+        self.put_early();
         self.drain()
     }
 }

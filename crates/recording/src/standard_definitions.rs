@@ -1,6 +1,12 @@
 //! Definitions of the standard ROS 2 messages a log contains, as `ros2msg` schemas. They are interface facts and must
 //! not be changed: `tests/peers/rosbags.sh` compares their type hashes with those of a ROS 2 distribution.
 
+use messages::Topic;
+use messages::topics::{CONTROLLER_STATE, EVENTS, PLAN, SENSORS, SIM_STATE};
+
+/// Origin of what the robot believes about itself.
+const BELIEVED: &[&Topic] = &[&SENSORS, &CONTROLLER_STATE, &PLAN];
+
 const HEADER: &str = "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
 pub(crate) const TIME: &str = "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
 const DURATION: &str = "MSG: builtin_interfaces/Duration\nint32 sec\nuint32 nanosec\n";
@@ -18,6 +24,8 @@ pub(crate) struct Standard {
     pub(crate) interface: &'static str,
     body: &'static str,
     parts: &'static [&'static str],
+    /// Topics whose records it is made from; none: it is said once.
+    pub(crate) sources: &'static [&'static Topic],
 }
 
 impl Standard {
@@ -34,6 +42,7 @@ pub(crate) const JOINT_STATES: Standard = Standard {
     interface: "sensor_msgs/msg/JointState",
     body: "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n",
     parts: &[HEADER, TIME],
+    sources: &[&SENSORS],
 };
 
 /// Upper body.
@@ -45,6 +54,7 @@ pub(crate) const IMU: Standard = Standard {
            geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n\
            geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n",
     parts: &[HEADER, TIME, QUATERNION, VECTOR3],
+    sources: &[&SENSORS],
 };
 
 const WRENCH_BODY: &str = "std_msgs/Header header\ngeometry_msgs/Wrench wrench\n";
@@ -62,12 +72,14 @@ pub(crate) const FOOT_WRENCH: [Standard; 2] = [
         interface: "geometry_msgs/msg/WrenchStamped",
         body: WRENCH_BODY,
         parts: WRENCH_PARTS,
+        sources: &[&SENSORS],
     },
     Standard {
         topic: "/foot/left/wrench",
         interface: "geometry_msgs/msg/WrenchStamped",
         body: WRENCH_BODY,
         parts: WRENCH_PARTS,
+        sources: &[&SENSORS],
     },
 ];
 
@@ -83,16 +95,31 @@ const TF_PARTS: &[&str] = &[
 ];
 
 /// Frames that move.
-pub(crate) const TF: Standard =
-    Standard { topic: "/tf", interface: "tf2_msgs/msg/TFMessage", body: TF_BODY, parts: TF_PARTS };
+pub(crate) const TF: Standard = Standard {
+    topic: "/tf",
+    interface: "tf2_msgs/msg/TFMessage",
+    body: TF_BODY,
+    parts: TF_PARTS,
+    sources: BELIEVED,
+};
 
 /// The same of the simulated robot as it is.
-pub(crate) const TRUTH_TF: Standard =
-    Standard { topic: "/truth/tf", interface: "tf2_msgs/msg/TFMessage", body: TF_BODY, parts: TF_PARTS };
+pub(crate) const TRUTH_TF: Standard = Standard {
+    topic: "/truth/tf",
+    interface: "tf2_msgs/msg/TFMessage",
+    body: TF_BODY,
+    parts: TF_PARTS,
+    sources: &[&SIM_STATE],
+};
 
 /// Frames that do not, once.
-pub(crate) const TF_STATIC: Standard =
-    Standard { topic: "/tf_static", interface: "tf2_msgs/msg/TFMessage", body: TF_BODY, parts: TF_PARTS };
+pub(crate) const TF_STATIC: Standard = Standard {
+    topic: "/tf_static",
+    interface: "tf2_msgs/msg/TFMessage",
+    body: TF_BODY,
+    parts: TF_PARTS,
+    sources: &[],
+};
 
 /// Event in words.
 pub(crate) const ROSOUT: Standard = Standard {
@@ -101,6 +128,7 @@ pub(crate) const ROSOUT: Standard = Standard {
     body: "byte DEBUG=10\nbyte INFO=20\nbyte WARN=30\nbyte ERROR=40\nbyte FATAL=50\n\
            builtin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\nstring file\nstring function\nuint32 line\n",
     parts: &[TIME],
+    sources: &EVENTS,
 };
 
 const MARKERS_BODY: &str = "visualization_msgs/Marker[] markers\n";
@@ -135,6 +163,7 @@ pub(crate) const MARKERS: Standard = Standard {
     interface: "visualization_msgs/msg/MarkerArray",
     body: MARKERS_BODY,
     parts: MARKERS_PARTS,
+    sources: BELIEVED,
 };
 
 /// The same of the simulated robot as it is.
@@ -143,6 +172,7 @@ pub(crate) const TRUTH_MARKERS: Standard = Standard {
     interface: "visualization_msgs/msg/MarkerArray",
     body: MARKERS_BODY,
     parts: MARKERS_PARTS,
+    sources: &[&SIM_STATE],
 };
 
 /// The URDF, once.
@@ -151,6 +181,7 @@ pub(crate) const ROBOT_DESCRIPTION: Standard = Standard {
     interface: "std_msgs/msg/String",
     body: "string data\n",
     parts: &[],
+    sources: &[],
 };
 
 /// All of them.

@@ -23,7 +23,7 @@ export function layoutOf(joints, objects) {
 }
 
 /** Table of a topic: column names, and rows of numbers. */
-function table(binary, log, topic, fields) {
+export function table(binary, log, topic, fields) {
   const csv = execFileSync(binary, ["log", "export", log, topic, ...fields.flatMap((f) => ["--field", f])], { maxBuffer: 1 << 30, encoding: "utf8" });
   const [head, ...lines] = csv.trim().split("\n");
   return { columns: head.split(","), rows: lines.map((line) => line.split(",").map(Number)) };

@@ -2,70 +2,34 @@
 // Left out, and said so, where the command has no dashboard.
 
 import assert from "node:assert/strict";
-import { spawn, spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { spawnSync } from "node:child_process";
 import os from "node:os";
 import path from "node:path";
 import { after, before, test } from "node:test";
 import { browser } from "./browser.mjs";
 import { binary } from "./harness.mjs";
+import { Processes } from "./processes.mjs";
 
-const root = path.join(import.meta.dirname, "../../..");
-const gangwerk = binary();
-const able = spawnSync(gangwerk, ["dashboard", "--help"]).status === 0;
+const able = spawnSync(binary(), ["dashboard", "--help"]).status === 0;
 const skip = able ? false : "this gangwerk has no dashboard";
-const folder = mkdtempSync("/dev/shm/gangwerk-page-");
-const children = [];
+const processes = new Processes();
 let chromium;
 let url;
 
-/** Starts the command; resolves with the first of its lines that fits. */
-function start(fits, ...args) {
-  const child = spawn(gangwerk, args, { cwd: root, stdio: ["ignore", "pipe", "pipe"] });
-  children.push(child);
-  return new Promise((resolve, reject) => {
-    let text = "";
-    const take = (data) => {
-      text += data;
-      const line = text.split("\n").find((l) => fits.test(l));
-      if (line) resolve({ child, line });
-    };
-    child.stdout.on("data", take);
-    child.stderr.on("data", take);
-    child.on("exit", (code) => reject(new Error(`${args.join(" ")} ended with ${code}: ${text}`)));
-  });
-}
-
-/** Scene without a timeline: everything is commanded from the page. */
-function scene(name) {
-  const text = readFileSync(path.join(root, "config/scenes/startup.toml"), "utf8");
-  const file = path.join(folder, `${name}.toml`);
-  writeFileSync(file, text.slice(0, text.indexOf("[[command]]")).replace(/duration = .*/, "duration = 600.0"));
-  return file;
-}
-
-const runRobot = (name) => start(/joined|supply/, "run", scene(name), "--lockstep", "--paced", "--no-log", "--dir", path.join(folder, "run"));
+/** Robot without a timeline: everything is commanded from the page. */
+const runRobot = (name) => processes.start(/joined|supply/, "run", processes.scene(name, "startup"), "--lockstep", "--paced", "--no-log", "--dir", processes.run);
 
 before(async () => {
   if (!able) return;
   await runRobot("hanging");
-  const { line } = await start(/http:\/\/127\.0\.0\.1:\d+\/#[0-9a-f]{32}/, "dashboard", "--dir", path.join(folder, "run"), "--no-open", "--listen", "127.0.0.1:0");
+  const { line } = await processes.start(/http:\/\/127\.0\.0\.1:\d+\/#[0-9a-f]{32}/, "dashboard", "--dir", processes.run, "--no-open", "--listen", "127.0.0.1:0");
   url = line.match(/http:\S+/)[0];
   chromium = await browser();
 });
 
 after(async () => {
   await chromium?.close();
-  for (const child of children) {
-    child.removeAllListeners("exit");
-    if (child.exitCode !== null) continue;
-    child.kill("SIGTERM");
-    await new Promise((resolve) => {
-      const hard = setTimeout(() => child.kill("SIGKILL"), 8000);
-      child.once("exit", () => { clearTimeout(hard); resolve(); });
-    });
-  }
-  rmSync(folder, { recursive: true, force: true });
+  await processes.end();
 });
 
 /** Value of a state's part. */
@@ -164,10 +128,7 @@ test("a page that is open when a run ends shows the next one", { skip, timeout: 
   const page = await (await chromium.newContext()).newPage();
   await page.goto(url);
   await page.waitForFunction(() => window.gangwerk?.view.bodies?.solid.root.visible, null, { timeout: 30000 });
-  const first = children[0];
-  first.removeAllListeners("exit");
-  first.kill("SIGINT");
-  await new Promise((resolve) => { first.once("exit", resolve); setTimeout(() => first.kill("SIGINT"), 4000); });
+  await processes.interrupt(processes.children[0]);
   await page.getByRole("alert").waitFor({ timeout: 15000 });
   await runRobot("next");
   await page.getByText("connected", { exact: true }).waitFor({ timeout: 30000 });
