@@ -24,6 +24,7 @@ use recording::{Log, payload_hashes};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::net::TcpStream;
+use std::path::Path;
 
 const EXE: &str = harness::executable!();
 /// Lola stands up and waits for what she is told.
