@@ -115,17 +115,17 @@ fn a_run_ends_with_the_dashboard_that_started_it() {
         until_walking(&mut page);
         let space = Space::open(&site.run_dir(), Process::Observer).unwrap();
         let mut power = space.reader::<Power>(&POWER).unwrap();
-        let mut last = power.latest().unwrap();
+        let mut last = *power.latest().unwrap();
         assert_eq!(last.on, 1);
         server.running.signal_supervisor(signal);
         let begun = clock::now();
         let alive = || Process::ALL.into_iter().any(|process| ipc::owner(&site.run_dir(), process).is_some());
         while ipc::supervisor(&site.run_dir()).is_some() || alive() {
-            last = power.latest().unwrap_or(last);
+            last = power.latest().copied().unwrap_or(last);
             assert!(clock::now() - begun < 30 * clock::SECOND, "{signal:?}: the run goes on");
             doze(0.005);
         }
-        last = power.latest().unwrap_or(last);
+        last = power.latest().copied().unwrap_or(last);
         assert_eq!(last.on, 0, "{signal:?}");
     }
 }
