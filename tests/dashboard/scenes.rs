@@ -4,8 +4,8 @@ use crate::page::{Page, Server};
 use crate::{EXE, WAIT};
 use harness::{Signal, Site, WALK, doze, turn};
 use ipc::Space;
-use messages::topics::POWER;
-use messages::{GaitState, Power, Process};
+use messages::topics::CONTROLLER_STATE;
+use messages::{ControllerState, GaitState, Process};
 use realtime::clock;
 use serde_json::{Value, json};
 
@@ -104,7 +104,7 @@ fn a_page_starts_a_scene_sees_her_walk_and_ends_it() {
     assert!(!site.run_dir().exists(), "it leaves nothing");
 }
 
-/// Killed or asked to end: the run ends, and with it the supply goes off.
+/// Killed or asked to end: the robot comes to a stand, and the run ends; without its watchdog no supply stays on.
 #[test]
 fn a_run_ends_with_the_dashboard_that_started_it() {
     let _turn = turn();
@@ -114,19 +114,19 @@ fn a_run_ends_with_the_dashboard_that_started_it() {
         let mut page = server.page();
         until_walking(&mut page);
         let space = Space::open(&site.run_dir(), Process::Observer).unwrap();
-        let mut power = space.reader::<Power>(&POWER).unwrap();
-        let mut last = *power.latest().unwrap();
-        assert_eq!(last.on, 1);
+        let mut states = space.reader::<ControllerState>(&CONTROLLER_STATE).unwrap();
         server.running.signal_supervisor(signal);
         let begun = clock::now();
         let alive = || Process::ALL.into_iter().any(|process| ipc::owner(&site.run_dir(), process).is_some());
+        let mut walked = false;
         while ipc::supervisor(&site.run_dir()).is_some() || alive() {
-            last = power.latest().copied().unwrap_or(last);
+            walked |= states.latest().is_some_and(|state| state.gait == GaitState::Walking as u64);
             assert!(clock::now() - begun < 30 * clock::SECOND, "{signal:?}: the run goes on");
             doze(0.005);
         }
-        last = power.latest().copied().unwrap_or(last);
-        assert_eq!(last.on, 0, "{signal:?}");
+        // The last state that was written: she stood when all ended.
+        let last = states.latest().unwrap();
+        assert!(walked && last.gait == GaitState::Standing as u64, "{signal:?}: gait {}", last.gait);
     }
 }
 

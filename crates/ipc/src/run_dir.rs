@@ -13,7 +13,7 @@ use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
 /// What a run puts there, besides a `.lock` of each process.
-const FILES: [&str; 5] = ["run", "run.new", NAMES, "names.new", "broker.sock"];
+const FILES: [&str; 6] = ["run", "run.new", NAMES, "names.new", "broker.sock", "broker.tcp"];
 /// What the names of a run's shared memory have in common.
 pub(crate) const NAMES: &str = "names";
 /// The configuration of the run: read once by the supervisor, and by nobody from anywhere else.
@@ -252,7 +252,7 @@ mod tests {
         let ground = Ground::new("clear");
         let path = ground.0.join("run");
         let dir = RunDir::make(&path).unwrap();
-        for name in ["run", "watchdog.lock"] {
+        for name in ["run", "names", "broker.sock", "broker.tcp", "watchdog.lock"] {
             dir.new_file(name).unwrap();
         }
         std::fs::write(path.join("notes"), "mine").unwrap();
