@@ -124,9 +124,10 @@ mod tests {
         assert_eq!(told("walk_type5", Some(1), None), "type 1, euler x 10");
         assert_eq!(told("walk_auto", Some(2), None), "type 2, semi_implicit x 4");
         // Steps become as many as an explicit integrator needs; Archie's drives are sampled on a grid of 22 steps.
-        for (scene, own, least) in [("walk_without_currents", 1, 2), ("archie_walk", 22, 22)] {
-            let told = told(scene, Some(2), Some(Integrator::Euler));
-            let steps: u32 = told.strip_prefix("type 2, euler x ").and_then(|n| n.parse().ok()).unwrap_or(0);
+        for (scene, depth, own, least) in [("walk_without_currents", 3, 1, 2), ("archie_walk", 2, 22, 22)] {
+            let told = told(scene, Some(depth), Some(Integrator::Euler));
+            let steps = told.strip_prefix(&format!("type {depth}, euler x ")).and_then(|n| n.parse().ok());
+            let steps: u32 = steps.unwrap_or(0);
             assert!(steps >= least && steps.is_multiple_of(own), "{scene}: {told}");
         }
     }
