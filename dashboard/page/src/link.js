@@ -16,6 +16,7 @@ export class Link {
   #nextId = 1;
   #waiting = new Map();
   #retry = 0;
+  #pulsed = 0; // [ms] time of the last sign of life
 
   constructor(hub, address) {
     this.#hub = hub;
@@ -25,7 +26,7 @@ export class Link {
   /** Opens the connection and keeps it open from now on. */
   start() {
     this.#open();
-    setInterval(() => this.#pulse(), PULSE_MS);
+    setInterval(() => this.pulse(), PULSE_MS);
     // A page that comes back into view or onto the network does not wait for its turn.
     document.addEventListener("visibilitychange", () => this.#soon());
     window.addEventListener("online", () => this.#soon());
@@ -70,6 +71,7 @@ export class Link {
   }
 
   #take(data) {
+    this.pulse();
     if (typeof data !== "string") {
       decodeFrame(data, this.#hub);
       return;
@@ -105,8 +107,14 @@ export class Link {
     if (this.#socket === null && document.visibilityState === "visible") this.#open();
   }
 
-  /** Sign of life of an operator who sees the robot; a hidden page gives none, and the robot stops. */
-  #pulse() {
-    if (document.visibilityState === "visible") this.send({ type: "pulse" });
+  /**
+   * Sign of life of an operator who sees the robot, if one is due; a hidden page gives none, and the robot stops. Called by frames and
+   * messages, too: a browser whose pictures take long lets timers wait behind them and behind keys, for a second and more.
+   */
+  pulse() {
+    const now = performance.now();
+    if (now - this.#pulsed < PULSE_MS / 2 || document.visibilityState !== "visible") return;
+    this.#pulsed = now;
+    this.send({ type: "pulse" });
   }
 }

@@ -102,6 +102,7 @@ hub.on("hello", async (hello) => {
 let texts = 0;
 function refresh(now) {
   requestAnimationFrame(refresh);
+  link.pulse();
   replay.refresh(now);
   plots.refresh(now);
   if (now - texts < REFRESH_MS) return;
