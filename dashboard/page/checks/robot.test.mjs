@@ -76,18 +76,23 @@ test("from no power to walking, a push, and the emergency stop", { skip, timeout
   const answer = page.getByLabel("Answer to walking");
   const mean = async (speed) => {
     const set = async () => Number(await slider.inputValue()) > speed - 0.005;
-    for (let k = 0; k < 8; k++) {
+    for (let k = 0; k < 4; k++) {
       await slider.focus();
       for (let key = 0; key < 100 && !(await set()); key++) await page.keyboard.press("ArrowRight");
       await passed(page, 4);
-      assert.ok(!(await set()) || /✓ accepted .* walk\/velocity/.test(await answer.textContent()), await answer.textContent());
+      const told = await answer.textContent();
+      if (/send it again/.test(told)) {
+        await page.keyboard.press("ArrowLeft");
+        continue;
+      }
+      assert.ok(!(await set()) || /✓ accepted .* walk\/velocity/.test(told), told);
       const from = [await value(page, "time"), await value(page, "torso_truth")];
       await passed(page, 4.8);
       const walked = ((await value(page, "torso_truth")) - from[1]) / ((await value(page, "time")) - from[0]);
       if (await set()) return walked;
       t.diagnostic(`not at ${speed} m/s any more: ${await answer.textContent()}`);
     }
-    return assert.fail(`stood eight times in place of walking at ${speed} m/s`);
+    return assert.fail(`stood four times in place of walking at ${speed} m/s`);
   };
   const [slow, fast] = [await mean(0.2), await mean(0.4)];
   t.diagnostic(`walks at ${slow.toFixed(3)} m/s with the slider at 0.20, ${fast.toFixed(3)} at 0.40`);
