@@ -252,6 +252,7 @@ mod tests {
                 "{to}: {text}"
             );
         }
+        // A list that is too long.
         let five = problems(
             &SHIPPED.replace("[\"BTN_TL\"]", "[\"BTN_TL\", \"BTN_TR\", \"BTN_Z\", \"BTN_C\", \"BTN_MODE\"]"),
         );

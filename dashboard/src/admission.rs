@@ -76,6 +76,7 @@ mod tests {
         assert_ne!(Admission::new(address).unwrap().url(), url, "each server has its own");
         let ask =
             |host: &str, origin: &str, token: &str| admission.admits(Some(host), Some(origin), Some(token));
+        // Its own names, then strangers, other origins and other tokens.
         for host in ["127.0.0.1:8720", "localhost:8720", "[::1]:8720"] {
             assert!(ask(host, &format!("http://{host}"), token), "{host}");
         }

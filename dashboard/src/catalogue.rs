@@ -34,7 +34,7 @@ impl Catalogue {
         json!({"type": "scenes", "list": list})
     }
 
-    /// Whether there is such a scene.
+    /// Looks up a scene.
     ///
     /// # Errors
     /// There is none of that name; which are near.

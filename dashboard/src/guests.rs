@@ -174,6 +174,7 @@ mod tests {
             (0..ROOM).for_each(|_| guest.frame(FrameKind::State, 9, &[], 5000 + now));
         }
         assert!(guest.is_gone());
+        // Texts are never left out.
         let (outbox, _fed) = Outbox::new();
         let mut full: Guest<()> = Guest::new(2, outbox);
         (0..ROOM).for_each(|_| full.text(&"news".into()));

@@ -55,7 +55,7 @@ pub struct StartOptions {
 }
 
 impl StartOptions {
-    /// Whether there is something to start.
+    /// Check of the scenes, before anything is served.
     ///
     /// # Errors
     /// The configuration has no scenes, or not the one to be started at once.
@@ -109,7 +109,7 @@ impl Starter {
         self.calls.send(call).ok()
     }
 
-    /// Whether the thread has ended, which it does without a run once it was told to leave.
+    /// True if the thread has ended, which it does without a run once it was told to leave.
     pub fn is_finished(&self) -> bool {
         self.thread.is_finished()
     }
@@ -244,7 +244,7 @@ struct StartedRun {
     child: Child,
     /// Reader of what it says.
     reader: JoinHandle<String>,
-    /// Whether its joint loop was there, the last one to come.
+    /// True once its joint loop was there, the last one to come.
     started: bool,
     /// Requests to end, and when the next one is due \[ns\].
     requests: u32,

@@ -170,6 +170,7 @@ mod tests {
             pushed_at: None,
             objects: &objects,
         };
+        // Length, then numbers by the names of the layout.
         let bytes = frame(&moment, &layout);
         assert_eq!(bytes.len(), 4 * layout.iter().map(|e| e.count).sum::<usize>());
         let numbers: Vec<f32> =

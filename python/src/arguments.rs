@@ -56,6 +56,7 @@ pub(crate) fn array(
         let length = |n: &usize| if *n == usize::MAX { "any".into() } else { n.to_string() };
         shape.iter().map(length).collect::<Vec<String>>().join(" x ")
     };
+    // Numbers at all, then shape, size and range.
     let numpy = value.py().import("numpy")?;
     let made = numpy.call_method1("asarray", (value, "float64")).ok();
     let array = made.as_ref().and_then(|made| made.cast::<PyArrayDyn<f64>>().ok()).ok_or_else(|| {

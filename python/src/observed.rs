@@ -57,6 +57,7 @@ impl ObservedWalk {
             let now = left.min(AT_ONCE);
             left -= now;
             let Self { walk, log, .. } = self;
+            // In lots, so that Ctrl-C is heard.
             let stepped: Result<(), String> = py.detach(|| {
                 for _ in 0..now {
                     walk.step();

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// What a run puts there, besides a `.lock` of each process.
 const FILES: [&str; 6] = ["run", "run.new", NAMES, "names.new", "broker.sock", "broker.tcp"];
-/// What the names of a run's shared memory have in common.
+/// File with the part of the names in shared memory that is one run's own.
 pub(crate) const NAMES: &str = "names";
 /// The configuration of the run: read once by the supervisor, and by nobody from anywhere else.
 pub const CONFIG: &str = "config";

@@ -272,6 +272,7 @@ mod tests {
             };
             assert_eq!(value.to_bits(), picked.to_bits(), "{}", number.name);
         }
+        // Two of them, behind what is there already.
         let knee = all.iter().find(|n| n.name == "tracking_error.knee").unwrap().place;
         let last = all.iter().find(|n| n.name == "limited").unwrap().place;
         let mut two = vec![f64::NAN];

@@ -256,7 +256,7 @@ impl Composer {
     }
 }
 
-/// Whether the next standard message is due, on the grid of full periods.
+/// True if the next standard message is due, on the grid of full periods.
 fn due(next_ns: &mut u64, stamp_ns: u64) -> bool {
     let due = stamp_ns >= *next_ns;
     if due {

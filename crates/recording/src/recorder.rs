@@ -104,6 +104,7 @@ impl Recorder {
         if let Some(at) = self.composer.place(topic.name) {
             self.channels[at].sequence = number;
         }
+        // Messages are numbered here and wait for their turn in time.
         let Self { composer, channels, queue, .. } = self;
         let put: &mut Out<'_> = &mut |message| {
             let channel = &mut channels[message.channel];

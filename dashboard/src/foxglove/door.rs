@@ -30,7 +30,7 @@ const ORIGINS: [&str; 2] = ["https://app.foxglove.dev", "file://"];
 pub struct ViewerDoor {
     /// Who comes in.
     pub admission: Admission,
-    /// What sockets of viewers share.
+    /// Common state of their sockets.
     pub lobby: Lobby,
 }
 
@@ -108,6 +108,7 @@ mod tests {
 
     #[test]
     fn viewers_come_in_and_strangers_do_not() {
+        // Viewers: known ones, and servers of this machine.
         for origin in [
             "https://app.foxglove.dev",
             "file://",
@@ -118,6 +119,7 @@ mod tests {
         ] {
             assert!(is_viewer(origin), "{origin}");
         }
+        // Strangers, some of whom look like them.
         for origin in [
             "",
             "null",

@@ -148,6 +148,7 @@ mod tests {
     fn messages_of_the_protocol_are_read() {
         let names = |list: &[&str]| list.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let own = OwnChannel { id: 1, topic: VELOCITY.into(), encoding: "json".into() };
+        // Each as Foxglove's clients write it.
         for (text, request) in [
             (
                 r#"{"op":"subscribe","subscriptions":[{"id":0,"channelId":3},{"id":1,"channelId":5}]}"#,

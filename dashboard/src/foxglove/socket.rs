@@ -26,7 +26,7 @@ const ROOM: usize = 4096;
 /// Channels of one viewer's own.
 const MOST_OWN: usize = 16;
 
-/// What sockets of viewers share.
+/// Common state of the sockets of viewers.
 #[derive(Debug)]
 pub struct Lobby {
     hall: Arc<Hall>,
