@@ -193,7 +193,7 @@ fn resident(pid: u32) -> u64 {
 fn no_process_grows_while_clients_come_and_go() {
     /// \[kB\] What a process may gain after warming up, whatever the time: a few pages of allocators.
     const GROWTH: u64 = 1024;
-    let seconds = std::env::var("GANGWERK_SOAK_SECONDS").ok().and_then(|s| s.parse().ok()).unwrap_or(30);
+    let seconds = std::env::var("GANGWERK_SOAK_SECONDS").ok().and_then(|s| s.parse().ok()).unwrap_or(15);
     let _turn = turn();
     let mut robot = Robot::standing();
     let processes = Process::ALL.iter().filter(|p| **p != Process::Observer && **p != Process::Logger);

@@ -48,6 +48,30 @@ fn standing(site: &Site) -> (Running, Server, Page) {
     (run, server, page)
 }
 
+/// A method that was chosen by its error: a page is told the number that the run said in its first line.
+#[test]
+fn the_estimated_error_of_a_method_is_told() {
+    /// \[rad\] What the scene allows.
+    const TOLERANCE: f64 = 0.5;
+    let _turn = turn();
+    let site = Site::patient(EXE);
+    site.scene("auto", 100_000.0, &format!("{WAIT}[tolerance]\ntrial = 0.4\ninclination = {TOLERANCE}\n"));
+    let file = site.path("config/scenes/auto.toml");
+    let scene = std::fs::read_to_string(&file).unwrap();
+    let left_open = scene.replace("depth = 1\nintegrator = \"euler\"\nsubsteps = 4\n", "depth = \"auto\"\n");
+    std::fs::write(&file, left_open).unwrap();
+
+    let mut run = site.run("auto", &["--lockstep", "--paced", "--no-log"]);
+    drop(run.space());
+    let server = Server::start(&site);
+    let told = server.page().text("processes")["estimated_error"].as_f64().unwrap();
+    let said = run.err();
+    let number =
+        said.split_once("estimated error: inclination ").map(|(_, rest)| rest.split(' ').next().unwrap());
+    let error: f64 = number.and_then(|number| number.parse().ok()).unwrap_or_else(|| panic!("{said}"));
+    assert!((told * TOLERANCE - error).abs() <= 0.01 * error, "{told} of {TOLERANCE}, but {said}");
+}
+
 #[test]
 fn hello_is_complete_and_frames_and_samples_are_the_log() {
     let _turn = turn();

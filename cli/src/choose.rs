@@ -5,7 +5,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
-use chain::depth::{self, Choice};
+use chain::depth::{self, Choice, Tried};
 use config::Setup;
 use config::method::{Integrator, Method};
 use indicatif::ProgressBar;
@@ -60,6 +60,15 @@ impl MethodWish {
     }
 }
 
+/// Method of simulation that is not the scene's own.
+#[derive(Clone, Copy, Debug)]
+pub struct OtherMethod {
+    /// Type, integrator and step.
+    pub method: Method,
+    /// Largest estimated error as a multiple of what the scene allows, if it was chosen by its error.
+    pub error: Option<f64>,
+}
+
 /// Loads a scene with all it names, and the method that it is simulated with if that is not the scene's own; the terminal is told.
 ///
 /// # Errors
@@ -68,15 +77,19 @@ pub fn load_with(
     config: &Path,
     scene: &str,
     wish: MethodWish,
-) -> Result<(Setup, Option<Method>), Box<dyn Error>> {
+) -> Result<(Setup, Option<OtherMethod>), Box<dyn Error>> {
     if wish == MethodWish::default() {
         let (setup, choice) = load(config, scene, true)?;
-        return Ok((setup, choice.map(|choice| choice.method)));
+        let chosen = choice.map(|choice| {
+            let error = choice.tried.last().map(Tried::excess);
+            OtherMethod { method: choice.method, error }
+        });
+        return Ok((setup, chosen));
     }
     let setup = Setup::load(config, scene)?;
     let method = wish.method(&setup)?;
     eprintln!("asked for instead of the scene's method: {method}");
-    Ok((setup.with_method(Some(method))?, Some(method)))
+    Ok((setup.with_method(Some(method))?, Some(OtherMethod { method, error: None })))
 }
 
 /// Loads a scene with all it names; a scene with `depth = "auto"` comes back with a method, and why it is that one. If
@@ -111,7 +124,7 @@ mod tests {
         let loaded = load_with(&config::root(None), scene, MethodWish { depth, integrator });
         let (setup, method) = loaded.map_err(|e| e.to_string())?;
         SimBackend::new(&setup.robot, &setup.scene).map_err(|e| e.to_string())?;
-        Ok(method.map_or("the scene's".into(), |method| method.to_string()))
+        Ok(method.map_or("the scene's".into(), |other| other.method.to_string()))
     }
 
     #[test]

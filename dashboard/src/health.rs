@@ -14,18 +14,19 @@ const STATS: [&Topic; 5] =
 pub struct Health {
     stats: Vec<(Process, Reader<CycleStats>)>,
     model: String,
+    error: Option<f64>,
     /// Tick and time \[ns\] of the last look.
     last: Option<(u64, u64)>,
 }
 
 impl Health {
-    /// Of the run in this space, simulated by `model`.
+    /// Of the run in this space, simulated by `model` with this estimated error.
     ///
     /// # Errors
     /// A topic cannot be read.
-    pub fn open(space: &Space, model: String) -> Result<Self, IpcError> {
+    pub fn open(space: &Space, model: String, error: Option<f64>) -> Result<Self, IpcError> {
         let stats = STATS.into_iter().map(|topic| Ok((topic.writer, space.reader(topic)?)));
-        Ok(Self { stats: stats.collect::<Result<_, IpcError>>()?, model, last: None })
+        Ok(Self { stats: stats.collect::<Result<_, IpcError>>()?, model, error, last: None })
     }
 
     /// The message `processes` at `tick`, at `now` \[ns\]; `cycle` \[s\].
@@ -36,7 +37,7 @@ impl Health {
         });
         self.last = Some((tick, now));
         let list: Vec<Value> = Process::ALL.iter().map(|&process| self.process(dir, process)).collect();
-        let (model, error) = (&self.model, Value::Null);
+        let (model, error) = (&self.model, self.error);
         json!({"type": "processes", "list": list, "real_time_factor": factor, "estimated_error": error, "model": model})
     }
 

@@ -333,7 +333,7 @@ impl Session {
             sim: run.robot.then(|| space.reader(&SIM_STATE)).transpose()?,
             events,
             parameters,
-            health: Health::open(&space, model(&run, &setup))?,
+            health: Health::open(&space, model(&run, &setup), run.method_error)?,
             taps: Taps::default(),
             remembered: VecDeque::new(),
             changed: BTreeMap::new(),

@@ -1,21 +1,19 @@
 #!/bin/sh
-# Runs a command in a virtual machine that has CAN: tests/vcan/boot.sh [-t SECONDS] [-c CORES] [-k DIR] [-r] [-i] COMMAND...
+# Runs a command in a virtual machine that has CAN: tests/vcan/boot.sh [-t SECONDS] [-k DIR] [-r] [-i] COMMAND...
 #
-# The machine is emulated (no KVM is needed, none is used), runs Debian's kernel, and sees all files of this one at their
+# The machine is User Mode Linux, a kernel of Debian's that is an ordinary process, and sees all files of this one at their
 # places; what it writes stays in its memory and is gone at the end. The command runs as root in this folder, its output is
 # shown as it comes, its exit code is returned. 124: the time limit (-t, 600 s) was reached; 125: the machine itself failed.
-# -c: so many cores, 2. -k: what is written to /run/kept is kept in that folder.
-# -r: a kernel with PREEMPT_RT. -i: with the keyboard, for a shell: tests/vcan/boot.sh -i bash
+# -k: what is written to /run/kept is kept in that folder. -r: a kernel with PREEMPT_RT on two cores that QEMU emulates (KVM is
+# neither needed nor used), about fifty times slower where numbers are crunched. -i: with the keyboard, for a shell: tests/vcan/boot.sh -i bash
 set -u
 limit=600
-cores=2
 keyboard=
 kept=
 flavour=
-while getopts t:c:k:ri option; do
+while getopts t:k:ri option; do
     case $option in
     t) limit=$OPTARG ;;
-    c) cores=$OPTARG ;;
     k) kept=$OPTARG ;;
     r) flavour=rt ;;
     i) keyboard=yes ;;
@@ -30,8 +28,8 @@ fail() {
     exit 125
 }
 
-[ $# -gt 0 ] || fail "no command; usage: boot.sh [-t SECONDS] [-c CORES] [-k DIR] [-r] [-i] COMMAND..."
-for tool in qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio; do
+[ $# -gt 0 ] || fail "no command; usage: boot.sh [-t SECONDS] [-k DIR] [-r] [-i] COMMAND..."
+for tool in ${flavour:+qemu-system-x86_64:qemu-system-x86} busybox:busybox-static cpio:cpio; do
     command -v "${tool%%:*}" >/dev/null || fail "${tool%%:*} is missing: apt-get install ${tool##*:}"
 done
 [ -z "$kept" ] || mkdir -p "$kept" || fail "no folder $kept"
@@ -70,20 +68,29 @@ chmod +x "$work/first/init"
 signal=off
 [ -n "$keyboard" ] || { exec </dev/null; signal=on; }
 
-set --
-[ -z "$kept" ] || set -- -virtfs "local,path=$kept,mount_tag=kept,security_model=none"
+# A process that is a kernel; those that it runs are processes, too. It has one core.
+machine_of_a_process() {
+    timeout --foreground "$limit" "$kernel/linux" mem=2G initrd="$work/initramfs" quiet panic=-1 ${kept:+kept="$kept"} \
+        con=null con0=null,fd:7 ssl=null ssl1=fd:0,fd:1 ssl2=null,fd:8 7>"$work/console" 8>"$work/code" 2>&7
+}
 
 # All files of the host at their places: one tree, whatever is mounted in it.
-timeout --foreground "$limit" qemu-system-x86_64 \
-    -accel tcg,thread=multi -cpu max -smp "$cores" -m 2G -no-reboot -nodefaults -display none \
-    -kernel "$kernel/vmlinuz" -initrd "$work/initramfs" \
-    -append "console=ttyS0 quiet panic=-1 mitigations=off random.trust_cpu=on tsc=reliable" \
-    -virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap "$@" \
-    -serial "file:$work/console" -chardev "stdio,id=out,signal=$signal" -serial chardev:out -serial "file:$work/code"
+emulated_machine() {
+    set --
+    [ -z "$kept" ] || set -- -virtfs "local,path=$kept,mount_tag=kept,security_model=none"
+    timeout --foreground "$limit" qemu-system-x86_64 \
+        -accel tcg,thread=multi -cpu max -smp 2 -m 2G -no-reboot -nodefaults -display none \
+        -kernel "$kernel/linux" -initrd "$work/initramfs" \
+        -append "console=ttyS0 quiet panic=-1 mitigations=off random.trust_cpu=on tsc=reliable" \
+        -virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap "$@" \
+        -serial "file:$work/console" -chardev "stdio,id=out,signal=$signal" -serial chardev:out -serial "file:$work/code"
+}
+
+if [ -n "$flavour" ]; then emulated_machine; else machine_of_a_process; fi
 code=$?
 [ "$code" -ne 124 ] || { echo "boot.sh: not finished within $limit s (-t)" >&2; exit 124; }
 if [ ! -s "$work/code" ]; then
-    echo "boot.sh: the virtual machine ended without a result (qemu: $code); its console:" >&2
+    echo "boot.sh: the virtual machine ended without a result (exit code $code); its console:" >&2
     tail -n 20 "$work/console" >&2
     exit 125
 fi

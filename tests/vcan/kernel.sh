@@ -1,19 +1,18 @@
 #!/bin/sh
-# Gets the kernel that the virtual machine boots: Debian's, from its package, unpacked into tests/vcan/.kernel; with the
-# argument `rt` the one with PREEMPT_RT, into tests/vcan/.kernel-rt.
-# Prints that folder, which holds `vmlinuz` and, in the order of their loading, `modules/NN-NAME.ko`. Safe to run again.
+# Gets the kernel that the virtual machine boots, from a package of Debian's: User Mode Linux into tests/vcan/.kernel; with
+# the argument `rt` the one with PREEMPT_RT, for QEMU, into tests/vcan/.kernel-rt.
+# Prints that folder, which holds `linux` and, in the order of their loading, `modules/NN-NAME.ko`. Safe to run again.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-flavour=${1:+$1-}
 kernel="$here/.kernel${1:+-$1}"
 
-# Each after those it needs. The host's files: 9p over virtio, with a writable layer above. Then CAN, and gamepads that a
-# program plays.
-modules="drivers/virtio/virtio_ring drivers/virtio/virtio drivers/virtio/virtio_pci_modern_dev
+# Each after those it needs: a writable layer above the host's files, and CAN.
+modules="fs/overlayfs/overlay net/can/can net/can/can-raw net/can/can-bcm net/can/can-gw drivers/net/can/dev/can-dev
+drivers/net/can/vcan"
+# QEMU has the host's files as 9p over virtio, and gamepads that a program plays.
+[ $# -eq 0 ] || modules="drivers/virtio/virtio_ring drivers/virtio/virtio drivers/virtio/virtio_pci_modern_dev
 drivers/virtio/virtio_pci_legacy_dev drivers/virtio/virtio_pci fs/netfs/netfs fs/fscache/fscache net/9p/9pnet
-net/9p/9pnet_virtio fs/9p/9p fs/overlayfs/overlay net/can/can net/can/can-raw net/can/can-bcm net/can/can-gw
-drivers/net/can/dev/can-dev drivers/net/can/vcan
-drivers/input/evdev drivers/input/misc/uinput"
+net/9p/9pnet_virtio fs/9p/9p $modules drivers/input/evdev drivers/input/misc/uinput"
 
 fail() {
     echo "kernel.sh: $*" >&2
@@ -30,9 +29,14 @@ for tool in apt-get apt-cache dpkg-deb; do
         fail "$tool is missing: the kernel comes from a Debian package. On a machine that has vcan no kernel is needed"
 done
 
-# newest: name of the package that the metapackage stands for now.
+# newest: name of the package that has it now; the one with PREEMPT_RT stands behind a metapackage.
 newest() {
-    apt-cache depends "linux-image-${flavour}amd64" 2>/dev/null | sed -n 's/^ *Depends: \(linux-image-[0-9].*-amd64\)$/\1/p' | head -n 1
+    if [ "$kernel" = "$here/.kernel" ]; then
+        apt-cache depends user-mode-linux 2>/dev/null | sed -n '1p'
+    else
+        apt-cache depends linux-image-rt-amd64 2>/dev/null |
+            sed -n 's/^ *Depends: \(linux-image-[0-9].*-amd64\)$/\1/p' | head -n 1
+    fi
 }
 
 package=$(newest)
@@ -40,7 +44,7 @@ if [ -z "$package" ] && [ "$(id -u)" -eq 0 ]; then
     apt-get update -qq >&2 || true
     package=$(newest)
 fi
-[ -n "$package" ] || fail "no package linux-image-${flavour}amd64 in apt's lists: run apt-get update as root; needs Debian's sources"
+[ -n "$package" ] || fail "no kernel in apt's lists: run apt-get update as root; needs Debian's sources"
 
 rm -rf "$kernel"
 mkdir -p "$kernel/modules" "$kernel/package"
@@ -52,10 +56,10 @@ apt-get download -qq -o APT::Sandbox::User=root "$package" >&2 || {
     apt-get download -qq -o APT::Sandbox::User=root "$package" >&2
 } || fail "apt-get download $package failed: is the archive reachable?"
 dpkg-deb -x ./*.deb unpacked
-mv unpacked/boot/vmlinuz-* "$kernel/vmlinuz"
+mv unpacked/usr/bin/linux.uml "$kernel/linux" 2>/dev/null || mv unpacked/boot/vmlinuz-* "$kernel/linux"
 number=10
 for module in $modules; do
-    file=$(echo unpacked/lib/modules/*/kernel/"$module".ko*)
+    file=$(find unpacked -path "*/kernel/$module.ko*")
     [ -f "$file" ] || fail "$package has no module $module"
     case $file in
     *.xz) xz -dc "$file" ;;

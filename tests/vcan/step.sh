@@ -44,11 +44,17 @@ listened() {
 listen() {
     timeout "$2" candump -L -r 200000000 any >"$1" 2>"$1.said" &
     listener=$!
+    traffic=$1
     within 20 listened any || because "candump did not start: $(cat "$1.said")"
 }
 
-# listened_out: the end of `listen`, after everything sent was written.
+# listened_out: the end of `listen`, after everything sent was written: it may be behind, and asked to end it reads no more.
 listened_out() {
+    written=
+    until [ "$written" = "$(stat -c %s "$traffic")" ]; do
+        written=$(stat -c %s "$traffic")
+        sleep 0.5
+    done
     kill -INT "$listener" 2>/dev/null
     wait "$listener"
     :

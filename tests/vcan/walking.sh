@@ -1,7 +1,7 @@
 # Walks over the lines. After step.sh.
 # shellcheck shell=sh
 
-# The shipped configuration, but patient, emulation is slow, and without TCP, which nobody uses here.
+# The shipped configuration, but patient, virtual machines are slow, and without TCP, which nobody uses here.
 if [ ! -d "$work/config" ]; then
     cp -r "$here/../../config" "$work/config"
     sed -i -e 's/^peer_timeout = .*/peer_timeout = 60.0/' "$work/config/system.toml"

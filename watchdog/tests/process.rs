@@ -65,6 +65,7 @@ impl Rig {
             paced: false,
             scene: "watchdog".into(),
             method: None,
+            method_error: None,
             config: config(&dir),
             bus: "shm".into(),
             robot: true,

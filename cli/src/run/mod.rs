@@ -21,9 +21,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
 
-use config::method::Method;
 use config::{BusAddress, Setup};
-
 use ipc::{Mode, Run, Space};
 use messages::topics::{CONTROLLER_STATE, SIM_STATE};
 use messages::{ControllerState, Process, SimState};
@@ -32,6 +30,8 @@ use terminal::Console;
 
 use chain::ending::Ending;
 use chain::figures::{Figures, Gatherer};
+
+use crate::choose::OtherMethod;
 
 pub use crash::TEXT as CRASH_TEXT;
 
@@ -48,7 +48,7 @@ pub struct RunOptions {
     /// Name of the scene, or path of its file.
     pub scene: String,
     /// Method of simulation, if the scene leaves it open or somebody asked for another one: [`crate::choose`].
-    pub method: Option<Method>,
+    pub method: Option<OtherMethod>,
     /// The configuration directory.
     pub config: PathBuf,
     /// Goes on when the scene is over, until it is asked to end.
@@ -145,7 +145,8 @@ pub fn run(order: &RunOptions, stop: Stop, console: &Console) -> Result<RunOutco
         mode: order.mode,
         paced: order.paced,
         scene,
-        method: order.method.map(|method| method.to_string()),
+        method: order.method.map(|other| other.method.to_string()),
+        method_error: order.method.and_then(|other| other.error),
         config,
         bus: order.bus.to_string(),
         robot: order.robot,

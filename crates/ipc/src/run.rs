@@ -46,6 +46,8 @@ pub struct Run {
     pub scene: String,
     /// Method of simulation, if the scene leaves it open (`depth = "auto"`) or somebody asked for another one.
     pub method: Option<String>,
+    /// Largest estimated error of that method as a multiple of what the scene allows, if it was chosen by its error.
+    pub method_error: Option<f64>,
     /// The configuration directory: `system.toml`, `robots/`, `scenes/`, `gaits/`.
     pub config: PathBuf,
     /// The field bus, as `config::BusAddress` reads it.
@@ -71,6 +73,7 @@ impl Run {
             paced: false,
             scene: "none".into(),
             method: None,
+            method_error: None,
             config: "none".into(),
             bus: "shm".into(),
             robot: true,
@@ -89,9 +92,10 @@ impl Run {
             Mode::RealTime => "real-time",
         };
         let log = self.log.as_deref().unwrap_or(Path::new(""));
+        let error = self.method_error.map_or(String::new(), |error| error.to_string());
         let started = self.started.map_or(String::new(), |[unix, monotonic]| format!("{unix} {monotonic}"));
         format!(
-            "mode = {mode}\nscene = {}\nmethod = {}\nconfig = {}\nbus = {}\nrobot = {}\nstays = {}\n\
+            "mode = {mode}\nscene = {}\nmethod = {}\nmethod_error = {error}\nconfig = {}\nbus = {}\nrobot = {}\nstays = {}\n\
              commit = {}\nstarted = {started}\nlog = {}\n",
             self.scene,
             self.method.as_deref().unwrap_or_default(),
@@ -158,6 +162,7 @@ impl Run {
             Ok("no") | Err(_) => false,
             Ok(other) => return Err(wrong("stays", other, "yes or no")),
         };
+        let method_error = value("method_error").ok().and_then(|error| error.parse().ok());
         let (commit, started) = (value("commit").unwrap_or_default(), value("started").unwrap_or_default());
         let number = |text: &str| text.parse().ok();
         let started =
@@ -168,6 +173,7 @@ impl Run {
             paced,
             scene: value("scene")?.into(),
             method: (!method.is_empty()).then(|| method.into()),
+            method_error,
             config: value("config")?.into(),
             bus: value("bus")?.into(),
             robot,

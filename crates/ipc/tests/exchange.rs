@@ -181,6 +181,7 @@ fn a_run_is_saved_and_loaded() {
         paced: true,
         scene: "walk_1kmh".into(),
         method: None,
+        method_error: None,
         config: "/somewhere/config".into(),
         bus: "shm".into(),
         robot: true,
@@ -192,7 +193,15 @@ fn a_run_is_saved_and_loaded() {
     run.save().unwrap();
     assert_eq!(Run::load(system.dir()).unwrap(), run);
     let method = Some("type 2, semi_implicit x 4".into());
-    let logged = Run { mode: Mode::RealTime, paced: false, method, log: Some("/tmp/a b.mcap".into()), ..run };
+    let method_error = Some(0.41);
+    let logged = Run {
+        mode: Mode::RealTime,
+        paced: false,
+        method,
+        method_error,
+        log: Some("/tmp/a b.mcap".into()),
+        ..run
+    };
     logged.save().unwrap();
     assert_eq!(Run::load(system.dir()).unwrap(), logged);
     std::fs::write(system.dir().join("run"), "mode = fast\nscene = x\nmethod =\nconfig = y\nlog =\n")

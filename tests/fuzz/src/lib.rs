@@ -3,6 +3,7 @@
 
 mod files;
 mod frame;
+mod pages;
 mod telegram;
 mod text;
 
@@ -19,7 +20,7 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 9] = [
+pub const TARGETS: [Target; 11] = [
     Target { name: "command", read: text::command, seeds: text::command_seeds },
     Target { name: "command_text", read: text::command_text, seeds: text::command_text_seeds },
     Target { name: "frame", read: frame::frame, seeds: frame::seeds },
@@ -28,6 +29,8 @@ pub const TARGETS: [Target; 9] = [
     Target { name: "dbc", read: text::dbc, seeds: text::dbc_seeds },
     Target { name: "telegram", read: telegram::telegram, seeds: telegram::seeds },
     Target { name: "run_file", read: text::run_file, seeds: text::run_file_seeds },
+    Target { name: "page", read: pages::page, seeds: pages::page_seeds },
+    Target { name: "viewer", read: pages::viewer, seeds: pages::viewer_seeds },
     Target { name: "scene", read: files::scene, seeds: files::scene_seeds },
 ];
 
