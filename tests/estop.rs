@@ -29,7 +29,7 @@ topic = \"walk/stand\"
 ";
 
 /// Trials of each condition, unless more are asked for.
-const TRIALS: usize = 20;
+const TRIALS: usize = 8;
 /// From this many on, percentiles mean something, and are held.
 const MANY: usize = 100;
 /// Starts of one run whose processes are killed: each is a run of its own.

@@ -34,7 +34,7 @@ pub enum Mode {
 }
 
 /// The run a process takes part in.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// The run directory.
     pub dir: PathBuf,
