@@ -131,7 +131,7 @@ pub fn run(order: &RunOptions, stop: Stop, console: &Console) -> Result<RunOutco
     config::snapshot(&order.config, &config)?;
     config::scenes::add(&order.scene, &config)?;
     let scene = theirs.scene.name;
-    let setup = Setup::load(&config, &scene)?.with_method(order.method)?;
+    let setup = Setup::load(&config, &scene)?.with_method(order.method.map(|other| other.method))?;
     if setup.hash != theirs.hash {
         return Err(format!(
             "{}: changed while the run was starting; start it again",
