@@ -69,6 +69,12 @@ pub struct OtherMethod {
     pub error: Option<f64>,
 }
 
+impl From<Choice> for OtherMethod {
+    fn from(choice: Choice) -> Self {
+        Self { method: choice.method, error: choice.tried.last().map(Tried::excess) }
+    }
+}
+
 /// Loads a scene with all it names, and the method that it is simulated with if that is not the scene's own; the terminal is told.
 ///
 /// # Errors
@@ -80,11 +86,7 @@ pub fn load_with(
 ) -> Result<(Setup, Option<OtherMethod>), Box<dyn Error>> {
     if wish == MethodWish::default() {
         let (setup, choice) = load(config, scene, true)?;
-        let chosen = choice.map(|choice| {
-            let error = choice.tried.last().map(Tried::excess);
-            OtherMethod { method: choice.method, error }
-        });
-        return Ok((setup, chosen));
+        return Ok((setup, choice.map(OtherMethod::from)));
     }
     let setup = Setup::load(config, scene)?;
     let method = wish.method(&setup)?;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Subcommand;
+use cli::choose::OtherMethod;
 use cli::run::RunOptions;
 use config::BusAddress;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -131,7 +132,7 @@ impl Study for Realtime {
             paced: false,
             stays: false,
             scene: self.scene.clone(),
-            method: choice.map(|choice| choice.method),
+            method: choice.map(OtherMethod::from),
             config: given.config.to_path_buf(),
             dir: ipc::default_dir(),
             log: Some(log.clone()),
