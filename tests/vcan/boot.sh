@@ -4,8 +4,9 @@
 # The machine is User Mode Linux, a kernel of Debian's that is an ordinary process, and sees all files of this one at their
 # places; what it writes stays in its memory and is gone at the end. The command runs as root in this folder, its output is
 # shown as it comes, its exit code is returned. 124: the time limit (-t, 600 s) was reached; 125: the machine itself failed.
-# -k: what is written to /run/kept is kept in that folder. -r: a kernel with PREEMPT_RT on two cores that QEMU emulates (KVM is
-# neither needed nor used), about fifty times slower where numbers are crunched. -i: with the keyboard, for a shell: tests/vcan/boot.sh -i bash
+# -k: what is written to /run/kept is kept in that folder. -i: with the keyboard, for a shell: tests/vcan/boot.sh -i bash
+# -r: a kernel with PREEMPT_RT on two cores that QEMU emulates (KVM is neither needed nor used), about fifty times slower
+# where numbers are crunched.
 set -u
 limit=600
 keyboard=

@@ -162,7 +162,13 @@ impl Run {
             Ok("no") | Err(_) => false,
             Ok(other) => return Err(wrong("stays", other, "yes or no")),
         };
-        let method_error = value("method_error").ok().and_then(|error| error.parse().ok());
+        let method_error = match value("method_error") {
+            Ok("") | Err(_) => None,
+            Ok(text) => match text.parse() {
+                Ok(error) if (0.0..f64::INFINITY).contains(&error) => Some(error),
+                _ => return Err(wrong("method_error", text, "a number from 0 on")),
+            },
+        };
         let (commit, started) = (value("commit").unwrap_or_default(), value("started").unwrap_or_default());
         let number = |text: &str| text.parse().ok();
         let started =
@@ -208,8 +214,13 @@ mod tests {
         let dir = Path::new("/nowhere");
         let good = Run::bare(dir).to_text();
         assert_eq!(Run::parse(dir, &good).unwrap(), Run::bare(dir));
-        for (from, to) in [("simulated", "sicenmulated"), ("real-time", "real"), ("log = ", "log = w.mcap\r")]
-        {
+        for (from, to) in [
+            ("simulated", "sicenmulated"),
+            ("real-time", "real"),
+            ("method_error = ", "method_error = NaN"),
+            ("method_error = ", "method_error = -1"),
+            ("log = ", "log = w.mcap\r"),
+        ] {
             let error =
                 Run::parse(dir, &good.trim_end_matches('\n').replace(from, to)).unwrap_err().to_string();
             assert!(error.contains("must be") || error.contains("log is missing"), "{to:?}: {error}");
