@@ -122,8 +122,13 @@ pub(crate) fn run_file_seeds() -> Vec<Vec<u8>> {
     let method = Some("type 2, semi_implicit x 4".into());
     let mut seeds = vec![bare.to_text().into_bytes()];
     for bus in ["can:vcan0-8", "canfd:vcan0,vcan3", "sercos:n1,n2/f1,f2"] {
-        let run =
-            ipc::Run { bus: bus.into(), method: method.clone(), log: Some("w.mcap".into()), ..bare.clone() };
+        let run = ipc::Run {
+            bus: bus.into(),
+            method: method.clone(),
+            method_error: Some(0.41),
+            log: Some("w.mcap".into()),
+            ..bare.clone()
+        };
         seeds.push(run.to_text().into_bytes());
     }
     seeds
