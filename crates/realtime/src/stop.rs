@@ -1,9 +1,13 @@
-//! The request to end: SIGTERM, SIGINT and SIGHUP, taken by a thread of their own so that no control cycle is
-//! interrupted.
+//! The request to end: SIGTERM, SIGINT, SIGHUP and the parent's death, taken by a thread of their own so that no control
+//! cycle is interrupted.
 
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Signal of the parent's death. The kernel sends it once for each thread of the parent that had the child in turn, so it is none
+/// that somebody else sends, too.
+const PARENT_DIED: libc::c_int = libc::SIGUSR1;
 
 /// Asked to end? Cheap to copy, to be looked at once per cycle.
 #[derive(Clone, Debug, Default)]
@@ -17,10 +21,12 @@ impl Stop {
         let stop = Self::default();
         let asked = stop.clone();
         std::thread::Builder::new().name("signals".into()).stack_size(64 << 10).spawn(move || {
+            let mut first = true;
             loop {
                 let mut signal = 0;
                 // SAFETY: `set` is an initialised set and `signal` a writable integer, both of this thread.
-                if unsafe { libc::sigwait(&set, &mut signal) } == 0 {
+                if unsafe { libc::sigwait(&set, &mut signal) } == 0 && (first || signal != PARENT_DIED) {
+                    first = false;
                     asked.ask();
                 }
             }
@@ -33,7 +39,8 @@ impl Stop {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Whether it was asked since the last call: the first request may be met gently, the second at once.
+    /// Whether it was asked since the last call: the first request may be met gently, the second at once. The parent's death is
+    /// no second one.
     pub fn taken(&self) -> bool {
         self.0.swap(false, Ordering::Relaxed)
     }
@@ -43,10 +50,10 @@ impl Stop {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// From now on this process gets SIGTERM when the thread that started it ends, killed or not.
+    /// From now on this process is asked to end when the thread that started it ends, killed or not.
     pub fn with_parent() -> io::Result<()> {
         // SAFETY: PR_SET_PDEATHSIG takes a signal number and touches no memory.
-        match unsafe { libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM) } {
+        match unsafe { libc::prctl(libc::PR_SET_PDEATHSIG, PARENT_DIED) } {
             0 => Ok(()),
             _ => Err(io::Error::last_os_error()),
         }
@@ -72,7 +79,7 @@ fn block() -> io::Result<libc::sigset_t> {
     // for.
     let error = unsafe {
         libc::sigemptyset(&mut set);
-        for signal in [libc::SIGTERM, libc::SIGINT, libc::SIGHUP] {
+        for signal in [libc::SIGTERM, libc::SIGINT, libc::SIGHUP, PARENT_DIED] {
             libc::sigaddset(&mut set, signal);
         }
         libc::pthread_sigmask(libc::SIG_BLOCK, &set, std::ptr::null_mut())

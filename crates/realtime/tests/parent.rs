@@ -1,0 +1,68 @@
+//! A parent's threads end one after the other, and the kernel tells the child of each that had it in turn. Asked is asked once;
+//! only who asks again by hand is in a hurry.
+//!
+//! Three processes: this test, a parent that it starts, and the parent's child.
+
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use realtime::Stop;
+
+/// Between two ends of threads, and two requests: much longer than the child takes to see one.
+const PAUSE: Duration = Duration::from_millis(200);
+
+fn main() {
+    match std::env::args().nth(1).as_deref() {
+        Some("parent") => parent(),
+        Some("child") => child(),
+        _ => {
+            let asked = Command::new(std::env::current_exe().unwrap()).arg("parent").output().unwrap();
+            // Its parent's two threads, SIGTERM, and again.
+            assert_eq!(String::from_utf8_lossy(&asked.stderr), "asked 1\nasked 2\nasked 3\n");
+            println!(
+                "test a_parent_that_ends_in_pieces_asks_once ... ok\n\ntest result: ok. 1 passed; 0 failed"
+            );
+        }
+    }
+}
+
+/// One thread starts the child and ends, then the other does.
+#[expect(clippy::zombie_processes, reason = "the parent ends first, as is tested here")]
+fn parent() {
+    let started = std::thread::spawn(|| {
+        let mut child = Command::new(std::env::current_exe().unwrap())
+            .arg("child")
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut String::new()).unwrap();
+    });
+    started.join().unwrap();
+    std::thread::park_timeout(PAUSE);
+}
+
+/// Says how often it was asked to end. Once its parent is gone it asks itself, as somebody in a hurry does.
+fn child() {
+    let stop = Stop::on_signals().unwrap();
+    let parent = std::os::unix::process::parent_id();
+    Stop::with_parent().unwrap();
+    println!("ready");
+    let mut asked = 0;
+    let mut look = || {
+        std::thread::park_timeout(PAUSE / 20);
+        if stop.taken() {
+            asked += 1;
+            eprintln!("asked {asked}");
+        }
+    };
+    while std::os::unix::process::parent_id() == parent {
+        look();
+    }
+    for hurry in [false, true, true] {
+        if hurry {
+            realtime::terminate(std::process::id());
+        }
+        (0..20).for_each(|_| look());
+    }
+}
