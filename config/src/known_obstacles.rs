@@ -2,11 +2,10 @@
 
 use std::error::Error;
 
-use environment::{Mesh, Pose};
+use environment::Pose;
 use multibody::{Data, Model};
 use nalgebra::Vector3;
 
-use crate::terrain::ObjectShape;
 use crate::{Robot, Setup};
 
 /// Corners of a triangle \[m\] @I_0.
@@ -29,10 +28,7 @@ impl Setup {
         let begin = self.start()?;
         let mut obstacles = Vec::new();
         for object in self.scene.objects.iter().filter(|o| o.known) {
-            let mesh = match &object.shape {
-                ObjectShape::Box(size) => Mesh::cuboid(*size)?,
-                ObjectShape::Mesh { file, bytes, scale } => Mesh::parse(file, bytes, *scale)?,
-            };
+            let mesh = object.shape.mesh()?;
             let pose = Pose::new(object.pose.position, object.pose.rotation);
             let place = |v: Vector3<f64>| <[f64; 3]>::from(pose.rotation * v + pose.position - begin);
             obstacles.push(mesh.faces().map(|corners| corners.map(place)).collect());

@@ -1,7 +1,10 @@
 //! Objects on the ground of a scene: boxes and meshes, some of them moving.
 
+use std::error::Error;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
+
+use environment::Mesh;
 
 use crate::error::ConfigError;
 use crate::file::{self, Hash};
@@ -51,6 +54,19 @@ pub struct TerrainPose {
     pub position: [f64; 3],
     /// \[rad\] Roll, pitch and yaw: turned about x, then y, then z of the world.
     pub rotation: [f64; 3],
+}
+
+impl ObjectShape {
+    /// Its surface.
+    ///
+    /// # Errors
+    /// The file of a mesh cannot be read.
+    pub fn mesh(&self) -> Result<Mesh, Box<dyn Error>> {
+        Ok(match self {
+            Self::Box(size) => Mesh::cuboid(*size)?,
+            Self::Mesh { file, bytes, scale } => Mesh::parse(file, bytes, *scale)?,
+        })
+    }
 }
 
 const PLACE: std::ops::RangeInclusive<f64> = -1e3..=1e3;

@@ -5,6 +5,8 @@ use std::path::Path;
 use config::Scene;
 use serde_json::{Value, json};
 
+use crate::top_view::top_view;
+
 /// Scenes in alphabetical order; of one that is wrong what is wrong with it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Catalogue {
@@ -21,8 +23,9 @@ impl Catalogue {
         let entries = list.into_iter().map(|(name, scene)| {
             let told = match scene {
                 Ok(scene) => entry(&name, &scene),
-                Err(problem) => json!({"name": name, "problem": problem.to_string()}),
+                Err(problem) => Err(problem.to_string()),
             };
+            let told = told.unwrap_or_else(|problem| json!({"name": name, "problem": problem}));
             (name, told)
         });
         Ok(Self { entries: entries.collect() })
@@ -47,12 +50,13 @@ impl Catalogue {
     }
 }
 
-fn entry(name: &str, scene: &Scene) -> Value {
+fn entry(name: &str, scene: &Scene) -> Result<Value, String> {
     let own = scene.auto.is_none().then_some(scene);
-    json!({
+    Ok(json!({
         "name": name, "about": scene.about, "robot": scene.robot, "duration": scene.duration,
         "depth": own.map(|scene| scene.depth), "integrator": own.map(|scene| scene.integrator.word()),
-    })
+        "view": top_view(scene)?,
+    }))
 }
 
 #[cfg(test)]

@@ -4,7 +4,6 @@ use config::joystick::{ButtonFunction, STICKS, Stick};
 use config::registry::{Change, ParameterEntry};
 use config::terrain::{ObjectShape, TerrainObject};
 use config::{Joystick, Robot, Setup};
-use environment::Mesh;
 use ipc::{Mode, Run};
 use messages::command_text::{COMMANDS, CommandInfo};
 use serde_json::{Map, Value, json};
@@ -74,12 +73,10 @@ pub fn model(run: &Run, setup: &Setup) -> String {
 
 /// Surface of an object in its own frame.
 fn object(object: &TerrainObject) -> Result<Value, String> {
-    let told = |e: &dyn std::fmt::Display| format!("object {}: {e}", object.name);
-    let (kind, mesh) = match &object.shape {
-        ObjectShape::Box(size) => ("box", Mesh::cuboid(*size).map_err(|e| told(&e))?),
-        ObjectShape::Mesh { file, bytes, scale } => {
-            ("mesh", Mesh::parse(file, bytes, *scale).map_err(|e| told(&e))?)
-        }
+    let mesh = object.shape.mesh().map_err(|e| format!("object {}: {e}", object.name))?;
+    let kind = match object.shape {
+        ObjectShape::Box(_) => "box",
+        ObjectShape::Mesh { .. } => "mesh",
     };
     // Corners that triangles share stay apart: flat shading wants them so.
     let corners = mesh.faces().flatten().flat_map(<[f64; 3]>::from);

@@ -9,7 +9,7 @@
 //! | [`description`], [`picture`], [`state`], [`belief`], [`plotting`], [`health`] | what a page is told: once, at 60 Hz, as samples, about processes |
 //! | [`guests`] | pages that are there, and what each of them has lost |
 //! | [`operator`] | one client of the broker per page or viewer that commands |
-//! | [`catalogue`], [`starter`] | scenes, and runs of them that a page starts and ends; only where `--start` allows it |
+//! | [`catalogue`], `top_view`, [`starter`] | scenes, pictures of them, and runs of them that a page starts and ends; only where `--start` allows it |
 //! | [`foxglove`] | second door, for Foxglove and Lichtblick |
 //! | [`book`] | `docs/`, rendered, under `/book/` |
 //! | [`requests`] | what a page asks for |
@@ -38,5 +38,6 @@ pub mod requests;
 pub mod socket;
 pub mod starter;
 pub mod state;
+mod top_view;
 
 pub use daemon::{Addresses, Options, serve, serve_recording};

@@ -89,7 +89,7 @@ pub fn parameter_message(name: &str, value: f64) -> Utf8Bytes {
 }
 
 /// When and where an object of the scene is.
-fn schedule(object: &TerrainObject) -> Schedule {
+pub(crate) fn schedule(object: &TerrainObject) -> Schedule {
     let pose = |p: &TerrainPose| Pose::new(p.position, p.rotation);
     let later: Vec<(f64, Pose)> = object.poses.iter().map(|(time, p)| (*time, pose(p))).collect();
     Schedule::new(object.appears, object.vanishes, pose(&object.pose), &later)

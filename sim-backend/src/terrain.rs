@@ -3,8 +3,8 @@
 use std::error::Error;
 
 use config::Scene;
-use config::terrain::{ObjectShape, TerrainObject, TerrainPose};
-use environment::{Environment, Mesh, Object, Pose, Schedule};
+use config::terrain::{TerrainObject, TerrainPose};
+use environment::{Environment, Object, Pose, Schedule};
 
 /// Flat ground, lower or tilted if the scene says so, with the objects of a scene.
 ///
@@ -17,13 +17,9 @@ pub fn environment(scene: &Scene) -> Result<Environment, Box<dyn Error>> {
 }
 
 fn object(o: &TerrainObject) -> Result<Object, Box<dyn Error>> {
-    let mesh = match &o.shape {
-        ObjectShape::Box(size) => Mesh::cuboid(*size)?,
-        ObjectShape::Mesh { file, bytes, scale } => Mesh::parse(file, bytes, *scale)?,
-    };
     let later: Vec<(f64, Pose)> = o.poses.iter().map(|(time, p)| (*time, pose(p))).collect();
     let schedule = Schedule::new(o.appears, o.vanishes, pose(&o.pose), &later);
-    Ok(Object::new(o.name.clone(), mesh, o.friction, schedule))
+    Ok(Object::new(o.name.clone(), o.shape.mesh()?, o.friction, schedule))
 }
 
 fn pose(p: &TerrainPose) -> Pose {

@@ -4,6 +4,7 @@
 //! first Ctrl-C ──► walk/stop over the broker ──► it stands ──► end
 //!                      │ not passed on within 0.5 s
 //!                      └──► the planner is ended: its plan is walked to its end, standing ──► end
+//!                           in lockstep, within 3 s ──► end
 //! second Ctrl-C ─► emergency stop on its own line ──► end
 //! death or hang ─► aftermath for the log ──► end
 //! ```
@@ -14,7 +15,9 @@ use realtime::clock::SECOND;
 
 /// Timeout for the broker to pass a stop on.
 const BROKER_PATIENCE: u64 = SECOND / 2;
-/// After a first request to end the robot gets this long to come to a stand.
+/// The same in lockstep, where nothing is walked to its end without a planner: a broker that was only stopped gets its time.
+const LOCKSTEP_BROKER_PATIENCE: u64 = 3 * SECOND;
+/// After a first request to end the robot gets this long to come to a stand: in lockstep by its own time too, which may be slower.
 const STAND_PATIENCE: u64 = 8 * SECOND;
 /// After the death of a process of the chain the run goes on this long, so that the log shows what the robot did.
 const AFTERMATH: u64 = 3 * SECOND;
@@ -30,6 +33,8 @@ pub(super) struct CourseObservation {
     pub(super) passed: bool,
     /// The robot stands.
     pub(super) stands: bool,
+    /// Time of the robot \[ns\].
+    pub(super) robot_time: u64,
     /// The joint loop has done the scene.
     pub(super) finished: bool,
 }
@@ -53,7 +58,8 @@ pub(super) enum Act {
 #[derive(Clone, Debug)]
 pub(super) struct Course {
     mode: Mode,
-    asked_at: Option<u64>,
+    /// When somebody asked for the end, by the clock and by the robot's time \[ns\].
+    asked_at: Option<(u64, u64)>,
     passed: bool,
     planner_ended: bool,
     end_at: Option<u64>,
@@ -95,18 +101,21 @@ impl Course {
             return Act::Finish;
         }
         if seen.asked {
-            self.asked_at = Some(now);
+            self.asked_at = Some((now, seen.robot_time));
             return Act::Stand;
         }
-        let Some(asked) = self.asked_at else { return Act::GoOn };
+        let Some((asked, asked_of_robot)) = self.asked_at else { return Act::GoOn };
+        let lockstep = self.mode == Mode::Lockstep;
         let patience = if self.planner_ended { LAST_PLAN } else { STAND_PATIENCE };
-        if seen.stands || now > asked + patience {
+        let slower = lockstep && seen.robot_time <= asked_of_robot + patience;
+        if seen.stands || now > asked + patience && !slower {
             return Act::Finish;
         }
-        if !self.passed && !self.planner_ended && now > asked + BROKER_PATIENCE {
+        let patience = if lockstep { LOCKSTEP_BROKER_PATIENCE } else { BROKER_PATIENCE };
+        if !self.passed && !self.planner_ended && now > asked + patience {
             // In lockstep everybody waits for the planner: nothing would be walked to its end.
             self.planner_ended = true;
-            return if self.mode == Mode::Lockstep { Act::Finish } else { Act::EndPlanner };
+            return if lockstep { Act::Finish } else { Act::EndPlanner };
         }
         Act::GoOn
     }
@@ -116,13 +125,16 @@ impl Course {
 mod tests {
     use super::*;
 
-    const ASKED: CourseObservation =
-        CourseObservation { asked: true, passed: false, stands: false, finished: false };
     const NOTHING: CourseObservation =
-        CourseObservation { asked: false, passed: false, stands: false, finished: false };
+        CourseObservation { asked: false, passed: false, stands: false, finished: false, robot_time: 0 };
+    const ASKED: CourseObservation = CourseObservation { asked: true, ..NOTHING };
 
     fn asked() -> Course {
-        let mut course = Course::new(Mode::RealTime);
+        asked_in(Mode::RealTime)
+    }
+
+    fn asked_in(mode: Mode) -> Course {
+        let mut course = Course::new(mode);
         assert_eq!(course.step(0, NOTHING), Act::GoOn);
         assert_eq!(course.step(1, ASKED), Act::Stand);
         course
@@ -145,6 +157,24 @@ mod tests {
         assert!(course.is_ending(Process::Planner) && !course.is_ending(Process::Controller));
         assert_eq!(course.step(10 * SECOND, NOTHING), Act::GoOn, "its plan is walked to its end");
         assert_eq!(course.step(13 * SECOND, NOTHING), Act::Finish);
+    }
+
+    /// With a broker that was stopped for a second, or on a machine a third as fast, the supply went off while she walked.
+    #[test]
+    fn in_lockstep_a_slow_robot_comes_to_a_stand_and_a_stopped_broker_passes_the_stop_on() {
+        let mut course = asked_in(Mode::Lockstep);
+        assert_eq!(course.step(SECOND, NOTHING), Act::GoOn);
+        for s in 1..24 {
+            let seen = CourseObservation { passed: true, robot_time: s * SECOND / 3, ..NOTHING };
+            assert_eq!(course.step(s * SECOND, seen), Act::GoOn, "{s} s");
+        }
+        let seen = CourseObservation { robot_time: 9 * SECOND, ..NOTHING };
+        assert_eq!(course.step(27 * SECOND, seen), Act::Finish, "she does not stand");
+        // One that is faster than the clock gets no less.
+        let mut course = asked_in(Mode::Lockstep);
+        let seen = CourseObservation { passed: true, robot_time: 100 * SECOND, ..NOTHING };
+        assert_eq!(course.step(5 * SECOND, seen), Act::GoOn);
+        assert_eq!(asked_in(Mode::Lockstep).step(4 * SECOND, NOTHING), Act::Finish, "nobody passes it on");
     }
 
     #[test]

@@ -223,6 +223,7 @@ impl Supervisor {
             seen.finished |= self.outcome.lost.is_empty() && view.lies();
             seen.passed = witness.as_ref().is_some_and(|witness| witness.statistics().connected);
             seen.stands = view.standing();
+            seen.robot_time = view.robot_time();
             match self.course.step(now, seen) {
                 Act::GoOn => {}
                 Act::Stand => {

@@ -79,6 +79,11 @@ impl View {
         self.state.latest().is_none_or(|s| GaitState::from(s.gait).rests())
     }
 
+    /// Time of the robot \[ns\], by its bus cycles; 0 before the first one.
+    pub(super) fn robot_time(&mut self) -> u64 {
+        self.sensors.latest().map_or(0, |sensors| (sensors.header.tick as f64 * self.cycle * 1e9) as u64)
+    }
+
     /// One look.
     pub(super) fn update(&mut self) {
         self.tell_events();

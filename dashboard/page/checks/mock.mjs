@@ -46,11 +46,12 @@ const joystick = () => ({
 });
 
 /** Scenes of a server that starts runs: one with a depth, one that leaves it open, one with a mistake. */
+const STANDS = { way: [[0, 0]], objects: [], pushes: [] };
 const SCENES = [
-  { name: "demo", about: "Lola stands up, walks, turns and stops.", robot: "lola", duration: 34, depth: 1, integrator: "euler" },
-  { name: "walk_auto", about: "Lola walks with the cheapest model that is accurate enough.", robot: "lola", duration: 6, depth: null, integrator: null },
+  { name: "demo", about: "Lola stands up, walks, turns and stops.", robot: "lola", duration: 34, depth: 1, integrator: "euler", view: { way: [[0, 0], [4, 0], [4.5, 0.5]], objects: [[[1, -0.2], [1.5, 0.4]]], pushes: [[2, 0, 0, 200]] } },
+  { name: "walk_auto", about: "Lola walks with the cheapest model that is accurate enough.", robot: "lola", duration: 6, depth: null, integrator: null, view: STANDS },
   { name: "wrong", problem: "config/scenes/wrong.toml: line 3: dept: unknown key; the nearest is `depth`" },
-  ...Array.from({ length: 40 }, (_, i) => ({ name: `walk_with_a_rather_long_name_${i}`, about: "Lola walks straight on and stops, with a sentence about it that is longer than the panel is wide.", robot: "lola", duration: 20, depth: 3, integrator: "semi_implicit" })),
+  ...Array.from({ length: 40 }, (_, i) => ({ name: `walk_with_a_rather_long_name_${i}`, about: "Lola walks straight on and stops, with a sentence about it that is longer than the panel is wide.", robot: "lola", duration: 20, depth: 3, integrator: "semi_implicit", view: STANDS })),
 ];
 const START_MS = 400;
 

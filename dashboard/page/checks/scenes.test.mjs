@@ -38,6 +38,30 @@ test("a server that starts no runs has no panel of scenes", async () => {
   await page.done();
 });
 
+test("a picture shows the way, the objects and the pushes of the chosen scene", async () => {
+  const page = await waiting();
+  const picture = page.getByRole("img", { name: "Top view" });
+  assert.equal(await picture.getAttribute("aria-label"), "Top view: a way of 4.7 m, objects: 1, pushes: 1");
+  // On the screen: forward is to the right, to the left is up, and a push from the right points up to the way.
+  const box = async (part) => picture.locator(part).boundingBox();
+  const [frame, way, object, push] = [await picture.boundingBox(), await box(".way"), await box(".object"), await box(".push")];
+  const metre = way.width / 4.5;
+  const near = (is, wanted) => assert.ok(Math.abs(is - wanted) < 2, `${is} is not ${wanted}`);
+  near(way.height, 0.5 * metre);
+  near(object.x - way.x, metre);
+  near(object.width, 0.5 * metre);
+  near(object.y + object.height - (way.y + way.height), 0.2 * metre);
+  near(push.x + push.width / 2 - way.x, 2 * metre);
+  near(push.y, way.y + way.height);
+  for (const part of [way, object, push]) {
+    assert.ok(part.x > frame.x && part.y > frame.y && part.x + part.width < frame.x + frame.width && part.y + part.height < frame.y + frame.height);
+  }
+  await page.getByRole("listbox", { name: "Scenes" }).selectOption("walk_auto");
+  await page.getByRole("img", { name: "Top view: on the spot" }).waitFor();
+  await page.getByRole("listbox", { name: "Scenes" }).selectOption("wrong");
+  assert.equal(await picture.count(), 0);
+});
+
 test("a scene is chosen with its model, started, seen, and ended", async () => {
   const page = await waiting();
   // Where nothing runs the panel is open, and says what each scene is about.

@@ -3,6 +3,7 @@
 import { Answer } from "../desk.js";
 import { h, mark, newId, say } from "../dom.js";
 import { fixed } from "../numbers.js";
+import { topView } from "./top_view.js";
 
 const FIRST = "demo";
 const DEPTHS = [["1", "1 · joints follow their targets"], ["2", "2 · motors"], ["3", "3 · elastic gears"], ["4", "4 · pads of finite elements"], ["5", "5 · elastic gears and pads"]];
@@ -25,6 +26,7 @@ export class Scenes {
   #list = h("select", { id: newId("scene"), class: "scene-list", size: 12 });
   #about = h("p");
   #facts = h("p", { class: "hint" });
+  #view = h("div");
   #depth = choice("Depth", DEPTHS);
   #integrator = choice("Integrator", INTEGRATORS);
   #start = h("button", { type: "submit" }, "Start");
@@ -32,7 +34,7 @@ export class Scenes {
   constructor(desk, hub) {
     const [started, ended] = [new Answer("Answer to the start"), new Answer("Answer to the end")];
     const form = h("form", { class: "card", "aria-label": "Start a scene" },
-      h("h2", {}, h("label", { for: this.#list.id }, "Scenes")), this.#list, this.#about, this.#facts,
+      h("h2", {}, h("label", { for: this.#list.id }, "Scenes")), this.#list, this.#about, this.#view, this.#facts,
       h("div", { class: "fields halves" }, this.#depth.element, this.#integrator.element),
       h("div", { class: "row" }, this.#start, started.element));
     form.addEventListener("submit", (event) => {
@@ -71,6 +73,7 @@ export class Scenes {
     const model = fine && scene.depth === null ? "depth chosen by its tolerance" : fine ? `type ${scene.depth}, ${scene.integrator}` : "";
     say(this.#about, scene?.about ?? scene?.problem ?? "The configuration has no scenes.");
     say(this.#facts, fine ? `${scene.robot} · ${fixed(scene.duration, 0)} s, then until Stop · ${model}` : "");
+    this.#view.replaceChildren(...(fine ? [topView(scene.view)] : []));
     this.#start.disabled = !fine;
   }
 }

@@ -1,0 +1,190 @@
+//! Top view of a scene: the way that its commands ask for, its objects, its pushes. What a robot makes of that is for the run to show.
+
+use config::Scene;
+use environment::Object;
+use messages::Command;
+use messages::command::VelocityCommand;
+use nalgebra::{Isometry2, Vector2};
+use serde_json::{Value, json};
+
+use crate::picture::schedule;
+
+/// \[rad\] Longest piece of an arc that is drawn as a line.
+const PIECE: f64 = 0.1;
+const REST: VelocityCommand = VelocityCommand { forward: 0.0, left: 0.0, turn: 0.0 };
+
+/// `way`: points \[m\] from where it starts, facing along x; `objects`: boxes around them, two corners \[m\] each; `pushes`: places
+/// \[m\] and forces \[N\].
+///
+/// # Errors
+/// An object's mesh cannot be read.
+pub(crate) fn top_view(scene: &Scene) -> Result<Value, String> {
+    let objects = scene.objects.iter().map(|object| {
+        let mesh = object.shape.mesh().map_err(|e| format!("object {}: {e}", object.name))?;
+        let object = Object::new(&object.name, mesh, None, schedule(object));
+        let bounds = object.bounds();
+        Ok([bounds.lo.xy(), bounds.hi.xy()].map(point))
+    });
+    let objects: Vec<_> = objects.collect::<Result<_, String>>()?;
+    let mut walker = Walker::default();
+    let pushes: Vec<_> =
+        timeline(scene).into_iter().filter_map(|(time, event)| walker.pass(time, event)).collect();
+    Ok(json!({"way": walker.way, "objects": objects, "pushes": pushes}))
+}
+
+/// Instant of a scene: a command, a push \[N\], or its end.
+#[derive(Clone, Copy, Debug)]
+enum Happening {
+    Command(Command),
+    Push([f64; 2]),
+    End,
+}
+
+/// Commands, pushes and the end by time \[s\].
+fn timeline(scene: &Scene) -> Vec<(f64, Happening)> {
+    let commands = scene.commands.iter().map(|(time, command)| (*time, Happening::Command(*command)));
+    let pushes =
+        scene.pushes.iter().map(|(time, push)| (*time, Happening::Push([push.force[0], push.force[1]])));
+    let mut all: Vec<_> = commands.chain(pushes).chain([(scene.duration, Happening::End)]).collect();
+    all.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    all
+}
+
+/// Walks exactly as it is told: at once, without steps.
+#[derive(Debug)]
+struct Walker {
+    time: f64,
+    pose: Isometry2<f64>,
+    velocity: VelocityCommand,
+    /// Velocity of `walk/start`, from the step parameters.
+    step: VelocityCommand,
+    /// \[s\] End of a distance that was commanded.
+    until: f64,
+    way: Vec<[f64; 2]>,
+}
+
+impl Default for Walker {
+    fn default() -> Self {
+        let pose = Isometry2::identity();
+        Self { time: 0.0, pose, velocity: REST, step: REST, until: f64::INFINITY, way: vec![[0.0; 2]] }
+    }
+}
+
+impl Walker {
+    /// Walks on to `time` \[s\], and takes what happens then; place and force of a push.
+    fn pass(&mut self, time: f64, event: Happening) -> Option<[f64; 4]> {
+        self.walk(time.min(self.until) - self.time);
+        self.time = time;
+        match event {
+            Happening::Command(command) => self.take(&command),
+            Happening::Push([x, y]) => {
+                let [here_x, here_y] = point(self.pose.translation.vector);
+                return Some([here_x, here_y, x, y]);
+            }
+            Happening::End => {}
+        }
+        None
+    }
+
+    fn take(&mut self, command: &Command) {
+        let go_on = (self.velocity, self.until);
+        (self.velocity, self.until) = match *command {
+            Command::Velocity(velocity) => (velocity, f64::INFINITY),
+            Command::Start => (self.step, f64::INFINITY),
+            Command::Stop => (REST, f64::INFINITY),
+            Command::Distance(way) => {
+                let forward = way.speed.copysign(way.distance);
+                (VelocityCommand { forward, ..REST }, self.time + way.distance.abs() / way.speed)
+            }
+            // As far as the edge: where behind it she stands is for the planner to say.
+            Command::Platform(platform) => {
+                self.go(Vector2::x() * platform.distance, 0.0);
+                go_on
+            }
+            Command::Step(step) => {
+                let [forward, left, turn] = [step.length, step.side, step.turn].map(|x| x / step.duration);
+                self.step = VelocityCommand { forward, left, turn };
+                go_on
+            }
+            _ => go_on,
+        };
+    }
+
+    /// Walks for `duration` \[s\].
+    fn walk(&mut self, duration: f64) {
+        let VelocityCommand { forward, left, turn } = self.velocity;
+        if duration <= 0.0 || self.velocity == REST {
+            return;
+        }
+        let pieces = (turn.abs() * duration / PIECE).ceil().max(1.0);
+        let (way, angle) = (Vector2::new(forward, left) * duration / pieces, turn * duration / pieces);
+        (0..pieces as usize).for_each(|_| self.go(way, angle));
+    }
+
+    /// One piece of the way, in the direction in the middle of its turn.
+    fn go(&mut self, way: Vector2<f64>, angle: f64) {
+        let half = Isometry2::rotation(angle / 2.0);
+        self.pose = self.pose * half * Isometry2::translation(way.x, way.y) * half;
+        self.way.push(point(self.pose.translation.vector));
+    }
+}
+
+/// To the millimetre, which no picture shows.
+fn point(p: Vector2<f64>) -> [f64; 2] {
+    <[f64; 2]>::from(p).map(|x| (x * 1e3).round() / 1e3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(scene: &str) -> Value {
+        let file = config::root(None).join("scenes").join(scene).with_extension("toml");
+        top_view(&Scene::load(&file).unwrap()).unwrap()
+    }
+
+    fn last(view: &Value) -> [f64; 2] {
+        let way = view["way"].as_array().unwrap();
+        serde_json::from_value(way[way.len() - 1].clone()).unwrap()
+    }
+
+    /// Against the arithmetic of each file: speed times time, and a circle's radius.
+    #[test]
+    fn ways_are_as_long_as_the_commands_say() {
+        // 2 km/h from 3 to 16 s.
+        let [x, y] = last(&of("walk_2kmh"));
+        assert!((x - 2.0 / 3.6 * 13.0).abs() < 0.1 && y == 0.0, "{x} {y}");
+        assert!(last(&of("walk_backwards"))[0] < -1.0);
+        assert!(last(&of("walk_sideways"))[1].abs() > 0.3);
+        assert_eq!(of("stand")["way"], json!([[0.0, 0.0]]));
+        assert_eq!(last(&of("walk_turn")), [0.0, 0.0], "on the spot");
+        let scene = Scene::load(&config::root(None).join("scenes/distance.toml")).unwrap();
+        let asked = scene.commands.iter().find_map(|(_, c)| match c {
+            Command::Distance(way) => Some(way.distance),
+            _ => None,
+        });
+        assert!((last(&of("distance"))[0] - asked.unwrap()).abs() < 1e-3);
+    }
+
+    #[test]
+    fn an_arc_lies_on_its_circle() {
+        let mut walker =
+            Walker { velocity: VelocityCommand { forward: 0.3, left: 0.0, turn: 0.18 }, ..Walker::default() };
+        walker.pass(30.0, Happening::End);
+        let radius = 0.3 / 0.18;
+        assert!(walker.way.len() > 50);
+        for [x, y] in walker.way {
+            assert!((x.hypot(y - radius) - radius).abs() < 2e-3, "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn objects_and_pushes_lie_where_the_files_say() {
+        assert_eq!(of("uneven")["objects"].as_array().unwrap().len(), 1);
+        let push = of("push");
+        let pushes: Vec<[f64; 4]> = serde_json::from_value(push["pushes"].clone()).unwrap();
+        assert_eq!(pushes.len(), 1);
+        assert!(pushes[0][2].hypot(pushes[0][3]) > 10.0, "{push}");
+        assert_eq!(of("passing_box")["objects"].as_array().unwrap().len(), 1);
+    }
+}
