@@ -14,7 +14,7 @@ const PARENT_DIED: libc::c_int = libc::SIGUSR1;
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    /// Blocks the signals in this thread and every thread it starts from now on, and starts the thread that takes
+    /// Blocks the signals, but SIGHUP if it is ignored, in this thread and every thread it starts from now on, and starts the thread that takes
     /// them. To be called first in `main`, while the process has one thread.
     pub fn on_signals() -> io::Result<Self> {
         let set = block()?;
@@ -73,16 +73,29 @@ pub fn terminate(pid: u32) {
 }
 
 fn block() -> io::Result<libc::sigset_t> {
+    // Started by nohup it goes on without its terminal: SIGHUP stays ignored. One that is blocked would be taken all the same.
+    let left_alone = is_ignored(libc::SIGHUP);
     // SAFETY: a signal set is plain bytes; `sigemptyset` then gives it its meaning.
     let mut set: libc::sigset_t = unsafe { std::mem::zeroed() };
     // SAFETY: `set` is a writable signal set and the numbers are signals of this platform; the old mask is not asked
     // for.
     let error = unsafe {
         libc::sigemptyset(&mut set);
-        for signal in [libc::SIGTERM, libc::SIGINT, libc::SIGHUP, PARENT_DIED] {
+        let wanted = [libc::SIGTERM, libc::SIGINT, libc::SIGHUP, PARENT_DIED];
+        for signal in wanted.into_iter().filter(|signal| *signal != libc::SIGHUP || !left_alone) {
             libc::sigaddset(&mut set, signal);
         }
         libc::pthread_sigmask(libc::SIG_BLOCK, &set, std::ptr::null_mut())
     };
     if error == 0 { Ok(set) } else { Err(io::Error::from_raw_os_error(error)) }
+}
+
+fn is_ignored(signal: libc::c_int) -> bool {
+    // SAFETY: an action is plain bytes, and the call only reads the present one into it.
+    let action = unsafe {
+        let mut action: libc::sigaction = std::mem::zeroed();
+        libc::sigaction(signal, std::ptr::null(), &mut action);
+        action
+    };
+    action.sa_sigaction == libc::SIG_IGN
 }

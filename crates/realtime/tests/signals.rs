@@ -1,7 +1,7 @@
-//! A parent's threads end one after the other, and the kernel tells the child of each that had it in turn. Asked is asked once;
-//! only who asks again by hand is in a hurry.
+//! Signals that ask a process to end, seen from processes of their own.
 //!
-//! Three processes: this test, a parent that it starts, and the parent's child.
+//! A parent's threads end one after the other, and the kernel tells the child of each that had it in turn. Asked is asked once;
+//! only who asks again by hand is in a hurry. And a terminal that is closed asks who was not started by nohup.
 
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
@@ -16,13 +16,19 @@ fn main() {
     match std::env::args().nth(1).as_deref() {
         Some("parent") => parent(),
         Some("child") => child(),
+        Some("orphan of a terminal") => orphan_of_a_terminal(),
         _ => {
-            let asked = Command::new(std::env::current_exe().unwrap()).arg("parent").output().unwrap();
+            let this = std::env::current_exe().unwrap();
+            let asked = Command::new(&this).arg("parent").output().unwrap();
             // Its parent's two threads, SIGTERM, and again.
             assert_eq!(String::from_utf8_lossy(&asked.stderr), "asked 1\nasked 2\nasked 3\n");
-            println!(
-                "test a_parent_that_ends_in_pieces_asks_once ... ok\n\ntest result: ok. 1 passed; 0 failed"
-            );
+            println!("test a_parent_that_ends_in_pieces_asks_once ... ok");
+            for (command, asked) in [("env", "true"), ("nohup", "false")] {
+                let said = Command::new(command).arg(&this).arg("orphan of a terminal").output().unwrap();
+                assert_eq!(String::from_utf8_lossy(&said.stdout), asked, "{command}");
+            }
+            println!("test who_was_started_by_nohup_goes_on_without_its_terminal ... ok");
+            println!("\ntest result: ok. 2 passed; 0 failed");
         }
     }
 }
@@ -65,4 +71,13 @@ fn child() {
         }
         (0..20).for_each(|_| look());
     }
+}
+
+/// Says whether a SIGHUP asked it to end.
+fn orphan_of_a_terminal() {
+    let stop = Stop::on_signals().unwrap();
+    let own = std::process::id().to_string();
+    assert!(Command::new("kill").args(["-HUP", &own]).status().unwrap().success());
+    std::thread::park_timeout(PAUSE);
+    print!("{}", stop.asked());
 }
