@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A run that is asked to end brings its robot to a stand first, as at Ctrl-C. It ends with this process, too, killed or not: the
-//! kernel sends it the same signal. That signal is bound to the thread that started it, so one thread does, as long as the process lives.
+//! kernel tells it ([`realtime::Stop::with_parent`]). That is bound to the thread that started it, so one thread does, as long as the process lives.
 
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, PipeReader};

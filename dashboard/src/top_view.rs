@@ -9,8 +9,9 @@ use serde_json::{Value, json};
 
 use crate::picture::schedule;
 
-/// \[rad\] Longest piece of an arc that is drawn as a line.
+/// \[rad\] Piece of an arc that is drawn as a line, and \[1\] most of them: a walk may turn round and round for hours.
 const PIECE: f64 = 0.1;
+const PIECES: f64 = 500.0;
 const REST: VelocityCommand = VelocityCommand { forward: 0.0, left: 0.0, turn: 0.0 };
 
 /// `way`: points \[m\] from where it starts, facing along x; `objects`: boxes around them, two corners \[m\] each; `pushes`: places
@@ -116,15 +117,16 @@ impl Walker {
         if duration <= 0.0 || self.velocity == REST {
             return;
         }
-        let pieces = (turn.abs() * duration / PIECE).ceil().max(1.0);
+        let pieces = (turn.abs() * duration / PIECE).ceil().clamp(1.0, PIECES);
         let (way, angle) = (Vector2::new(forward, left) * duration / pieces, turn * duration / pieces);
         (0..pieces as usize).for_each(|_| self.go(way, angle));
     }
 
-    /// One piece of the way, in the direction in the middle of its turn.
+    /// One piece of the way, an arc: its chord points in the direction in the middle of its turn.
     fn go(&mut self, way: Vector2<f64>, angle: f64) {
-        let half = Isometry2::rotation(angle / 2.0);
-        self.pose = self.pose * half * Isometry2::translation(way.x, way.y) * half;
+        let half = Isometry2::rotation(0.5 * angle);
+        let chord = if angle == 0.0 { way } else { way * ((0.5 * angle).sin() / (0.5 * angle)) };
+        self.pose = self.pose * half * Isometry2::translation(chord.x, chord.y) * half;
         self.way.push(point(self.pose.translation.vector));
     }
 }
@@ -170,11 +172,18 @@ mod tests {
     fn an_arc_lies_on_its_circle() {
         let mut walker =
             Walker { velocity: VelocityCommand { forward: 0.3, left: 0.0, turn: 0.18 }, ..Walker::default() };
-        walker.pass(30.0, Happening::End);
         let radius = 0.3 / 0.18;
-        assert!(walker.way.len() > 50);
+        // After hours, too, and then in no more points.
+        for (time, points) in [(30.0, 54), (30_000.0, 554)] {
+            walker.pass(time, Happening::End);
+            assert_eq!(walker.way.len(), points + 1);
+            let turned = 0.18 * time;
+            let [x, y] = walker.way[points];
+            let end = [radius * turned.sin(), radius * (1.0 - turned.cos())];
+            assert!((x - end[0]).hypot(y - end[1]) < 1e-3, "{x} {y}, {end:?}");
+        }
         for [x, y] in walker.way {
-            assert!((x.hypot(y - radius) - radius).abs() < 2e-3, "{x} {y}");
+            assert!((x.hypot(y - radius) - radius).abs() < 1e-3, "{x} {y}");
         }
     }
 
