@@ -115,6 +115,7 @@ impl Study for Realtime {
     /// cyclictest, the scene with all processes, cyclictest again: on the core and with the priority of the joint loop.
     fn run(&self, given: &Given<'_>) -> Result<Sheet, Box<dyn Error>> {
         let (setup, choice) = cli::choose::load(given.config, &self.scene, true)?;
+        // What the machine does without a robot, on the joint loop's terms.
         let row = setup.system.process(messages::Process::Lowlevel);
         let (core, priority) = row.map_or((0, 0), |row| (row.core.unwrap_or(0), row.priority));
         let seconds = self.cyclictest;
@@ -124,6 +125,7 @@ impl Study for Realtime {
         };
         studies::sheet::make(&self.out)?;
         let log = self.out.join(format!("{}.mcap", self.scene));
+        // The machine may change meanwhile, so it is measured before and after.
         let before = cyclictest();
         let order = RunOptions {
             bus: BusAddress::Shared,
