@@ -23,8 +23,14 @@ fn main() {
             // Its parent's two threads, SIGTERM, and again.
             assert_eq!(String::from_utf8_lossy(&asked.stderr), "asked 1\nasked 2\nasked 3\n");
             println!("test a_parent_that_ends_in_pieces_asks_once ... ok");
-            for (command, asked) in [("env", "true"), ("nohup", "false")] {
-                let said = Command::new(command).arg(&this).arg("orphan of a terminal").output().unwrap();
+            for (command, asked) in [("env --default-signal=HUP", "true"), ("nohup", "false")] {
+                let mut words = command.split(' ');
+                let said = Command::new(words.next().unwrap())
+                    .args(words)
+                    .arg(&this)
+                    .arg("orphan of a terminal")
+                    .output()
+                    .unwrap();
                 assert_eq!(String::from_utf8_lossy(&said.stdout), asked, "{command}");
             }
             println!("test who_was_started_by_nohup_goes_on_without_its_terminal ... ok");
