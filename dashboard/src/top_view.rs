@@ -139,6 +139,7 @@ fn point(p: Vector2<f64>) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use messages::command::DistanceCommand;
 
     fn of(scene: &str) -> Value {
         let file = config::root(None).join("scenes").join(scene).with_extension("toml");
@@ -150,7 +151,7 @@ mod tests {
         serde_json::from_value(way[way.len() - 1].clone()).unwrap()
     }
 
-    /// Against the arithmetic of each file: speed times time, and a circle's radius.
+    /// Against the arithmetic of each file: speed times time.
     #[test]
     fn ways_are_as_long_as_the_commands_say() {
         // 2 km/h from 3 to 16 s.
@@ -166,6 +167,56 @@ mod tests {
             _ => None,
         });
         assert!((last(&of("distance"))[0] - asked.unwrap()).abs() < 1e-3);
+    }
+
+    /// Commands at random instants, against the same walked in steps of 1 ms.
+    #[test]
+    fn random_commands_lead_where_small_steps_do() {
+        for seed in 1..=20_u64 {
+            let mut state = seed;
+            let mut draw = |low: f64, high: f64| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
+            };
+            let (mut walker, mut end) = (Walker::default(), 0);
+            // The other walker: place, heading, velocity in its own axes, and how far it is yet to go.
+            let ([mut x, mut y, mut heading], mut v, mut left_to_go) =
+                ([0.0_f64; 3], [0.0; 3], f64::INFINITY);
+            for _ in 0..8 {
+                let ms = draw(1.0, 6000.0) as u64;
+                for _ in 0..ms {
+                    let dt = f64::min(1e-3, left_to_go / f64::hypot(v[0], v[1]).max(1e-9));
+                    let (sin, cos) = (heading + 0.5 * v[2] * dt).sin_cos();
+                    x += (v[0] * cos - v[1] * sin) * dt;
+                    y += (v[0] * sin + v[1] * cos) * dt;
+                    heading += v[2] * dt;
+                    left_to_go -= f64::hypot(v[0], v[1]) * dt;
+                }
+                end += ms;
+                let command = match draw(0.0, 4.0) as u32 {
+                    0 => Command::Stop,
+                    1 => {
+                        let [distance, speed] = [draw(-2.0, 2.0), draw(0.1, 0.5)];
+                        Command::Distance(DistanceCommand { distance, speed, acceleration: 0.1 })
+                    }
+                    _ => {
+                        let [forward, left, turn] = [draw(-0.3, 0.9), draw(-0.1, 0.1), draw(-0.5, 0.5)];
+                        Command::Velocity(VelocityCommand { forward, left, turn })
+                    }
+                };
+                (v, left_to_go) = match command {
+                    Command::Distance(d) => ([d.speed * d.distance.signum(), 0.0, 0.0], d.distance.abs()),
+                    Command::Velocity(c) => ([c.forward, c.left, c.turn], f64::INFINITY),
+                    _ => ([0.0; 3], f64::INFINITY),
+                };
+                walker.pass(end as f64 * 1e-3, Happening::Command(command));
+                let [walked_x, walked_y] = *walker.way.last().unwrap();
+                assert!(
+                    (walked_x - x).hypot(walked_y - y) < 2e-3,
+                    "seed {seed}: {walked_x} {walked_y}, {x} {y}"
+                );
+            }
+        }
     }
 
     #[test]

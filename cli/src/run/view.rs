@@ -45,6 +45,7 @@ impl View {
             let topic = Topic::find(&name).ok_or_else(|| format!("there is no topic {name}"))?;
             Ok((p, space.reader(topic)?))
         };
+        // Nothing has been seen yet: the robot is taken for off and idle.
         Ok(Self {
             state: space.reader(&CONTROLLER_STATE)?,
             sim: space.reader(&SIM_STATE)?,

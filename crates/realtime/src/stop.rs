@@ -14,8 +14,8 @@ const PARENT_DIED: libc::c_int = libc::SIGUSR1;
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    /// Blocks the signals, but SIGHUP if it is ignored, in this thread and every thread it starts from now on, and starts the thread that takes
-    /// them. To be called first in `main`, while the process has one thread.
+    /// Blocks the signals, but SIGHUP if it is ignored, in this thread and every thread it starts from now on, and starts the
+    /// thread that takes them. To be called first in `main`, while the process has one thread.
     pub fn on_signals() -> io::Result<Self> {
         let set = block()?;
         let stop = Self::default();
@@ -39,8 +39,8 @@ impl Stop {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Whether it was asked since the last call: the first request may be met gently, the second at once. The parent's death is
-    /// no second one.
+    /// Request to end since the last call, taken: the first one may be met gently, the second at once. The parent's death is no
+    /// second one.
     pub fn taken(&self) -> bool {
         self.0.swap(false, Ordering::Relaxed)
     }

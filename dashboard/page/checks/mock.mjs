@@ -45,8 +45,9 @@ const joystick = () => ({
   buttons: { dead_man: ["BTN_TL"], emergency_stop: ["BTN_EAST"], stop: ["BTN_WEST", "BTN_NORTH"], walk: ["BTN_SOUTH"], stand: ["BTN_START"], next: ["BTN_SELECT"] },
 });
 
-/** Scenes of a server that starts runs: one with a depth, one that leaves it open, one with a mistake. */
+/** Picture of a scene without a way. */
 const STANDS = { way: [[0, 0]], objects: [], pushes: [] };
+/** Scenes of a server that starts runs: one with a depth, one that leaves it open, one with a mistake. */
 const SCENES = [
   { name: "demo", about: "Lola stands up, walks, turns and stops.", robot: "lola", duration: 34, depth: 1, integrator: "euler", view: { way: [[0, 0], [4, 0], [4.5, 0.5]], objects: [[[1, -0.2], [1.5, 0.4]]], pushes: [[2, 0, 0, 200]] } },
   { name: "walk_auto", about: "Lola walks with the cheapest model that is accurate enough.", robot: "lola", duration: 6, depth: null, integrator: null, view: STANDS },
