@@ -24,6 +24,7 @@ pub mod daemon;
 pub mod estimate;
 pub mod force_control;
 pub mod gaze;
+mod ground_slope;
 mod inclination_trim;
 pub mod inverse_kinematics;
 mod open_loop;

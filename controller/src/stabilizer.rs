@@ -16,12 +16,13 @@ use messages::{
     MAX_JOINTS, Parameters, Plan, Reason, Sensors, StartUp, Verdict,
 };
 use multibody::ModelError;
-use nalgebra::Vector3;
+use nalgebra::{Rotation2, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
 use crate::contact_force::FootWrench;
 use crate::estimate::TaskEstimate;
 use crate::force_control::{Modification, modify};
+use crate::ground_slope::GroundSlope;
 use crate::inclination_trim::InclinationTrim;
 use crate::open_loop::{OpenLoop, encoders_only};
 use crate::plan_follower::{Desired, PlanFollower};
@@ -59,6 +60,8 @@ pub struct Controller {
     desired: TaskSpace,
     contacts: FootContacts,
     trim: InclinationTrim,
+    /// Of a gait whose steps react.
+    slope: Option<GroundSlope>,
     modification: Modification,
     speeds: JointSpeeds,
     joints: JointState,
@@ -84,6 +87,7 @@ impl Controller {
             desired,
             contacts: FootContacts::new(),
             trim: InclinationTrim::default(),
+            slope: gait.reaction.map(|_| GroundSlope::default()),
             modification: Modification::default(),
             joints: JointState::new(),
             open_loop: gait.pattern.map(|pattern| OpenLoop::new(robot, &pattern, dt)),
@@ -175,6 +179,11 @@ impl Controller {
             let carried: f64 = sensors.foot_wrench.iter().map(|w| w.force[2]).sum();
             self.trim.learn(&estimate, carried / self.robot.weight(), self.clock.dt);
         }
+        if let Some(slope) = self.slope.as_mut().filter(|_| new.is_some() && gait == GaitState::Walking) {
+            let soles = [0, 1].map(|i| self.measured.sole(i).rotation);
+            let axes = (self.plan.plan().origin[2], self.clock.dt);
+            slope.learn((sensors, self.robot.weight()), soles, (&now, &estimate), axes);
+        }
         self.fill_tables(&sensors.header);
         let com = match &self.open_loop {
             Some(_) => self.com_of_targets(&now),
@@ -192,6 +201,7 @@ impl Controller {
             now: &now,
             estimate: &estimate,
             trim: self.trim.angles(),
+            slope: self.ground_slope().into(),
         };
         self.telemetry.report(sensors, &self.clock, &outcome);
         (&self.telemetry.targets, &self.telemetry.state)
@@ -276,11 +286,17 @@ impl Controller {
     fn start_from(&mut self, sensors: &Sensors) {
         self.watch.reset();
         self.trim = InclinationTrim::default();
+        self.slope.iter_mut().for_each(|slope| *slope = GroundSlope::default());
         self.contacts.reset(measured_forces(&self.measured, sensors));
         self.modification.reset();
         self.speeds.reset();
         self.open_loop.iter_mut().for_each(OpenLoop::reset);
         self.joints.reset(&sensors.joint_angle);
+    }
+
+    /// \[1\] @I_0 Rise of the ground per metre.
+    fn ground_slope(&self) -> Vector2<f64> {
+        self.slope.as_ref().map_or_else(Vector2::zeros, GroundSlope::slope)
     }
 
     /// Before the first plan the robot's own pose is the reference: planning frame under the middle of the soles.
@@ -319,6 +335,7 @@ impl Controller {
             estimate,
             torso: planned_torso(end),
             kinematics: &self.desired,
+            slope: Rotation2::new(-self.plan.plan().origin[2]) * self.ground_slope(),
         };
         let onset = self.joints.onset(&self.control);
 

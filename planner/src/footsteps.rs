@@ -3,7 +3,7 @@
 
 use crate::obstacles::KnownObstacles;
 use crate::origin::PlanOrigin;
-use crate::pose::PlanarPose;
+use crate::pose::{PlanarPose, rotate};
 use crate::reactive::Reactive;
 use crate::skills::{Script, Skill};
 use crate::steps::{Heights, MAX_STEPS, ROUNDING, StepParameters, Stride, next_foothold, next_width, nu};
@@ -49,6 +49,8 @@ impl StepSequence {
 pub(crate) struct Footsteps {
     /// Obstacles, if the gait can step over them.
     reactive: Option<Reactive>,
+    /// \[1\] @I_0 Rise of the ground per metre along x and y.
+    pub(crate) slope: [f64; 2],
 }
 
 /// Start of a step: what the steps before have left.
@@ -71,7 +73,7 @@ impl Footsteps {
         let longest = gait.limits.length[1];
         let reactive =
             gait.obstacles.map(|rules| Reactive { known: KnownObstacles::default(), rules, longest });
-        Self { reactive }
+        Self { reactive, slope: [0.0; 2] }
     }
 
     /// Nothing is known to lie on the ground.
@@ -101,6 +103,7 @@ impl Footsteps {
         let (from, state, step) = (demand.from, demand.state, &model.step);
         let mut sequence = StepSequence { strides: [Stride::NONE; MAX_STEPS], count: 0, blocked: None };
         let mut last = Foothold::first(from, step.swing_height);
+        let slope = rotate(-from.frame.heading, self.slope);
         if let Some(inside) = &from.inside {
             sequence.strides[0] = inside.stride;
             sequence.count = 1;
@@ -130,6 +133,7 @@ impl Footsteps {
             let support = if n == 0 && state == GaitState::Starting { step.start_time } else { support };
             let support = if n == 0 { support + from.early.map_or(0.0, |e| e.0) } else { support };
             let end_cycle = last.end_cycle + model.cycles(support + swing);
+            let rise = slope[0] * (landing.x - last.at.x) + slope[1] * (landing.y - last.at.y);
             let stride = Stride {
                 parameters,
                 stance,
@@ -141,7 +145,7 @@ impl Footsteps {
                 foothold: last.at,
                 takeoff: last.takeoff,
                 landing,
-                heights: last.heights,
+                heights: Heights { landing: last.heights.foothold + rise, ..last.heights },
             };
             sequence.strides[n] = stride;
             sequence.count += 1;

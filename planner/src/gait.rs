@@ -134,6 +134,9 @@ impl Planner {
                 self.forget();
             }
             self.confirm(state);
+            // A skill knows the heights of its ground.
+            let walks = self.tasks.active == Skill::Walk;
+            self.builder.footsteps.slope = if walks { state.ground_slope } else { [0.0; 2] };
         }
         // Commands are answered one by one; a robot that does not stand refuses those that would move it.
         let gait = self.gait_state(tick, state);

@@ -274,6 +274,7 @@ impl Skill {
             }
             let at = way.begin.relative(&from.frame.compose(&s.landing)).x;
             s.heights.landing = ground[usize::from(at > *edge)] - from.height;
+            s.heights.of_skill = true;
             before = Some((s.heights.landing, s.heights.foothold));
         }
     }

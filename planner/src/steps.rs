@@ -89,6 +89,8 @@ pub struct Heights {
     pub landing: f64,
     /// Lift of the swing foot over the higher one of its footholds.
     pub lift: f64,
+    /// `true` if a skill asks for them; others are as the ground was found.
+    pub of_skill: bool,
 }
 
 /// One step of a sequence. Times in s from the start of the plan; poses in its planning frame.
@@ -131,7 +133,7 @@ impl Stride {
         foothold: PlanarPose::new(0.0, 0.0, 0.0),
         takeoff: PlanarPose::new(0.0, 0.0, 0.0),
         landing: PlanarPose::new(0.0, 0.0, 0.0),
-        heights: Heights { foothold: 0.0, takeoff: 0.0, landing: 0.0, lift: 0.0 },
+        heights: Heights { foothold: 0.0, takeoff: 0.0, landing: 0.0, lift: 0.0, of_skill: false },
     };
 
     /// The same step seen from `frame`, on ground of the height `ground` \[m\]; its times stay.
@@ -145,15 +147,15 @@ impl Stride {
         Self { foothold, takeoff, landing, heights, ..*self }
     }
 
-    /// A step down?
+    /// A step down of a skill?
     pub(crate) fn descends(&self) -> bool {
-        self.heights.landing < self.heights.foothold - ROUNDING
+        self.heights.of_skill && self.heights.landing < self.heights.foothold - ROUNDING
     }
 
-    /// Is the swing foot lifted higher than in a step on level ground?
+    /// Is the swing foot lifted over something, or onto it?
     pub(crate) fn is_high(&self, step: &gait::StepSettings) -> bool {
         let h = &self.heights;
-        h.lift > step.swing_height + ROUNDING || (h.landing - h.takeoff).abs() > ROUNDING
+        h.lift > step.swing_height + ROUNDING || h.of_skill && (h.landing - h.takeoff).abs() > ROUNDING
     }
 }
 

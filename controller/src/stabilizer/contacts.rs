@@ -1,7 +1,7 @@
 //! First stage of figure 5.8: contacts of the feet, what they resist, and their position-control inputs.
 
 use messages::Sensors;
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::{Matrix3, Vector2, Vector3, Vector6};
 
 use super::cycle::ControlCycle;
 use crate::contact::{FootContact, Signs};
@@ -100,7 +100,10 @@ fn inclination_target(cycle: &ControlCycle<'_>, foot: usize) -> Vector3<f64> {
     let lift = turn.cross(&(place(foot) - place(1 - foot))).z;
     let (s, c) = now.feet[foot].position[3].sin_cos();
     let of_foot = Vector3::new(c * turn.x + s * turn.y, -s * turn.x + c * turn.y, 0.0);
-    Vector3::new(lift, of_foot.x, of_foot.y) * cycle.control.inclination_compensation
+    // Soles come down as the ground lies that was learned.
+    let ground = Vector2::new(cycle.slope.y, -cycle.slope.x);
+    let lies = Vector3::new(0.0, c * ground.x + s * ground.y, -s * ground.x + c * ground.y);
+    Vector3::new(lift, of_foot.x, of_foot.y) * cycle.control.inclination_compensation + lies
 }
 
 /// Measured (F_z, T_x, T_y) of both feet at the sensors, in the axes of their soles: those of the sensors unless the

@@ -2,7 +2,7 @@
 
 use config::Robot;
 use config::gait::StabilizerGains;
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector2, Vector3};
 
 use crate::estimate::TaskEstimate;
 use crate::plan_follower::Desired;
@@ -53,6 +53,8 @@ pub(super) struct ControlCycle<'a> {
     pub(super) torso: Matrix3<f64>,
     /// Kinematics of the joint targets (feedback path 1) or of the measured joints (path 2).
     pub(super) kinematics: &'a TaskSpace,
+    /// \[1\] @I Rise of the ground per metre.
+    pub(super) slope: Vector2<f64>,
 }
 
 impl ControlCycle<'_> {

@@ -58,6 +58,8 @@ pub(super) struct CycleOutcome<'a> {
     pub(super) estimate: &'a TaskEstimate,
     /// \[rad\] Roll and pitch that are taken away from what the IMU reads.
     pub(super) trim: [f64; 2],
+    /// \[1\] @I_0 Rise of the ground per metre.
+    pub(super) slope: [f64; 2],
 }
 
 impl Telemetry {
@@ -114,6 +116,7 @@ impl Telemetry {
         s.tracking_error.copy_from_slice(outcome.lag);
         estimate.report(now, s);
         s.inclination_trim = outcome.trim;
+        s.ground_slope = outcome.slope;
         if plan.id() == 0 || plan.plan().leads != BodyPoint::CentreOfGravity as u64 {
             s.dcm_error = [f64::NAN; 2];
         }

@@ -47,6 +47,9 @@ record! {
         inclination_rate_error: [f64; 2],
         /// \[rad\] Roll and pitch that the IMU is taken to read too much: measured inclinations are without them.
         inclination_trim: [f64; 2],
+        /// \[1\] @I_0 Rise of the ground per metre along x and y, as the last two stance soles lay on it; 0 on level ground, and
+        /// of a gait without `[reaction]`.
+        ground_slope: [f64; 2],
         /// \[m\] Planned zero-moment point.
         zmp_desired: [f64; 2],
         /// \[m\] Zero-moment point of the measured foot wrenches. @invalid NaN while no foot carries load
