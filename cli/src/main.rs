@@ -157,7 +157,7 @@ enum GangwerkTask {
         #[command(flatten)]
         form: study::SheetForm,
     },
-    /// Tune the drive of a joint on a simulated bench.
+    /// Tune the drive of a joint on a simulated bench, or a gait in simulation.
     Tune {
         #[command(subcommand)]
         what: study::TuneTask,

@@ -27,6 +27,8 @@ pub(super) enum StudyTask {
 pub(super) enum TuneTask {
     /// Gains of its cascade: the procedure of the thesis (6.1.2) step by step, and a placement by model.
     Joint(studies::tune::TuneJoint),
+    /// Numbers of a gait within bounds, for the least cost of a simulated walk (thesis 5.6).
+    Gait(studies::tune::TuneGait),
 }
 
 /// In which form a sheet is printed.
@@ -64,8 +66,10 @@ pub(super) fn run(config: &Path, what: &StudyTask, form: &SheetForm) -> Result<E
 
 /// Carries out a tuning in the same way.
 pub(super) fn tune(config: &Path, what: &TuneTask, form: &SheetForm) -> Result<ExitCode, Box<dyn Error>> {
-    let TuneTask::Joint(joint) = what;
-    answer(config, joint, form)
+    match what {
+        TuneTask::Joint(joint) => answer(config, joint, form),
+        TuneTask::Gait(gait) => answer(config, gait, form),
+    }
 }
 
 fn answer(config: &Path, study: &dyn Study, form: &SheetForm) -> Result<ExitCode, Box<dyn Error>> {

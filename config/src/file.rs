@@ -38,6 +38,13 @@ impl Default for Hash {
 }
 
 impl Hash {
+    /// That of files which were read in this order.
+    pub(crate) fn of<'a>(files: impl Iterator<Item = &'a [u8]>) -> u64 {
+        let mut hash = Self::default();
+        files.for_each(|bytes| hash.add(bytes));
+        hash.0
+    }
+
     fn read(&mut self, path: &Path, bytes: &[u8]) {
         self.add(bytes);
         self.1.push((path.into(), bytes.into()));

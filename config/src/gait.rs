@@ -248,8 +248,12 @@ impl Gait {
     }
 
     pub(crate) fn load_hashed(path: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
-        let text = file::text(path, hash)?;
-        section::read(path, &text, |top| {
+        Self::of_text(path, &file::text(path, hash)?)
+    }
+
+    /// The gait of a file with this text.
+    pub(crate) fn of_text(path: &Path, text: &str) -> Result<Self, ConfigError> {
+        section::read(path, text, |top| {
             if top.has("pattern") {
                 return Self::of_pattern(top);
             }

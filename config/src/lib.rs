@@ -25,6 +25,7 @@ pub mod dbc;
 mod dbc_words;
 pub mod dbc_writer;
 pub mod drive;
+pub mod edit;
 pub mod efficiency;
 mod error;
 mod file;

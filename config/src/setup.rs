@@ -1,6 +1,6 @@
 //! Everything a run needs: a scene and the files it names.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use messages::{Command, nearest};
@@ -51,9 +51,34 @@ impl Setup {
             inside => inside.unwrap_or(file).display().to_string(),
         };
         let files = hash.1.into_iter().map(|(path, bytes)| (name(&path), bytes)).collect();
-        let setup = Self { scene, robot, gait, system, hash: hash.0, files };
-        let problems = setup.problems();
-        if problems.is_empty() { Ok(setup) } else { Err(ConfigError { file: path, problems }) }
+        Self { scene, robot, gait, system, hash: hash.0, files }.checked(path)
+    }
+
+    fn checked(self, file: PathBuf) -> Result<Self, ConfigError> {
+        let problems = self.problems();
+        if problems.is_empty() { Ok(self) } else { Err(ConfigError { file, problems }) }
+    }
+
+    /// Name of the gait's file in [`files`](Self::files), and its text.
+    pub fn gait_file(&self) -> (String, &str) {
+        let name = format!("gaits/{}.toml", self.scene.gait);
+        let bytes = self.files.iter().find(|(file, _)| *file == name).map_or(&[][..], |(_, bytes)| bytes);
+        (name, std::str::from_utf8(bytes).unwrap_or_default())
+    }
+
+    /// The same with another text of the gait's file.
+    ///
+    /// # Errors
+    /// The text is no gait, or one that does not fit the scene.
+    pub fn with_gait(mut self, text: &str) -> Result<Self, ConfigError> {
+        let (name, _) = self.gait_file();
+        self.gait = Gait::of_text(Path::new(&name), text)?;
+        let bytes = |(file, old): &(String, Vec<u8>)| {
+            (file.clone(), if *file == name { text.as_bytes().to_vec() } else { old.clone() })
+        };
+        self.files = self.files.iter().map(bytes).collect();
+        self.hash = Hash::of(self.files.iter().map(|(_, bytes)| bytes.as_slice()));
+        self.checked(name.into())
     }
 
     /// The same with the frames of classic CAN, or those of CAN FD that every other bus carries.

@@ -20,6 +20,7 @@ pub mod hours;
 mod joint_bench;
 pub mod limits;
 pub mod lines;
+mod optimize;
 pub mod points;
 pub mod push;
 mod random;

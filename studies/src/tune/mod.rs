@@ -7,7 +7,9 @@
 //! | `procedure` | the steps of 6.1.2 and the placement by model, as gains |
 //! | `measures` | overshoot, rise, settling, disturbance, current of a response |
 //! | `picture` | responses as charts (figures 6.3 to 6.7) |
+//! | `gait` | tuning of a gait instead, `gangwerk tune gait` (Buschmann 2010, 5.6) |
 
+mod gait;
 mod measures;
 mod picture;
 mod procedure;
@@ -16,6 +18,7 @@ use std::path::PathBuf;
 
 use ::drives::CascadePi;
 use config::Robot;
+pub use gait::TuneGait;
 use multibody::{Data, Model};
 
 use crate::joint_bench::{Course, ServoBench, ShaftState};
