@@ -1,4 +1,4 @@
-//! What a walk costs: named terms over a span of periodic walking, and their weighted sum.
+//! Cost of a walk: named terms over a span of periodic walking, and their weighted sum.
 
 use std::str::FromStr;
 
@@ -48,7 +48,7 @@ impl FromStr for WeightedTerm {
     }
 }
 
-/// What one walk costs.
+/// Terms and cost of one walk.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct WalkCost {
     /// Each term of [`TERMS`]; NaN of a walk that was none.
@@ -58,7 +58,7 @@ pub(super) struct WalkCost {
 }
 
 impl WalkCost {
-    /// Whether the robot walked as told.
+    /// `true` if the robot walked as told.
     pub(super) fn walked(&self) -> bool {
         self.cost < NO_WALK
     }

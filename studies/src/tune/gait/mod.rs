@@ -82,7 +82,7 @@ pub struct TuneGait {
     pub out: PathBuf,
 }
 
-/// What a method found.
+/// Outcome of one method.
 #[derive(Serialize)]
 struct Search {
     method: Optimizer,
@@ -122,7 +122,7 @@ impl Study for TuneGait {
     fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
         let setup = Setup::load(given.config, &self.scene)?;
         let parameters = Parameters::new(&setup, &self.set, &self.free)?;
-        // Before anything takes long: the place of the results, and a first walk.
+        // The place of the results, before anything takes long.
         make(&self.out)?;
         let start = parameters.start()?;
         let done = AtomicUsize::new(0);
@@ -249,7 +249,8 @@ impl TuneGait {
         }
         let path = self.out.join(format!("{}_tuned.toml", self.scene));
         let text = self.evidence(&values, best.cost, searches) + &parameters.text_at(&best.point)?;
-        std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+        let lost = parameters.written(&best.point);
+        std::fs::write(&path, text).map_err(|e| format!("{}: {e}; the best gait has {lost}", path.display()))?;
         sheet.fact("gait", path.display().to_string());
         sheet.line(path.display().to_string());
         sheet.draw(&self.out, "tune_gait.png", &picture::draw(&self.scene, searches, slices))?;
@@ -257,7 +258,7 @@ impl TuneGait {
         Ok(sheet)
     }
 
-    /// How the gait was found, as the comment above it.
+    /// Comment above the gait: cost, bounds, evaluations and seed of the search.
     fn evidence(&self, values: &[Value], cost: f64, searches: &[Search]) -> String {
         let mut text = format!(
             "# Tuned by `gangwerk tune gait` {} in scene {}: cost {cost:.6e}",

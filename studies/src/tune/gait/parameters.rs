@@ -1,4 +1,4 @@
-//! What is free in a gait, and within which bounds.
+//! Free numbers of a gait, and their bounds.
 
 use std::str::FromStr;
 
@@ -127,7 +127,7 @@ impl<'a> Parameters<'a> {
     }
 
     /// The same as text: `key = value, ...`.
-    fn written(&self, point: &DVector<f64>) -> String {
+    pub(super) fn written(&self, point: &DVector<f64>) -> String {
         let pairs = self.free.iter().zip(self.values(point));
         pairs.map(|(p, x)| format!("{} = {x}", p.key)).collect::<Vec<_>>().join(", ")
     }
