@@ -250,7 +250,8 @@ impl TuneGait {
         let path = self.out.join(format!("{}_tuned.toml", self.scene));
         let text = self.evidence(&values, best.cost, searches) + &parameters.text_at(&best.point)?;
         let lost = parameters.written(&best.point);
-        std::fs::write(&path, text).map_err(|e| format!("{}: {e}; the best gait has {lost}", path.display()))?;
+        std::fs::write(&path, text)
+            .map_err(|e| format!("{}: {e}; the best gait has {lost}", path.display()))?;
         sheet.fact("gait", path.display().to_string());
         sheet.line(path.display().to_string());
         sheet.draw(&self.out, "tune_gait.png", &picture::draw(&self.scene, searches, slices))?;
