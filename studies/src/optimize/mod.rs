@@ -80,6 +80,11 @@ impl<'a> Evaluations<'a> {
 }
 
 impl Optimizer {
+    /// Its name, as on the command line.
+    pub(crate) fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
     /// Searches from `start`; the same for the same `seed`, on however many cores.
     pub(crate) fn search(self, start: &DVector<f64>, seed: u64, on: &mut Evaluations<'_>) -> Ending {
         let mut random = Random(seed);

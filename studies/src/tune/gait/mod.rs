@@ -139,7 +139,7 @@ impl Study for TuneGait {
 
         let mut searches = Vec::new();
         for (k, &method) in self.methods.iter().enumerate() {
-            let name = format!("{method:?}");
+            let name = method.name();
             let cost = |point: &DVector<f64>| told(&name, point);
             let mut evaluations = Evaluations::new(&cost, most);
             let ending = method.search(&start, self.seed, &mut evaluations);
@@ -162,7 +162,7 @@ impl Search {
         let costs = evaluations.all.iter().map(|e| e.cost);
         let best = evaluations
             .best()
-            .ok_or_else(|| format!("{method:?}: no gait within the bounds can be tried"))?;
+            .ok_or_else(|| format!("{}: no gait within the bounds can be tried", method.name()))?;
         Ok(Self {
             method,
             evaluations: evaluations.all.len(),
@@ -276,8 +276,11 @@ impl TuneGait {
         }
         for s in searches {
             text += &format!(
-                "\n# {:?}: {} evaluations, least cost {:.6e}, seed {}",
-                s.method, s.evaluations, s.cost, self.seed
+                "\n# {}: {} evaluations, least cost {:.6e}, seed {}",
+                s.method.name(),
+                s.evaluations,
+                s.cost,
+                self.seed
             );
         }
         text + "\n\n"
