@@ -36,3 +36,19 @@ fn robots_gaits_and_system() {
     let system = System::load(&root().join("system.toml")).unwrap_or_else(|e| panic!("{e}"));
     assert!(system.processes.iter().map(|row| row.process).eq(messages::Process::ALL));
 }
+
+/// Another text of the gait's file, as if it had been read: the same text is the same configuration.
+#[test]
+fn gaits_of_another_text() {
+    for name in names("scenes") {
+        let setup = Setup::load(&root(), &name).unwrap();
+        let text = setup.gait_file().1.to_owned();
+        let same = setup.clone().with_gait(&text).unwrap();
+        assert_eq!((same.hash, &same.files), (setup.hash, &setup.files), "{name}");
+        let other = setup.clone().with_gait(&format!("{text}\n")).unwrap();
+        assert!(other.hash != setup.hash && other.gait_file().1.len() == text.len() + 1, "{name}");
+        let error = setup.clone().with_gait(&format!("{text}\nwaddle = 1\n")).unwrap_err().to_string();
+        let file = format!("gaits/{}.toml: line ", setup.scene.gait);
+        assert!(error.starts_with(&file) && error.contains("waddle"), "{name}: {error}");
+    }
+}

@@ -67,9 +67,14 @@ impl<'a> Evaluations<'a> {
         self.all.iter().filter(|e| e.cost.is_finite()).min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 
+    /// Evaluations that are left.
+    fn left(&self) -> usize {
+        self.most - self.all.len()
+    }
+
     /// Costs of `points`; nothing is evaluated if they are more than are left.
     fn of(&mut self, points: &[DVector<f64>]) -> Result<Vec<f64>, Ending> {
-        if self.all.len() + points.len() > self.most {
+        if points.len() > self.left() {
             return Err(Ending::OutOfEvaluations);
         }
         let costs = parallel::map(points.len(), |k| (self.cost)(&points[k]));
@@ -97,11 +102,16 @@ impl Optimizer {
     }
 }
 
+/// Points that are drawn at once, for as many cores.
+const BATCH: usize = 16;
+
 /// The start, and then points drawn at random, until the evaluations run out.
 fn at_random(start: &DVector<f64>, random: &mut Random, on: &mut Evaluations<'_>) -> Result<(), Ending> {
     on.of(std::slice::from_ref(start))?;
     loop {
-        on.of(&[start.map(|_| random.unit())])?;
+        let count = on.left().clamp(1, BATCH);
+        let points: Vec<DVector<f64>> = (0..count).map(|_| start.map(|_| random.unit())).collect();
+        on.of(&points)?;
     }
 }
 

@@ -266,6 +266,7 @@ impl TuneGait {
             env!("CARGO_PKG_VERSION"),
             self.scene
         );
+        // What was asked for, and then what each method needed for it.
         for t in &self.cost {
             let (name, unit, about) = TERMS[t.term];
             text += &format!("\n# cost: {} x {name} [{unit}], {about}", t.weight);

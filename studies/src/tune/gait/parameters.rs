@@ -100,7 +100,7 @@ impl<'a> Parameters<'a> {
         Ok(these)
     }
 
-    /// Where the search starts, in the unit box: at the start of each number, or where the file has it.
+    /// Start of the search, in the unit box: that of each number, or what the file has.
     pub(super) fn start(&self) -> Result<DVector<f64>, Error> {
         let (_, text) = self.setup.gait_file();
         let mut start = DVector::zeros(self.free.len());
