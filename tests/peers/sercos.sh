@@ -12,7 +12,7 @@ command -v tshark >/dev/null || leave "tshark is not installed (apt-get install 
 [ "$(id -u)" -eq 0 ] || leave "not root: network namespaces cannot be made"
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
-"$(sh "$here/example.sh" ring)" --seconds 4 --break --capture "$directory/ring.pcap" >"$directory/ring.txt" || {
+"$(sh "$here/example.sh" ring)" --seconds 8 --break --capture "$directory/ring.pcap" >"$directory/ring.txt" || {
     cat "$directory/ring.txt"
     exit 1
 }

@@ -140,16 +140,25 @@ test("a stick that moves all the time sends ten times a second, and ends with it
   const page = await withPad();
   await page.move(CENTRE);
   await page.settled();
-  await page.hold(CENTRE);
   const ways = Array.from({ length: 300 }, () => between(-1, 1));
-  const seconds = await page.evaluate(async (ways) => {
-    const begin = performance.now();
-    for (const way of ways) {
-      window.pads = [{ ...window.pads[0], axes: [0, way, 0, 0] }];
-      await new Promise((resolve) => setTimeout(resolve, 5));
-    }
-    return (performance.now() - begin) / 1000;
-  }, ways);
+  const held = page.locator(".pad[data-state=held]");
+  let seconds;
+  // From the start again if the machine let the page stand still meanwhile: that lets the button go.
+  for (let tries = 0; tries < 5; tries++) {
+    await page.hold(CENTRE);
+    from = bench.mock.received.length;
+    seconds = await page.evaluate(async (ways) => {
+      const begin = performance.now();
+      for (const way of ways) {
+        window.pads = [{ ...window.pads[0], axes: [0, way, 0, 0] }];
+        await new Promise((resolve) => setTimeout(resolve, 5));
+      }
+      return (performance.now() - begin) / 1000;
+    }, ways);
+    if (await held.count()) break;
+    await page.move(CENTRE);
+    await page.settled();
+  }
   const last = velocity(hands(standard([0, ways.at(-1), 0, 0]), LAYOUT).sticks, RANGES).forward;
   await bench.arrives((m) => m.name === "walk/velocity" && m.values.forward === last, from);
   const count = bench.sent("command", from).length;
