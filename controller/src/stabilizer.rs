@@ -199,6 +199,7 @@ impl Controller {
             lag: &lag,
             com,
             now: &now,
+            reference: &self.reference(&now),
             estimate: &estimate,
             trim: self.trim.angles(),
             slope: self.ground_slope().into(),
@@ -235,7 +236,8 @@ impl Controller {
         let (now, end) = (self.plan.sample(t), self.plan.sample(t + dt));
         let reported = self.telemetry.state.plan_id;
         self.modification.absorb_plan_switch(self.plan.height_steps(reported, &now, &end));
-        if let Some(before) = self.plan.measured_switch(reported, &end) {
+        let pose = if self.plan.id() == 0 { self.own_pose(&end) } else { end };
+        if let Some(before) = self.plan.measured_switch(reported, &pose) {
             pose_switch::take_up(&mut self.modification, &before, &now);
         }
         let estimate = TaskEstimate::new(&self.robot, sensors, &self.measured, &self.reference(&now));
@@ -310,6 +312,19 @@ impl Controller {
             reference.torso.position = [FRAC_PI_2, FRAC_PI_2, 0.0];
         }
         reference
+    }
+
+    /// The pose that the joints are led to before the first plan, seen from an upright torso at the origin.
+    fn own_pose(&mut self, desired: &Desired) -> Desired {
+        self.desired.update(&self.joints.angle);
+        let mut own = self.reference(desired);
+        own.body.position = self.desired.com().into();
+        for (foot, sample) in own.feet.iter_mut().enumerate() {
+            let sole = self.desired.sole(foot);
+            let [x, y, z] = sole.position.into();
+            sample.position = [x, y, z, sole.rotation[(1, 0)].atan2(sole.rotation[(0, 0)])];
+        }
+        own
     }
 
     /// The chain of figure 5.8: contacts, force targets, modification, task, joint speeds, joint targets. Returns the

@@ -10,6 +10,9 @@ use messages::{BodyPoint, ControllerState, LEFT, RIGHT};
 use multibody::GRAVITY_ACCELERATION as GRAVITY;
 use std::f64::consts::FRAC_PI_2;
 
+/// \[rad\] Inclination up to which a robot that stands is upright: so much may be an error of measurement.
+const LEVEL: f64 = 0.02;
+
 /// Motion at the begin of a plan, in its own planning frame.
 #[derive(Clone, Copy, Debug)]
 pub struct PlanOrigin {
@@ -109,7 +112,8 @@ impl PlanOrigin {
             BodyPoint::CentreOfGravity => state.com,
             BodyPoint::Torso => state.torso,
         };
-        let all = state.feet.iter().flatten().chain(&body).chain(&state.origin);
+        let all =
+            state.feet.iter().flatten().chain(&body).chain(&state.origin).chain(&state.inclination_error);
         if !all.into_iter().all(|x| x.is_finite()) {
             return None;
         }
@@ -121,7 +125,10 @@ impl PlanOrigin {
         let at = frame.local([body[0], body[1]]);
         let feet = feet.map(|f| frame.relative(&f));
         let mean = 0.5 * (feet[0].heading + feet[1].heading);
-        // At rest, both feet flat: whatever else is measured is noise.
+        // At rest, both feet flat, upright but on a slope: whatever else is measured is noise.
+        let lean = state.inclination_error;
+        let leans = point == BodyPoint::CentreOfGravity && lean.iter().any(|x| x.abs() > LEVEL);
+        let [x_lean, y_lean] = lean.map(|x| if leans { FRAC_PI_2 - x } else { FRAC_PI_2 });
         let from = Self {
             frame: PlanarPose::new(x, y, heading).compose(&frame),
             height: 0.0,
@@ -130,7 +137,7 @@ impl PlanOrigin {
             heights: [0.0; 2],
             body: Sample::rest([at[0], at[1], body[2] - ground]),
             zmp: at,
-            torso: Sample::rest([FRAC_PI_2, FRAC_PI_2, mean]),
+            torso: Sample::rest([x_lean, y_lean, mean]),
             pitch: [Sample::rest([0.0]); 2],
             toes: [Sample::rest([0.0]); 2],
             load_left: 0.5,

@@ -6,6 +6,7 @@ use config::Robot;
 use config::components::ContactModel;
 use environment::Environment;
 use multibody::{Data, Frame, Limbs, Model};
+use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::feet::Feet;
 
@@ -60,6 +61,12 @@ impl GroundContact {
         model.set_position(data, q);
         model.limb_motion_here(data, &self.limbs, v);
         self.feet.update(model, data, &self.environment, d, &mut self.layer_rate);
+    }
+
+    /// world_from_ground, if tilted ground goes through the origin.
+    pub(crate) fn turn_at_origin(&self) -> Option<UnitQuaternion<f64>> {
+        let up = self.environment.up()?;
+        UnitQuaternion::rotation_between(&Vector3::z(), &up.into())
     }
 
     /// Another position was given to `data`, or the environment changes: nothing holds any more.

@@ -141,9 +141,19 @@ impl Plant {
         &self.layout
     }
 
-    /// Torso upright over flat soles, nodes pressed in by the robot's weight, at rest.
+    /// Torso upright over flat soles, nodes pressed in by the robot's weight, at rest. On tilted ground all of it is tilted: the
+    /// soles lie on the ground.
     pub fn standing(&mut self, joints: &[f64]) -> Vec<f64> {
-        self.upright(joints, None)
+        let mut x = self.upright(joints, None);
+        let Some(turn) = self.ground.turn_at_origin() else { return x };
+        let turned = turn * Vector3::from_column_slice(&x[..3]);
+        x[..3].copy_from_slice(turned.as_slice());
+        x[3..7].copy_from_slice(turn.coords.as_slice());
+        for node in x[self.layout.layer()].chunks_exact_mut(3) {
+            let turned = turn * Vector3::from_column_slice(node);
+            node.copy_from_slice(turned.as_slice());
+        }
+        x
     }
 
     /// Torso upright, soles `height` \[m\] over the ground, at rest.

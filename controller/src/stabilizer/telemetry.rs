@@ -55,6 +55,8 @@ pub(super) struct CycleOutcome<'a> {
     /// \[m\] Desired centre of gravity.
     pub(super) com: [f64; 3],
     pub(super) now: &'a Desired,
+    /// What the measurements are held against.
+    pub(super) reference: &'a Desired,
     pub(super) estimate: &'a TaskEstimate,
     /// \[rad\] Roll and pitch that are taken away from what the IMU reads.
     pub(super) trim: [f64; 2],
@@ -114,7 +116,7 @@ impl Telemetry {
         s.zmp_desired = now.zmp;
         s.load_left = now.load[1];
         s.tracking_error.copy_from_slice(outcome.lag);
-        estimate.report(now, s);
+        estimate.report(outcome.reference, s);
         s.inclination_trim = outcome.trim;
         s.ground_slope = outcome.slope;
         if plan.id() == 0 || plan.plan().leads != BodyPoint::CentreOfGravity as u64 {

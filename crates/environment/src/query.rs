@@ -90,6 +90,11 @@ impl Environment {
         self
     }
 
+    /// \[1\] @world Normal of the ground, if it is tilted and goes through the origin.
+    pub fn up(&self) -> Option<[f64; 3]> {
+        self.up.filter(|_| self.height == 0.0)
+    }
+
     /// The objects, present or not.
     pub fn objects(&self) -> &[Object] {
         &self.objects
