@@ -4,6 +4,7 @@ use codec::frames::{DriveCommand, decode_sensors, encode_targets};
 use config::{Setup, root};
 use messages::command::PushCommand;
 use messages::{BusFrames, EventCode, JointMode, JointTargets, Power, Sensors, SimState};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use sim_backend::SimBackend;
 
 fn setup() -> Setup {
@@ -154,6 +155,25 @@ fn on_tilted_ground_the_robot_stands_by_friction_and_slides_beyond_it() {
             assert!((along / normal + tilt.tan()).abs() < 1e-3, "{along} N of {normal} N, {way} m");
             assert!(truth.fallen == 0 && way.abs() < 0.1, "{way} m");
         }
+    }
+}
+
+/// The soles lie on the ground from the first cycle on, all of them.
+#[test]
+fn on_tilted_ground_the_robot_begins_on_flat_soles() {
+    let mut setup = setup();
+    for tilt in [[0.08, 0.0], [-0.05, 0.05], [0.0, -0.08]] {
+        setup.scene.plant_mismatch.ground_tilt = tilt;
+        let mut sim = SimBackend::new(&setup.robot, &setup.scene).unwrap();
+        let (truth, _) = hold(&mut sim, &setup, 1, u64::MAX);
+        // A quarter of the weight or more on each foot, each of whose edges would be 8 mm or more over ground they did not lie on.
+        let normal = tilt[0].cos() * tilt[1].cos() * setup.robot.weight();
+        let loads = truth.foot_wrench.map(|w| w.force[2] / normal);
+        assert!(loads.iter().all(|load| (load - 0.5).abs() < 0.02), "{tilt:?}: {loads:?}");
+        let up = UnitQuaternion::from_quaternion(Quaternion::from(truth.orientation)) * Vector3::z();
+        let [roll, pitch] = tilt;
+        let expected = Vector3::new(pitch.sin() * roll.cos(), -roll.sin(), pitch.cos() * roll.cos());
+        assert!((up - expected).norm() < 1e-3, "{tilt:?}: {up}");
     }
 }
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds the wheel of the Python package, installs it with pip into an empty venv, runs its tests there and, beside Pinocchio,
-# in the venv of the peers, and its notebooks. GANGWERK: the executable it is compared with; default: that of the release build.
+# in the venv of the peers; with LONG=1 its notebooks, too. GANGWERK: the executable it is compared with; default: that of the release build.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$here/../.."
@@ -29,4 +29,4 @@ print(chain.run()["mean_speed_m_s"], "m/s")')
 
 "$python" -m pip install --quiet --disable-pip-version-check --no-deps --force-reinstall "$wheel"
 "$python" -m unittest discover -s python/tests -p test_model.py
-"$python" tests/peers/python_notebooks.py python/notebooks/*.ipynb
+[ -z "${LONG:-}" ] || "$python" tests/peers/python_notebooks.py python/notebooks/*.ipynb

@@ -11,7 +11,7 @@ for line in 0 1 2 3 4 5 6 7 8; do
     ip link add dev "vcan$line" type vcan && ip link set "vcan$line" mtu 72 up || exit 1
 done
 
-[ $# -gt 0 ] || set -- $(sed 's/^-r //' "$here/checks")
+[ $# -gt 0 ] || set -- $(sed 's/^-[lr] //' "$here/checks")
 : >"$work/steps"
 for check; do
     printf '\n-- vcan %s\n' "$check"
