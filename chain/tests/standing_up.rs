@@ -193,7 +193,10 @@ fn on_tilted_ground() {
         let size = (3.0 * random.next().sqrt()).to_radians();
         setup.scene.plant_mismatch.ground_tilt = [size * angle.cos(), size * angle.sin()];
         let seen = stand_up(&setup);
-        seen.check(&format!("tilt {:?} rad, type {}", setup.scene.plant_mismatch.ground_tilt, setup.scene.depth));
+        seen.check(&format!(
+            "tilt {:?} rad, type {}",
+            setup.scene.plant_mismatch.ground_tilt, setup.scene.depth
+        ));
         assert!(seen.lean < UPRIGHT, "{seen:?}");
     }
 }
