@@ -110,10 +110,10 @@ impl PlanFollower {
         })
     }
 
-    /// Notes the pose at the `end` of this cycle, before the first plan the robot's own. The one before, if the plan has changed
-    /// since the one that was reported last, and begins at the measured pose.
+    /// Notes the pose at the `end` of this cycle. The one before, if the plan has changed since the one that was reported
+    /// last, and begins at the measured pose.
     pub(crate) fn measured_switch(&mut self, reported: u64, end: &Desired) -> Option<Desired> {
-        let switched = reported != self.active.id && self.active.measured == 1;
+        let switched = reported > 0 && reported != self.active.id && self.active.measured == 1;
         self.last.replace(*end).filter(|_| switched)
     }
 

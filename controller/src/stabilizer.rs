@@ -236,8 +236,9 @@ impl Controller {
         let (now, end) = (self.plan.sample(t), self.plan.sample(t + dt));
         let reported = self.telemetry.state.plan_id;
         self.modification.absorb_plan_switch(self.plan.height_steps(reported, &now, &end));
-        let pose = if self.plan.id() == 0 { self.own_pose(&end) } else { end };
-        if let Some(before) = self.plan.measured_switch(reported, &pose) {
+        let before = self.plan.measured_switch(reported, &end);
+        let first = reported == 0 && self.plan.plan().measured == 1;
+        if let Some(before) = if first { Some(self.own_pose(&now)) } else { before } {
             pose_switch::take_up(&mut self.modification, &before, &now);
         }
         let estimate = TaskEstimate::new(&self.robot, sensors, &self.measured, &self.reference(&now));
@@ -317,7 +318,9 @@ impl Controller {
     /// The pose that the joints are led to before the first plan, seen from an upright torso at the origin.
     fn own_pose(&mut self, desired: &Desired) -> Desired {
         self.desired.update(&self.joints.angle);
-        let mut own = self.reference(desired);
+        let mut own = *desired;
+        own.torso.position = [FRAC_PI_2, FRAC_PI_2, 0.0];
+        own.pitch.iter_mut().for_each(|pitch| pitch.position = [0.0]);
         own.body.position = self.desired.com().into();
         for (foot, sample) in own.feet.iter_mut().enumerate() {
             let sole = self.desired.sole(foot);
