@@ -254,7 +254,9 @@ impl PlanOrigin {
 
     /// The step whose foot swings at the begin of the plan, if one does.
     pub(crate) fn swinging(&self) -> Option<&RunningStep> {
-        self.inside.as_ref().filter(|running| running.stride.lift <= 0.0)
+        // Compared as integers: the compiler looks at the number before it knows that there is one, and what lies there instead may
+        // be subnormal.
+        self.inside.as_ref().filter(|running| running.stride.lift.total_cmp(&0.0).is_le())
     }
 }
 

@@ -55,7 +55,7 @@ pub(super) struct CycleOutcome<'a> {
     /// \[m\] Desired centre of gravity.
     pub(super) com: [f64; 3],
     pub(super) now: &'a Desired,
-    /// What the measurements are held against.
+    /// Reference of the measured errors: the plan, or the upright robot before there is one.
     pub(super) reference: &'a Desired,
     pub(super) estimate: &'a TaskEstimate,
     /// \[rad\] Roll and pitch that are taken away from what the IMU reads.
