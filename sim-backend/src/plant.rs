@@ -368,9 +368,11 @@ impl Plant {
         acceleration[6..].copy_from_slice(joint_acceleration);
     }
 
+    /// Position, speed and references of the joints at `x`, `tau` \[s\] into the cycle, for the model.
     fn load(&mut self, tau: f64, x: &[f64], drives: &[JointCubic]) {
         let l = &self.layout;
         let Scratch { q, v, joint_acceleration, reference, .. } = &mut self.scratch;
+        // References: of all joints, or of those that the model moves.
         match &mut self.moving {
             None => {
                 for (r, drive) in reference.iter_mut().zip(drives) {
@@ -386,6 +388,7 @@ impl Plant {
                 }
             }
         }
+        // State; joints that follow their references without motors have those.
         q[..7 + l.joints].copy_from_slice(&x[l.pose()]);
         q[3..7].copy_from_slice(&<[f64; 4]>::from(orientation(x).into_inner().coords));
         v[..6 + l.joints].copy_from_slice(&x[l.speed()]);

@@ -131,7 +131,7 @@ record! {
         step_count: u64,
         /// The steps of the plan, the running one first.
         steps: [Step; 8],
-        /// \[1\] 1 if the plan begins inside a step, from the measured pose of the robot: body, torso and feet do not go on
+        /// \[1\] 1 if the plan begins at the measured pose of the robot, inside a step or leaning: body, torso and feet do not go on
         /// from where the plan before wanted them.
         measured: u64,
         /// \[1\] A [`BodyPoint`]: what `body` leads.
