@@ -56,7 +56,7 @@ const view = new View(canvas, {
   posed: () => replay.posed(),
   drawn: (force, event, leftwards) => hud.draw(push.words(force), event, leftwards),
   ended: () => hud.drawn(),
-  pushed: (x, y, z) => push.send(x, y, z),
+  pushed: (force) => push.send(force),
   failed: (why) => stage.append(h("p", { class: "no-view" }, why)),
 });
 const hud = new Hud(view, hub);

@@ -5,6 +5,8 @@ import { Answer } from "../desk.js";
 import { fixed } from "../numbers.js";
 import { commandForm } from "./commands.js";
 
+const tenths = (force) => force.toArray().map((v) => Math.round(v * 10) / 10);
+
 /** Form of sim/push, and the duration that drags use. */
 export class Push {
   answer = new Answer("Answer to the push by dragging");
@@ -36,14 +38,14 @@ export class Push {
   }
 
   /** Pushes with a force [N] in the world. */
-  send(x, y, z) {
-    const round = (v) => Math.round(v * 10) / 10;
-    this.#desk.command("sim/push", { "force.x": round(x), "force.y": round(y), "force.z": round(z), duration: this.duration }, this.answer);
+  send(force) {
+    const [x, y, z] = tenths(force);
+    this.#desk.command("sim/push", { "force.x": x, "force.y": y, "force.z": z, duration: this.duration }, this.answer);
   }
 
-  /** Words for a force that is being drawn. */
+  /** Words for a force that is being drawn: for what `send` would send, to the last digit. */
   words(force) {
-    const n = force.length();
+    const n = Math.hypot(...tenths(force));
     return `${fixed(n, 0)} N × ${fixed(this.duration, 2)} s = ${fixed(n * this.duration, 1)} N s`;
   }
 }

@@ -12,7 +12,7 @@ const ray = new Raycaster();
 const right = new Vector3();
 const ahead = new Vector3();
 
-/** Arrows of pushes; a drag that begins on the robot's body calls `pushed(x, y, z)` [N] when it ends. */
+/** Arrows of pushes; a drag that begins on the robot's body calls `pushed(force)` [N] when it ends. */
 export class Pushes {
   force = new Vector3();
   dragging = false;
@@ -86,6 +86,6 @@ export class Pushes {
     this.dragging = false;
     this.#drawn.visible = false;
     this.#hooks.ended();
-    if (pushes && this.force.length() >= LEAST) this.#hooks.pushed(this.force.x, this.force.y, this.force.z);
+    if (pushes && this.force.length() >= LEAST) this.#hooks.pushed(this.force);
   }
 }

@@ -20,7 +20,7 @@ const COARSEST = 0.6; // pixels of a picture per pixel of the page
 
 const torso = new Vector3();
 
-/** View of one canvas. `hooks`: drawn(force, event, leftwards), ended(), pushed(x, y, z), canPush(), failed(why); built(scene, bodies, theme) and posed() add a body of somebody else's. */
+/** View of one canvas. `hooks`: drawn(force, event, leftwards), ended(), pushed(force), canPush(), failed(why); built(scene, bodies, theme) and posed() add a body of somebody else's. */
 export class View {
   layers = { ...LAYERS };
   bodies = null;
