@@ -280,11 +280,11 @@ fn command(row: &Section<'_, '_>) -> (f64, Command) {
 
 /// Whether a scene can give a command; pushes have a table of their own, and parameters are set by name.
 fn is_scripted(command: &Command) -> bool {
-    use Domain::{Head, Joint, System, Walk};
+    use Domain::{Head, Joint, System, Vision, Walk};
     match command {
         Command::WalkParameter(_) => false,
         Command::Lower(_) => true,
-        other => matches!(other.address().0, System | Walk | Head | Joint),
+        other => matches!(other.address().0, System | Walk | Head | Joint | Vision),
     }
 }
 

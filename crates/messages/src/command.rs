@@ -133,6 +133,10 @@ pub enum Command {
     Lower(LowerCommand),
     /// `walk/parameter`: give a parameter of the planner another value, from the next step that is planned.
     WalkParameter(ParameterCommand),
+    /// `vision/box`: an upright box is known from now on; the same id again moves it.
+    Box(BoxCommand),
+    /// `vision/gone`: a box is not there any more.
+    Gone(GoneCommand),
 }
 
 /// Step parameters (thesis table 4.1).
@@ -236,6 +240,33 @@ pub struct HeadJointsCommand {
     pub tilt: f64,
 }
 
+/// An upright box that the robot steps over or stops before, until its lifetime is over.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoxCommand {
+    /// \[1\] Its number, 1 to [`MAX_BOXES`].
+    pub id: u32,
+    /// \[m\] @I_0 Middle of its base.
+    pub base: [f64; 3],
+    /// \[rad\] @I_0 Turn about the vertical.
+    pub yaw: f64,
+    /// \[m\] Length, width, height: along its own x, y, z.
+    pub size: [f64; 3],
+    /// \[s\] Time after which it is gone, unless it is told again.
+    pub lifetime: f64,
+}
+
+/// Most boxes that are known at once; each id is the place of one.
+pub const MAX_BOXES: usize = 32;
+
+/// A box that is not there any more.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GoneCommand {
+    /// \[1\] Its number.
+    pub id: u32,
+}
+
 impl Command {
     /// Domain and id of the message that carries this command.
     pub const fn address(&self) -> (Domain, u16) {
@@ -260,6 +291,8 @@ impl Command {
             Self::Fixate(_) => (Domain::Head, 0),
             Self::HeadJoints(_) => (Domain::Head, 1),
             Self::HeadRest => (Domain::Head, 2),
+            Self::Box(_) => (Domain::Vision, 0),
+            Self::Gone(_) => (Domain::Vision, 1),
         }
     }
 
@@ -277,9 +310,9 @@ impl Command {
     }
 
     /// Whether its sender must hold the command lease: whatever moves the robot or changes how it moves. A push disturbs
-    /// the simulated robot and is no command to it.
+    /// the simulated robot and is no command to it; boxes move nothing, and who sees them need not be who steers.
     pub const fn needs_lease(&self) -> bool {
-        !self.always_passes() && !matches!(self, Self::Push(_))
+        !self.always_passes() && !matches!(self, Self::Push(_) | Self::Box(_) | Self::Gone(_))
     }
 
     /// Whether it goes on until somebody stops it, so that its sender must stay.
@@ -303,7 +336,9 @@ impl Command {
             | Self::Velocity(_)
             | Self::Distance(_)
             | Self::Platform(_)
-            | Self::WalkParameter(_) => "planner",
+            | Self::WalkParameter(_)
+            | Self::Box(_)
+            | Self::Gone(_) => "planner",
             Self::Parameter(_) | Self::Fixate(_) | Self::HeadJoints(_) | Self::HeadRest => "controller",
             Self::Home | Self::ZeroForce => "lowlevel",
             Self::Push(_) | Self::Lower(_) => "sim-backend",
@@ -333,6 +368,8 @@ impl Command {
             Self::Fixate(_) => "head/fixate",
             Self::HeadJoints(_) => "head/joints",
             Self::HeadRest => "head/rest",
+            Self::Box(_) => "vision/box",
+            Self::Gone(_) => "vision/gone",
         }
     }
 }

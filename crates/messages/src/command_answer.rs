@@ -113,6 +113,9 @@ const fn not_now(command: &Command) -> &'static str {
         Command::ZeroForce => {
             "the drives are not on: system/reset and system/enable come first, then joint/home if asked for"
         }
+        Command::Box(_) | Command::Gone(_) => {
+            "the gait has no [obstacles]: it knows of nothing that lies on the ground"
+        }
         Command::Enable => "no effect: system/reset comes first, and the joint loop must be alive",
         _ => "not in the present state; walk/stand comes first, and a skill ends first",
     }

@@ -5,8 +5,8 @@
 //! out. Nothing here runs in a control cycle: errors are text and allocate.
 
 use crate::command::{
-    Command, DistanceCommand, Domain, FixateCommand, HeadJointsCommand, LowerCommand, ParameterCommand,
-    PlatformCommand, PushCommand, StepCommand, VelocityCommand,
+    BoxCommand, Command, DistanceCommand, Domain, FixateCommand, GoneCommand, HeadJointsCommand,
+    LowerCommand, MAX_BOXES, ParameterCommand, PlatformCommand, PushCommand, StepCommand, VelocityCommand,
 };
 use crate::unknown;
 
@@ -38,7 +38,7 @@ pub struct CommandInfo {
 }
 
 /// Most numbers in one command.
-const MAX_FIELDS: usize = 4;
+pub(crate) const MAX_FIELDS: usize = 9;
 
 const fn field(
     name: &'static str,
@@ -65,6 +65,9 @@ const PARAMETER: &[FieldInfo] = &[
     ),
     field("value", "", [-1e9, 1e9], None, "in the parameter's unit"),
 ];
+
+/// Number of a box.
+const BOX_ID: FieldInfo = field("id", "", [1.0, MAX_BOXES as f64], None, "number of the box");
 
 /// Every command. The ranges are those of any use on any robot; a gait narrows them.
 pub const COMMANDS: &[CommandInfo] = &[
@@ -170,6 +173,31 @@ pub const COMMANDS: &[CommandInfo] = &[
         build: |v| Command::HeadJoints(HeadJointsCommand { pan: v[0], tilt: v[1] }),
     },
     plain("head/rest", |_| Command::HeadRest, "move the camera head to its comfortable angles"),
+    CommandInfo {
+        name: "vision/box",
+        about: "an upright box is known from now on; the same id again moves it",
+        fields: &[
+            BOX_ID,
+            field("x", "m", [-1e3, 1e3], None, "middle of its base, where the robot began: forward"),
+            field("y", "m", [-1e3, 1e3], None, "to the left"),
+            field("z", "m", [-10.0, 10.0], Some(0.0), "over the ground"),
+            field("yaw", "rad", [-6.3, 6.3], Some(0.0), "turn of the box to the left"),
+            field("length", "m", [1e-3, 100.0], None, "along its own x axis"),
+            field("width", "m", [1e-3, 100.0], None, "along its own y axis"),
+            field("height", "m", [1e-3, 10.0], None, "from base to top"),
+            field("lifetime", "s", [0.1, 60.0], None, "time after which it is gone, unless it is told again"),
+        ],
+        build: |v| {
+            let (base, size) = ([v[1], v[2], v[3]], [v[5], v[6], v[7]]);
+            Command::Box(BoxCommand { id: v[0] as u32, base, yaw: v[4], size, lifetime: v[8] })
+        },
+    },
+    CommandInfo {
+        name: "vision/gone",
+        about: "a box is not there any more",
+        fields: &[BOX_ID],
+        build: |v| Command::Gone(GoneCommand { id: v[0] as u32 }),
+    },
 ];
 
 impl CommandInfo {
@@ -181,6 +209,26 @@ impl CommandInfo {
     /// The command with all fields at zero, for its address and priority.
     pub fn example(&self) -> Command {
         (self.build)(&[0.0; MAX_FIELDS])
+    }
+
+    /// The command with these numbers, one per field, in their ranges.
+    ///
+    /// # Errors
+    /// Too few or too many, or one that is not finite, out of range, or not whole where it must be.
+    pub fn command(&self, values: &[f64]) -> Result<Command, String> {
+        let (name, fields) = (self.name, self.fields);
+        if values.len() != fields.len() {
+            return Err(format!("{name}: {} numbers instead of {}", values.len(), fields.len()));
+        }
+        for (f, x) in fields.iter().zip(values) {
+            f.check(name, *x)?; // before a number becomes an integer, which hides NaN
+        }
+        let command = (self.build)(values);
+        let cut = fields.iter().zip(values).zip(command.values()).find(|((_, x), y)| *x != y);
+        match cut {
+            Some(((f, x), _)) => Err(format!("{name}: {} = {x} must be a whole number", f.name)),
+            None => Ok(command),
+        }
     }
 
     /// Names of all fields, for messages.
@@ -204,7 +252,7 @@ impl FieldInfo {
 impl Command {
     /// The numbers of the command, in the order of its [`CommandInfo::fields`]; the rest are zero.
     fn values(&self) -> [f64; MAX_FIELDS] {
-        match *self {
+        let four = match *self {
             Self::Step(s) => [s.length, s.side, s.turn, s.duration],
             Self::Velocity(v) => [v.forward, v.left, v.turn, 0.0],
             Self::Distance(d) => [d.distance, d.speed, d.acceleration, 0.0],
@@ -214,8 +262,13 @@ impl Command {
             Self::Lower(l) => [l.distance, 0.0, 0.0, 0.0],
             Self::HeadJoints(h) => [h.pan, h.tilt, 0.0, 0.0],
             Self::Push(p) => [p.force[0], p.force[1], p.force[2], p.duration],
-            _ => [0.0; MAX_FIELDS],
-        }
+            Self::Gone(g) => [f64::from(g.id), 0.0, 0.0, 0.0],
+            Self::Box(BoxCommand { id, base: [x, y, z], yaw, size: [length, width, height], lifetime }) => {
+                return [f64::from(id), x, y, z, yaw, length, width, height, lifetime];
+            }
+            _ => [0.0; 4],
+        };
+        std::array::from_fn(|i| four.get(i).copied().unwrap_or(0.0))
     }
 
     /// The number of that field of its [`CommandInfo::fields`]; zero if there is none.
@@ -268,16 +321,7 @@ impl Command {
                 )
             })?;
         }
-        for (f, x) in info.fields.iter().zip(values) {
-            f.check(name, x)?; // before a number becomes an integer, which hides NaN
-        }
-        let command = (info.build)(&values);
-        if let Some((f, x)) =
-            info.fields.iter().zip(values).zip(command.values()).find(|((_, x), y)| x != y).map(|(a, _)| a)
-        {
-            return Err(format!("{name}: {} = {x} must be a whole number", f.name));
-        }
-        Ok(command)
+        info.command(&values[..info.fields.len()])
     }
 }
 

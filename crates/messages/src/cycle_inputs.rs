@@ -2,6 +2,7 @@
 //! step does the same again (`gangwerk replay`).
 
 use crate::command::Domain;
+use crate::command_text::MAX_FIELDS;
 use crate::{Command, Header, Live, Process, Reason, Stamp, Verdict, record};
 
 /// Most topics that one step reads.
@@ -76,7 +77,7 @@ record! {
         /// \[1\] Its number in the domain.
         id: u64,
         /// Its numbers, in the order of `gangwerk topic list`.
-        values: [f64; 4],
+        values: [f64; MAX_FIELDS],
         /// \[1\] 1: the step saw it; 0: it was left out before, as too old or without the lease.
         seen: u64,
         /// \[1\] 0: accepted; otherwise the number of the reason, as in the protocol.
@@ -143,7 +144,7 @@ mod tests {
     #[test]
     fn every_command_comes_back_from_its_record_bit_for_bit() {
         for info in COMMANDS {
-            let values = [3.0, -0.1, f64::MIN_POSITIVE, 1.0 / 3.0];
+            let values = [3.0, -0.1, f64::MIN_POSITIVE, 1.0 / 3.0, 0.7, 1.1, 1e9, -0.0, 0.3];
             let command = Command::of_values(info.example().address(), &values).unwrap();
             let live = Live::of_scene(command);
             let taken = CommandTaken::new(Header::default(), 1, &live, &Ok(()), true);

@@ -61,7 +61,7 @@ impl Process {
             Self::Watchdog => &[Domain::System],
             Self::SimBackend => &[Domain::Sim],
             Self::Lowlevel => &[Domain::System, Domain::Joint],
-            Self::Planner => &[Domain::Walk],
+            Self::Planner => &[Domain::Walk, Domain::Vision],
             Self::Controller => &[Domain::Stabilize, Domain::Head],
             Self::Broker | Self::Logger | Self::Observer => &[],
         }

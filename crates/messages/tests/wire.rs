@@ -1,8 +1,8 @@
 //! Bytes of commands: golden vectors, an independent decoder, hostile bytes.
 
 use messages::command::{
-    Command, DistanceCommand, FixateCommand, HeadJointsCommand, LowerCommand, ParameterCommand,
-    PlatformCommand, PushCommand, StepCommand, VelocityCommand,
+    BoxCommand, Command, DistanceCommand, FixateCommand, GoneCommand, HeadJointsCommand, LowerCommand,
+    ParameterCommand, PlatformCommand, PushCommand, StepCommand, VelocityCommand,
 };
 use messages::wire::{MAX_BYTES, decode, encode};
 use proptest::prelude::*;
@@ -30,6 +30,8 @@ enum Peer {
     ZeroForce,
     Lower { distance: f64 },
     WalkParameter { number: u32, value: f64 },
+    Box { id: u32, base: [f64; 3], yaw: f64, size: [f64; 3], lifetime: f64 },
+    Gone { id: u32 },
 }
 
 impl From<Command> for Peer {
@@ -63,6 +65,10 @@ impl From<Command> for Peer {
             Command::WalkParameter(ParameterCommand { number, value }) => {
                 Self::WalkParameter { number, value }
             }
+            Command::Box(BoxCommand { id, base, yaw, size, lifetime }) => {
+                Self::Box { id, base, yaw, size, lifetime }
+            }
+            Command::Gone(GoneCommand { id }) => Self::Gone { id },
         }
     }
 }
@@ -106,6 +112,10 @@ fn any_command() -> impl Strategy<Value = Command> {
             left,
             turn
         })),
+        (any::<u32>(), prop::array::uniform3(f()), f(), prop::array::uniform3(f()), f()).prop_map(
+            |(id, base, yaw, size, lifetime)| Command::Box(BoxCommand { id, base, yaw, size, lifetime })
+        ),
+        any::<u32>().prop_map(|id| Command::Gone(GoneCommand { id })),
         (prop::array::uniform3(f()), f())
             .prop_map(|(force, duration)| Command::Push(PushCommand { force, duration })),
     ]
@@ -160,7 +170,7 @@ fn every_cut_and_every_surplus_is_an_error() {
 
 #[test]
 fn unknown_commands_are_named_as_such() {
-    for n in [20u32, 255, 1 << 16, u32::MAX] {
+    for n in [22u32, 255, 1 << 16, u32::MAX] {
         let error = decode(&n.to_le_bytes()).unwrap_err().to_string();
         assert!(error.starts_with("not a command") && error.contains(&n.to_string()), "{error}");
     }
@@ -194,7 +204,7 @@ proptest! {
     }
 
     #[test]
-    fn flipped_bits_are_refused_or_another_command(command in any_command(), bit in 0usize..288) {
+    fn flipped_bits_are_refused_or_another_command(command in any_command(), bit in 0usize..576) {
         let mut damaged = bytes(&command);
         let bit = bit % (8 * damaged.len());
         damaged[bit / 8] ^= 1 << (bit % 8);
