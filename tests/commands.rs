@@ -1,5 +1,7 @@
 //! `gangwerk topic`: commands that reach a running robot and act, and looks at what it does.
 
+#[path = "commands/gateway.rs"]
+mod gateway;
 #[path = "commands/joystick.rs"]
 mod joystick;
 

@@ -9,6 +9,7 @@ mod console_command;
 mod dashboard_command;
 mod desk;
 mod fault_table;
+mod gateway_command;
 mod joystick_command;
 mod log_command;
 mod param_command;
@@ -93,6 +94,9 @@ enum GangwerkTask {
     /// Walk a robot with a gamepad; waits for one if none runs.
     #[command(after_help = joystick_command::HELP)]
     Joystick(joystick_command::JoystickArguments),
+    /// Vision interface over UDP: where the robot is goes out, velocities and boxes come in; waits for a robot if none runs.
+    #[command(after_help = gateway_command::HELP)]
+    Gateway(gateway_command::GatewayArguments),
     /// Interactive Python shell with a client `robot` of the running robot; needs the Python package: docs/python.md.
     Console(console_command::ConsoleArguments),
     /// The configuration that is taken, or a copy of the built-in one.
@@ -260,8 +264,8 @@ impl GangwerkTask {
     /// Whether it only tells something. What moves a robot or guards it does not end because nobody reads any more.
     fn only_tells(&self) -> bool {
         use GangwerkTask::{
-            Broker, Console, Controller, Dashboard, Faults, Joystick, Latency, Logger, Lowlevel, Planner,
-            Run, SimBackend, Watchdog,
+            Broker, Console, Controller, Dashboard, Faults, Gateway, Joystick, Latency, Logger, Lowlevel,
+            Planner, Run, SimBackend, Watchdog,
         };
         let moves = matches!(
             self,
@@ -270,6 +274,7 @@ impl GangwerkTask {
                 | Faults(_)
                 | Console(_)
                 | Dashboard(_)
+                | Gateway(_)
                 | Joystick(_)
                 | Latency { .. }
                 | Self::LatencyEnd { .. }
@@ -324,6 +329,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         GangwerkTask::Topic { what, dir } => done(topic_command::run(&dir, what)),
         GangwerkTask::Dashboard(arguments) => done(dashboard_command::run(arguments, asked)),
         GangwerkTask::Joystick(arguments) => done(joystick_command::run(arguments, &config()?)),
+        GangwerkTask::Gateway(arguments) => done(gateway_command::run(arguments)),
         GangwerkTask::Param { what, dir } => done(param_command::run(&dir, what)),
         GangwerkTask::Console(arguments) => done(console_command::run(&arguments)),
         GangwerkTask::Config { what } => done(config_command::run(asked, what)),

@@ -5,7 +5,8 @@
 #[path = "../tests/robot/mod.rs"]
 mod robot;
 
-use messages::{Command, command::VelocityCommand};
+use messages::Command;
+use messages::command::{BoxCommand, VelocityCommand};
 use planner::boundary::{BoundarySolver, EndConditions, PlanarState};
 use planner::closed_form::ClosedForm;
 use planner::collocation::Collocation;
@@ -24,6 +25,10 @@ fn main() {
     let cases = [(1.0, 0.08), (2.0, 0.3), (2.0, 0.16), (2.0, 0.08), (2.0, 0.06), (3.0, 0.08)];
     for (kmh, spacing) in cases {
         whole_plan(kmh, spacing);
+    }
+    println!("\nplans on a way with boxes that were told (4.3.3)             median   p99");
+    for boxes in [0, 1, 32] {
+        row(&format!("{boxes} boxes"), over_boxes(boxes));
     }
     println!("\nsolution of the boundary value problem alone (4.6.5)        median   p99");
     for (steps, per_step) in [(5, 8), (20, 8)] {
@@ -67,6 +72,30 @@ fn whole_plan(kmh: f64, spacing: f64) {
     println!(
         "{kmh} km/h   {spacing:.2} s   {points:3}     {error:8.3} mm                       {median:6.1} us   {p99:6.1} us"
     );
+}
+
+/// Plans of a walk over low boxes, 0.9 m apart.
+fn over_boxes(count: u32) -> [f64; 2] {
+    let mut r = Robot::new(&robot::gait());
+    r.stand();
+    let mut times = Vec::new();
+    while times.len() < 300 {
+        // They go along with her.
+        let told = |k: u32| {
+            let x = r.active.origin[0] + 0.9 * f64::from(k) - 1.0;
+            let size = [0.06, 1.0, 0.05];
+            Command::Box(BoxCommand { id: 1 + k, base: [x, 0.0, 0.0], yaw: 0.1, size, lifetime: 60.0 })
+        };
+        if r.plans.len().is_multiple_of(20) {
+            (0..count).map(told).collect::<Vec<_>>().into_iter().for_each(|told| r.step(&[told]));
+        }
+        let made = r.plans.len();
+        r.step(&[Command::Velocity(VelocityCommand { forward: 1.0 / 3.6, left: 0.0, turn: 0.0 })]);
+        if r.plans.len() > made && r.plans.len() > 10 {
+            times.push(r.took);
+        }
+    }
+    spread(times)
 }
 
 fn spread(mut times: Vec<f64>) -> [f64; 2] {

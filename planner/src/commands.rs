@@ -5,8 +5,8 @@
 
 use crate::steps::{ROUNDING, StepParameters};
 use config::Gait;
-use messages::Reason;
 use messages::command::{StepCommand, VelocityCommand};
+use messages::{Command, Reason};
 
 /// Intent of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +22,15 @@ pub(crate) enum Intent {
 /// `x` within its limits, or the refusal of the command's field.
 fn within(x: f64, field: u8, [low, high]: [f64; 2]) -> Result<f64, Reason> {
     if x >= low && x <= high { Ok(x) } else { Err(Reason::Limit { field, low, high }) }
+}
+
+/// The numbers of a command within their ranges of any use.
+///
+/// # Errors
+/// The first one that is not.
+pub(crate) fn in_range(command: &Command) -> Result<(), Reason> {
+    let mut fields = command.info().fields.iter().enumerate();
+    fields.try_for_each(|(i, field)| within(command.value(i), i as u8, field.range).map(drop))
 }
 
 /// Step parameters as commanded.

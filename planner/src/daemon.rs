@@ -90,7 +90,9 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
             && let Some(live) = timeline.due(header.tick).map(Live::of_scene).or_else(|| commands.next())
         {
             // Whoever steers a robot that stays is not overruled by what is left of the scene.
-            let steers = live.stamp.origin != 0 && !matches!(live.command, Command::WalkParameter(_));
+            let looks =
+                matches!(live.command, Command::WalkParameter(_) | Command::Box(_) | Command::Gone(_));
+            let steers = live.stamp.origin != 0 && !looks;
             if d.stays && steers {
                 timeline.skip_before(u64::MAX);
             }

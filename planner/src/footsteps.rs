@@ -7,6 +7,7 @@ use crate::pose::{PlanarPose, rotate};
 use crate::reactive::Reactive;
 use crate::skills::{Script, Skill};
 use crate::steps::{Heights, MAX_STEPS, ROUNDING, StepParameters, Stride, next_foothold, next_width, nu};
+use crate::told_boxes::ToldBoxes;
 use crate::verdict::Blocked;
 use crate::walking_model::WalkingModel;
 use config::Gait;
@@ -86,6 +87,11 @@ impl Footsteps {
         if let Some(reactive) = &mut self.reactive {
             reactive.known = known;
         }
+    }
+
+    /// Boxes that are told while she walks; none of a gait without steps over obstacles.
+    pub(crate) fn told(&mut self) -> Option<&mut ToldBoxes> {
+        self.reactive.as_mut().map(|reactive| &mut reactive.known.told)
     }
 
     /// Steps from `demand.from`, with the heights of the skill, lifted over obstacles.

@@ -138,6 +138,9 @@ impl Planner {
             let walks = self.tasks.active == Skill::Walk;
             self.builder.footsteps.slope = if walks { state.ground_slope } else { [0.0; 2] };
         }
+        if let Some(told) = self.builder.footsteps.told() {
+            told.forget(tick);
+        }
         // Commands are answered one by one; a robot that does not stand refuses those that would move it.
         let gait = self.gait_state(tick, state);
         let down = state.filter(|s| s.not_standing == 1).and_then(|_| not_standing(gait));
@@ -147,7 +150,10 @@ impl Planner {
                     self.events.push(EventCode::NotStanding, Detail::Message(command.address().1.into()));
                     Err(reason)
                 }
-                None => self.take(command, gait),
+                None => match command {
+                    Command::Box(_) | Command::Gone(_) => self.hear(command, tick),
+                    _ => self.take(command, gait),
+                },
             };
             self.answers.push(answer);
         }
@@ -249,8 +255,10 @@ impl Planner {
             Command::Distance(c) => self.give(SkillTask::Distance(*c), gait),
             Command::Platform(c) => self.give(SkillTask::Platform(*c), gait),
             Command::WalkParameter(change) => self.set(change).map(|()| (self.intent, None)),
-            // Commands of other processes.
-            Command::EmergencyStop
+            // Not for here, and commands of other processes.
+            Command::Box(_)
+            | Command::Gone(_)
+            | Command::EmergencyStop
             | Command::Reset
             | Command::Enable
             | Command::Push(_)
@@ -288,6 +296,12 @@ impl Planner {
                 Err(reason)
             }
         }
+    }
+
+    /// A box that somebody sees, or does not see any more: the next step is planned with it.
+    fn hear(&mut self, command: &Command, tick: u64) -> Result<(), Reason> {
+        let cycle_s = self.builder.model.cycle_s;
+        self.builder.footsteps.told().ok_or(Reason::NotNow)?.take(command, tick, cycle_s)
     }
 
     /// A skill comes next: at once from standing, otherwise after a stop.

@@ -6,7 +6,7 @@
 //! | walking commands | 4.6.1 | | [`commands`], [`lease`] |
 //! | step sequence planning | 4.3, (4.1)-(4.4) | 2.1, 2.2 | [`footsteps`], [`steps`] |
 //! | steps that react to pushes | | | `reaction`, `step_adaptation` |
-//! | reactive step sequence planning, algorithm 3 | 4.3.3 | | `reactive`, [`obstacles`] |
+//! | reactive step sequence planning, algorithm 3 | 4.3.3 | | `reactive`, [`obstacles`], `told_boxes` |
 //! | higher level behaviour | 4.3.4 | | [`skills`] |
 //! | foot trajectories | 4.5, (4.22)-(4.28) | 2.5 | [`feet`] |
 //! | foot rollover, toe joints | 4.5, (4.29), (4.30) | 2.5, gaps 7, 8 | [`foot_rollover`] |
@@ -49,6 +49,7 @@ pub mod skills;
 pub mod sole;
 mod step_adaptation;
 pub mod steps;
+mod told_boxes;
 pub mod torso;
 mod touchdown;
 mod two_quartics;

@@ -3,19 +3,53 @@
 //! A triangle is cut with half spaces, one after the other; what is left is a convex polygon. Nothing left: it does not
 //! reach into their intersection. That is exact for a box, and needs no case for edges or corners.
 
-use crate::pose::{PlanarPose, rotate};
+use crate::pose::PlanarPose;
+use crate::told_boxes::ToldBoxes;
 
 /// A point or direction \[m\].
-type Point = [f64; 3];
+pub(crate) type Point = [f64; 3];
 /// Most corners of a triangle cut by six half spaces.
 const MAX_CORNERS: usize = 10;
 
 /// Everything that is known to lie on the ground.
 #[derive(Clone, Debug, Default)]
 pub struct KnownObstacles {
-    /// Corners \[m\] @I_0 and the number of the obstacle.
-    triangles: Vec<([Point; 3], usize)>,
-    count: usize,
+    obstacles: Vec<(Vec<[Point; 3]>, Disc)>,
+    /// Boxes that were told while she walks, besides those.
+    pub(crate) told: ToldBoxes,
+}
+
+/// One of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Obstacle<'a> {
+    /// Corners \[m\] @I_0.
+    pub(crate) triangles: &'a [[Point; 3]],
+    /// It lies in it.
+    pub(crate) disc: Disc,
+}
+
+/// Disc around an obstacle, seen from above: most obstacles are far away, and need no look at their triangles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Disc {
+    middle: [f64; 2],
+    radius: f64,
+}
+
+impl Disc {
+    /// \[m\] More than rounding can be.
+    const ROOM: f64 = 1e-6;
+
+    /// Around triangles \[m\] @I_0.
+    pub(crate) fn around(triangles: &[[Point; 3]]) -> Self {
+        let corners = || triangles.iter().flatten();
+        let [x, y] = [0, 1].map(|d| {
+            let (low, high) =
+                corners().fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p[d]), high.max(p[d])));
+            0.5 * low + 0.5 * high
+        });
+        let radius = corners().map(|p| (p[0] - x).hypot(p[1] - y)).fold(0.0, f64::max);
+        Self { middle: [x, y], radius: radius + Self::ROOM }
+    }
 }
 
 /// Bounding box, in a frame, of the part of an obstacle in a strip along the x axis.
@@ -51,27 +85,38 @@ impl KnownObstacles {
     /// Adds one obstacle, triangles \[m\] @I_0. Those with a number that is not finite are left out.
     pub fn add(&mut self, triangles: impl IntoIterator<Item = [Point; 3]>) {
         let finite = |t: &[Point; 3]| t.iter().flatten().all(|x| x.is_finite());
-        let number = self.count;
-        self.triangles.extend(triangles.into_iter().filter(finite).map(|t| (t, number)));
-        self.count += 1;
+        let triangles: Vec<_> = triangles.into_iter().filter(finite).collect();
+        let disc = Disc::around(&triangles);
+        self.obstacles.push((triangles, disc));
     }
 
     /// Nothing there?
     pub fn is_empty(&self) -> bool {
-        self.triangles.is_empty()
+        self.all().all(|obstacle| obstacle.triangles.is_empty())
+    }
+
+    fn all(&self) -> impl Iterator<Item = Obstacle<'_>> {
+        self.obstacles
+            .iter()
+            .map(|(triangles, disc)| Obstacle { triangles, disc: *disc })
+            .chain(self.told.all())
     }
 
     /// Extent of the part of each obstacle between y = `strip[0]` and `strip[1]` of the frame `at`.
     pub(crate) fn extents(&self, at: PlanarPose, strip: [f64; 2]) -> impl Iterator<Item = Extent> {
-        (0..self.count).filter_map(move |k| {
-            let own = self.triangles.iter().filter(move |(_, number)| *number == k);
-            own.filter_map(|(corners, _)| {
-                let mut piece = Polygon::seen_from(&at, corners);
+        let view = View::from(&at);
+        let beside = move |disc: &Disc| {
+            let [_, y] = at.local(disc.middle);
+            y - disc.radius > strip[1] || y + disc.radius < strip[0]
+        };
+        self.all().filter(move |obstacle| !beside(&obstacle.disc)).filter_map(move |obstacle| {
+            let own = obstacle.triangles.iter().filter_map(|corners| {
+                let mut piece = view.of(corners);
                 piece.cut([0.0, 1.0, 0.0], strip[1]);
                 piece.cut([0.0, -1.0, 0.0], -strip[0]);
                 piece.extent()
-            })
-            .reduce(|a, b| Extent {
+            });
+            own.reduce(|a, b| Extent {
                 begin: a.begin.min(b.begin),
                 end: a.end.max(b.end),
                 top: a.top.max(b.top),
@@ -82,8 +127,15 @@ impl KnownObstacles {
     /// Does a triangle reach into the box?
     pub fn hit(&self, foot: &Upright) -> bool {
         let ([back, front, right, left], [low, high]) = (foot.sides, foot.height);
-        self.triangles.iter().any(|(corners, _)| {
-            let mut piece = Polygon::seen_from(&foot.at, corners);
+        let (view, reach) =
+            (View::from(&foot.at), back.abs().max(front.abs()).hypot(right.abs().max(left.abs())));
+        let away = |disc: &Disc| {
+            let [x, y] = disc.middle;
+            (x - foot.at.x).hypot(y - foot.at.y) > disc.radius + reach
+        };
+        let near = self.all().filter(|obstacle| !away(&obstacle.disc));
+        near.flat_map(|obstacle| obstacle.triangles).any(|corners| {
+            let mut piece = view.of(corners);
             piece.cut([1.0, 0.0, 0.0], front);
             piece.cut([-1.0, 0.0, 0.0], -back);
             piece.cut([0.0, 1.0, 0.0], left);
@@ -101,16 +153,32 @@ struct Polygon {
     corners: [Point; MAX_CORNERS],
 }
 
-impl Polygon {
-    fn seen_from(frame: &PlanarPose, triangle: &[Point; 3]) -> Self {
-        let mut corners = [[0.0; 3]; MAX_CORNERS];
-        for (to, from) in corners.iter_mut().zip(triangle) {
-            let [x, y] = rotate(-frame.heading, [from[0] - frame.x, from[1] - frame.y]);
-            *to = [x, y, from[2]];
-        }
-        Self { len: 3, corners }
+/// Look from a frame, for many triangles.
+#[derive(Clone, Copy)]
+struct View {
+    from: [f64; 2],
+    /// Sine and cosine of the turn into the frame.
+    turn: (f64, f64),
+}
+
+impl View {
+    fn from(frame: &PlanarPose) -> Self {
+        Self { from: [frame.x, frame.y], turn: (-frame.heading).sin_cos() }
     }
 
+    /// The triangle in the frame.
+    fn of(&self, triangle: &[Point; 3]) -> Polygon {
+        let mut corners = [[0.0; 3]; MAX_CORNERS];
+        let (s, c) = self.turn;
+        for (to, from) in corners.iter_mut().zip(triangle) {
+            let [x, y] = [from[0] - self.from[0], from[1] - self.from[1]];
+            *to = [c * x - s * y, s * x + c * y, from[2]];
+        }
+        Polygon { len: 3, corners }
+    }
+}
+
+impl Polygon {
     /// Keeps what lies in normal . p <= offset (Sutherland and Hodgman).
     fn cut(&mut self, normal: Point, offset: f64) {
         let above = |p: &Point| (0..3).map(|d| normal[d] * p[d]).sum::<f64>() - offset;
@@ -188,6 +256,38 @@ mod tests {
         assert!(!diamond().hit(&foot(-r - 0.11, 0.0, 0.0, [0.0, 0.2])), "toe before the corner");
         // Beside an edge: bounding boxes overlap, the bodies do not.
         assert!(!diamond().hit(&foot(0.5, 0.5, 0.0, [0.0, 0.2])));
+    }
+
+    /// An obstacle with a second triangle far away has a disc that leaves nothing out.
+    #[test]
+    fn what_is_left_out_for_its_disc_is_not_in_the_way() {
+        let mut seed = 11u64;
+        let mut random = |lo: f64, hi: f64| {
+            seed ^= seed << 13;
+            seed ^= seed >> 7;
+            seed ^= seed << 17;
+            lo + (hi - lo) * (seed >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let (mut hits, mut seen) = (0, 0);
+        for _ in 0..20_000 {
+            let middle = [random(-0.8, 0.8), random(-0.8, 0.8)];
+            let corner = |z: f64| [middle[0] + random(-0.3, 0.3), middle[1] + random(-0.3, 0.3), z];
+            let t: [Point; 3] = [0.0, 0.05, 0.1].map(corner);
+            // So far ahead and so high that no foot and, turned as the frames are, no strip reaches it.
+            let far = t.map(|[x, y, _]| [x + 1e4, y + 1e4, 50.0]);
+            let (mut near, mut whole) = (KnownObstacles::default(), KnownObstacles::default());
+            near.add([t]);
+            whole.add([t, far]);
+            let at = PlanarPose::new(random(-0.3, 0.3), random(-0.3, 0.3), random(-0.7, 0.7));
+            let foot = Upright { at, sides: [-0.26, 0.04, -0.05, 0.05], height: [0.0, 0.08] };
+            assert_eq!(near.hit(&foot), whole.hit(&foot));
+            let strip = [random(-0.4, 0.0), random(0.0, 0.4)];
+            let found = near.extents(at, strip).next();
+            assert_eq!(found, whole.extents(at, strip).next());
+            hits += u32::from(near.hit(&foot));
+            seen += u32::from(found.is_some());
+        }
+        assert!(hits > 500 && seen > 2000, "{hits} hits, {seen} seen");
     }
 
     /// Random boxes against the same question asked of many points of the triangle.

@@ -1,4 +1,4 @@
-//! Neither the plans of a pattern nor the open loop that walks them allocate after the start.
+//! Neither the plans of a pattern nor the open loop that walks them allocate after the start, nor do boxes that are told.
 #![allow(
     unsafe_code,
     reason = "a counting allocator can only be written with GlobalAlloc, which is unsafe to implement"
@@ -9,7 +9,7 @@ use std::cell::Cell;
 
 use config::{Gait, Robot, root};
 use controller::Controller;
-use messages::command::VelocityCommand;
+use messages::command::{BoxCommand, GoneCommand, MAX_BOXES, VelocityCommand};
 use messages::{Command, ControllerState, GaitState, Plan, Sensors};
 use planner::Planner;
 
@@ -74,4 +74,47 @@ fn a_pattern_is_planned_and_walked_in_the_memory_made_at_the_start() {
 
     drop(Box::new(std::hint::black_box(1)));
     assert!(COUNT.get() > before, "the counter counts");
+}
+
+/// All places taken, moved, lapsed and left, refused ones too, while plans are made over them.
+#[test]
+fn boxes_that_come_and_go_are_planned_with_in_the_memory_made_at_the_start() {
+    let robot = Robot::load(&root(None).join("robots/lola")).unwrap();
+    let gait = Gait::load(&root(None).join("gaits/lola.toml")).unwrap();
+    let cycle = 0.001;
+    let mut planner = Planner::of(&gait, &robot).unwrap();
+    let mut state = ControllerState { com: [-0.06, 0.0, 0.85], ..ControllerState::default() };
+    state.feet = [[0.0, -0.1, 0.0, 0.0], [0.0, 0.1, 0.0, 0.0]];
+    let mut plan = Box::new(Plan::default());
+    let mut next: Option<u64> = None;
+
+    let before = COUNT.get();
+    let (mut plans, mut refused) = (0, 0);
+    for tick in 1..16_000u64 {
+        // One after the other, 0.2 m apart, across the way of both feet and beside it.
+        let id = (tick / 50 % (MAX_BOXES as u64 + 2)) as u32;
+        let base = [1.5 + 0.2 * f64::from(id), 0.1 * f64::from(id % 5), 0.0];
+        let told = BoxCommand { id, base, yaw: 0.3, size: [0.05, 0.5, 0.06], lifetime: 3.0 };
+        let command = match tick {
+            20 => Some(Command::Stand),
+            2500 => Some(Command::Velocity(VelocityCommand { forward: 0.2, left: 0.0, turn: 0.0 })),
+            _ if tick % 50 == 0 => Some(Command::Box(told)),
+            _ if tick % 170 == 0 => Some(Command::Gone(GoneCommand { id })),
+            _ => None,
+        };
+        state.header.tick = tick;
+        let output = planner.step(tick, cycle, Some(&state), command.as_slice());
+        refused += output.answers.iter().filter(|answer| answer.is_err()).count();
+        output.events.drain().for_each(drop);
+        if let Some(new) = output.plan {
+            (*plan, next, plans) = (*new, Some(new.start_tick), plans + 1);
+        }
+        // A controller that follows perfectly.
+        if next.is_some_and(|start| start <= tick) {
+            state.plan_id = plan.id;
+            state.gait = plan.state;
+        }
+    }
+    assert_eq!(COUNT.get() - before, 0);
+    assert!(plans >= 8 && refused >= 10, "{plans} plans, {refused} refused");
 }

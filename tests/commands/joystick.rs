@@ -67,16 +67,16 @@ impl Pad {
 }
 
 /// Random numbers; the seed is printed.
-struct Dice(u64);
+pub(super) struct Dice(u64);
 
 impl Dice {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let seed = std::env::var("SEED").ok().and_then(|s| s.parse().ok()).unwrap_or_else(clock::now);
         println!("SEED={seed}");
         Self(seed | 1)
     }
 
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
@@ -92,7 +92,7 @@ fn joystick(site: &Site) -> Running {
 
 /// Waits until it has said so, for the `times`-th time.
 #[track_caller]
-fn says(joystick: &mut Running, text: &str, times: usize) {
+pub(super) fn says(joystick: &mut Running, text: &str, times: usize) {
     let begun = clock::now();
     while joystick.out().matches(text).count() < times {
         let late = clock::now() - begun > 30 * clock::SECOND;
@@ -107,17 +107,22 @@ fn says(joystick: &mut Running, text: &str, times: usize) {
 }
 
 /// A robot that runs, as fast as it can, and what it does.
-struct Robot {
-    run: Running,
-    state: Reader<ControllerState>,
-    sim: Reader<SimState>,
-    space: Space,
+pub(super) struct Robot {
+    pub(super) run: Running,
+    pub(super) state: Reader<ControllerState>,
+    pub(super) sim: Reader<SimState>,
+    pub(super) space: Space,
 }
 
 impl Robot {
-    fn standing(site: &Site) -> Self {
+    pub(super) fn standing(site: &Site) -> Self {
+        Self::standing_in(site, &["--lockstep", "--no-log"])
+    }
+
+    /// The same, of a run with these options.
+    pub(super) fn standing_in(site: &Site, options: &[&str]) -> Self {
         site.scene("wait", 100_000.0, WAIT);
-        let mut run = site.run("wait", &["--lockstep", "--no-log"]);
+        let mut run = site.run("wait", options);
         let space = run.space();
         let (state, sim) = (space.reader(&CONTROLLER_STATE).unwrap(), space.reader(&SIM_STATE).unwrap());
         let mut robot = Self { run, state, sim, space };
@@ -125,13 +130,13 @@ impl Robot {
         robot
     }
 
-    fn walks(&mut self) -> u64 {
+    pub(super) fn walks(&mut self) -> u64 {
         until(&mut self.run, &mut self.state, |s| s.gait == GaitState::Walking as u64).tick()
     }
 
     /// She comes to a stand. What an observer that is not scheduled misses is on neither side of the bound.
     #[track_caller]
-    fn stands(&mut self) {
+    pub(super) fn stands(&mut self) {
         let begun = clock::now();
         let (mut before, mut slower) = (0, None);
         let stood = loop {
@@ -155,7 +160,7 @@ impl Robot {
 
     /// Nothing moves her for a while.
     #[track_caller]
-    fn stays(&mut self) {
+    pub(super) fn stays(&mut self) {
         doze(0.3);
         while let Some(state) = self.state.follow() {
             assert_eq!(state.gait, GaitState::Standing as u64, "she moves at tick {}", state.tick());

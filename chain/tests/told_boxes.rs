@@ -1,0 +1,75 @@
+//! A box that somebody tells of is the same box as one of the scene.
+
+use chain::Chain;
+use config::{Setup, root};
+use messages::Command;
+use messages::command::BoxCommand;
+
+/// What a walk was: each plan, and how far she came \[m\], without a fall.
+struct Walk {
+    plans: Vec<String>,
+    way: f64,
+}
+
+fn walk(setup: &Setup) -> Walk {
+    let mut chain = Chain::new(setup).expect("a shipped scene, or nearly");
+    let (mut plans, mut way) = (Vec::new(), 0.0);
+    for _ in 0..(setup.scene.duration / setup.scene.cycle) as u64 {
+        let cycle = chain.step();
+        assert_eq!(cycle.sim_state.fallen, 0, "at {} m", cycle.sim_state.position[0]);
+        // All digits: the same text is the same bits, but for the sign of NaN.
+        plans.extend(cycle.plan.iter().map(|plan| format!("{plan:?}")));
+        way = cycle.sim_state.position[0];
+    }
+    Walk { plans, way }
+}
+
+/// The scene's object is not known to the scene.
+fn unknown(setup: &Setup) -> Setup {
+    let mut blind = setup.clone();
+    blind.scene.objects[0].known = false;
+    blind
+}
+
+/// The same, but told when the scene begins.
+fn told(setup: &Setup, height: f64) -> Setup {
+    let (mut told, begin) = (unknown(setup), setup.start().unwrap());
+    let [x, y, _] = setup.scene.objects[0].pose.position;
+    let base = [x - begin.x, y - begin.y, 0.0];
+    let seen = BoxCommand { id: 3, base, yaw: 0.0, size: [0.06, 1.2, height], lifetime: 60.0 };
+    told.scene.commands.insert(0, (0.0, Command::Box(seen)));
+    told
+}
+
+#[test]
+fn a_box_that_is_told_is_stepped_over_as_one_of_the_scene_bit_for_bit() {
+    let setup = Setup::load(&root(None), "obstacle").unwrap();
+    let (known, told) = (walk(&setup), walk(&told(&setup, 0.1)));
+    assert!(known.plans.len() > 10 && known.way > 2.0, "{} plans, {} m", known.plans.len(), known.way);
+    for (k, (known, told)) in known.plans.iter().zip(&told.plans).enumerate() {
+        assert_eq!(known, told, "plan {k}");
+    }
+    assert_eq!((known.plans.len(), known.way), (told.plans.len(), told.way));
+}
+
+/// Otherwise the test above would be passed by a planner that hears nothing.
+#[test]
+fn a_box_that_is_not_told_changes_the_plans() {
+    let setup = Setup::load(&root(None), "obstacle").unwrap();
+    let mut empty = unknown(&setup);
+    empty.scene.objects.clear();
+    let (known, blind) = (walk(&setup), walk(&empty));
+    assert!(known.plans.iter().zip(&blind.plans).any(|(a, b)| a != b));
+}
+
+/// A box too high to be stepped over is stopped before, and she stands.
+#[test]
+fn a_high_box_is_stopped_before() {
+    let setup = Setup::load(&root(None), "obstacle").unwrap();
+    let mut wall = told(&setup, 0.6);
+    wall.scene.objects.clear();
+    let begin = setup.start().unwrap();
+    let way = walk(&wall).way;
+    let toes = setup.robot.feet[0].support[1];
+    assert!(way > 0.5 && way + toes < 1.47 - begin.x, "she stands at {way} m, her toes {toes} m ahead");
+}

@@ -1,0 +1,275 @@
+//! Vision interface (thesis 6.2): `gangwerk gateway`, `docs/vision.md`.
+//!
+//! Two-way UDP beside a running robot. Out, at a rate: a trigger, with where the robot is and how it stands. In: velocities, points
+//! to look at, boxes that lie in the way. A client of the broker and an observer of topics: no process of the robot knows of it.
+//!
+//! | module | what |
+//! |---|---|
+//! | `wire` | datagrams as bytes |
+//! | `cause` | why one is refused |
+//! | `gate` | whose, how old, in order, how many |
+//! | `link` | client of the broker: commands out, answers and lease back |
+//! | `observer` | pose and odometry from the topics |
+//! | `trigger` | what a vision system is told |
+
+mod cause;
+pub mod gate;
+mod link;
+mod observer;
+pub mod trigger;
+pub mod wire;
+
+use std::fmt::Write;
+use std::io::ErrorKind;
+use std::net::{SocketAddr, UdpSocket};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use config::Setup;
+use ipc::Run;
+use messages::{Command, Process};
+use realtime::Stop;
+use realtime::clock::{SECOND, now};
+
+pub use cause::Cause;
+use gate::Gate;
+use link::Link;
+use observer::Observer;
+use trigger::{Frames, Odometry, Trigger, flag};
+
+/// Between two looks for a robot, and between two lines about refusals \[ns\].
+const SEARCH: u64 = SECOND / 4;
+const LINE: u64 = SECOND;
+/// Longest wait for a datagram \[ns\].
+const LOOK: u64 = SECOND / 200;
+/// Datagrams that are taken before the next look at anything else.
+const MOST: usize = 64;
+/// Longest datagram that is read; none that is sound is as long.
+const LONGEST: usize = 512;
+
+/// Sink of lines for the operator.
+pub type Say = fn(&str);
+
+/// Options of the program.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Run directory.
+    pub dir: PathBuf,
+    /// Address for datagrams of the vision system.
+    pub listen: SocketAddr,
+    /// Address of the vision system, for triggers. Datagrams from other hosts are refused.
+    pub to: SocketAddr,
+    /// \[1/s\] Triggers.
+    pub rate: f64,
+}
+
+/// Robot that runs.
+struct Robot {
+    supervisor: u32,
+    observer: Observer,
+    /// None: the broker is not there.
+    link: Option<Link>,
+}
+
+/// The gateway.
+struct Gateway<'a> {
+    options: &'a Options,
+    socket: UdpSocket,
+    gate: Gate,
+    robot: Option<Robot>,
+    say: Say,
+    /// Last line about the robot.
+    said: String,
+    /// Counts of refusals that were told.
+    told: [u64; Cause::ALL.len()],
+    sequence: u64,
+    next_search: u64,
+    next_line: u64,
+}
+
+/// Serves the robot of a directory, and the next one after it, until `stop`; lines for the operator go to `say`.
+///
+/// # Errors
+/// The address cannot be listened on.
+pub fn run(options: &Options, stop: &Stop, say: Say) -> Result<(), String> {
+    let listen = options.listen;
+    let refused = |e| format!("cannot listen on {listen}: {e}; another address: --listen");
+    let socket = UdpSocket::bind(listen).map_err(refused)?;
+    let listen = socket.local_addr().map_err(refused)?;
+    let mut gateway = Gateway {
+        options,
+        socket,
+        gate: Gate::new(),
+        robot: None,
+        say,
+        said: String::new(),
+        told: [0; _],
+        sequence: 0,
+        next_search: 0,
+        next_line: 0,
+    };
+    say(&format!("triggers to {}, {} per second; datagrams on {listen}", options.to, options.rate));
+    let period = (1e9 / options.rate) as u64;
+    let mut due = now();
+    while !stop.asked() {
+        gateway.receive(due);
+        gateway.look();
+        if now() >= due {
+            gateway.trigger();
+            // What a busy machine made late is not made good for.
+            due = (due + period).max(now());
+        }
+    }
+    Ok(())
+}
+
+impl Gateway<'_> {
+    /// Takes datagrams that have come, waiting for the first one, but not beyond the next trigger.
+    fn receive(&mut self, due: u64) {
+        let wait = due.saturating_sub(now()).clamp(1000, LOOK);
+        let mut bytes = [0; LONGEST];
+        for n in 0..MOST {
+            // Only the first one is waited for.
+            let waits = n == 0 && self.socket.set_read_timeout(Some(Duration::from_nanos(wait))).is_ok();
+            if self.socket.set_nonblocking(!waits).is_err() {
+                return;
+            }
+            match self.socket.recv_from(&mut bytes) {
+                Ok((length, from)) => self.take(&bytes[..length], from),
+                Err(e) if e.kind() == ErrorKind::Interrupted => {}
+                Err(_) => return,
+            }
+        }
+    }
+
+    fn take(&mut self, bytes: &[u8], from: SocketAddr) {
+        if from.ip() != self.options.to.ip() {
+            return self.gate.count(Cause::Sender);
+        }
+        if let Ok(command) = self.gate.admit(bytes, from, now()) {
+            self.give(&command);
+        }
+    }
+
+    /// Passes a command on to the robot, if there is one.
+    fn give(&mut self, command: &Command) {
+        let link = self.robot.as_mut().and_then(|robot| robot.link.as_mut());
+        match link.map(|link| link.give(command, now())) {
+            None => self.gate.count(Cause::Robot),
+            Some(Ok(true)) => {}
+            Some(Ok(false)) => self.gate.count(Cause::Held),
+            Some(Err(why)) => {
+                self.gate.count(Cause::Robot);
+                self.lose(&why);
+            }
+        }
+    }
+
+    /// One look: at the robot, at the broker, and what there is to say.
+    fn look(&mut self) {
+        if now() >= self.next_search {
+            self.search();
+            self.next_search = now() + SEARCH;
+        }
+        if let Some(link) = self.robot.as_mut().and_then(|robot| robot.link.as_mut()) {
+            let say = self.say;
+            match link.look(now(), &mut |line| say(&line)) {
+                Ok(refused) => (0..refused).for_each(|_| self.gate.count(Cause::Robot)),
+                Err(why) => self.lose(&why),
+            }
+        }
+        if now() >= self.next_line && self.told != self.gate.refused {
+            self.tell_refusals();
+            self.next_line = now() + LINE;
+        }
+    }
+
+    /// Looks whether the robot is still there, or a new one, and its broker.
+    fn search(&mut self) {
+        let dir = self.options.dir.display();
+        let supervisor = ipc::supervisor(&self.options.dir);
+        if self.robot.as_ref().is_some_and(|robot| supervisor != Some(robot.supervisor)) {
+            // Its ports go before the next run makes others in their place.
+            self.robot = None;
+        }
+        let line = match (supervisor, &mut self.robot) {
+            (_, Some(Robot { link: Some(_), .. })) => return,
+            (_, Some(Robot { link, .. })) => match Link::connect(&self.options.dir) {
+                Ok(new) => {
+                    *link = Some(new);
+                    format!("robot in {dir}: connected")
+                }
+                Err(why) => format!("the robot in {dir} does not answer: {why}"),
+            },
+            (None, None) => {
+                format!("no robot runs in {dir}; it is waited for: gangwerk run SCENE --dir {dir} starts one")
+            }
+            // The clock of all others is started last: what it is part of is complete.
+            (Some(_), None) if ipc::owner(&self.options.dir, Process::Lowlevel).is_none() => {
+                format!("the robot in {dir} is starting")
+            }
+            (Some(supervisor), None) => match self.open() {
+                Ok(observer) => {
+                    self.robot = Some(Robot { supervisor, observer, link: None });
+                    return self.search();
+                }
+                Err(why) => format!("the robot in {dir} cannot be observed: {why}"),
+            },
+        };
+        if self.said != line {
+            (self.say)(&line);
+            self.said = line;
+        }
+    }
+
+    fn open(&self) -> Result<Observer, String> {
+        let run = Run::load(&self.options.dir).map_err(|e| e.to_string())?;
+        let setup = Setup::load(&run.config, &run.scene).map_err(|e| e.to_string())?;
+        Observer::open(&self.options.dir, &setup).map_err(|e| e.to_string())
+    }
+
+    /// The connection to the broker is over; with it went the lease.
+    fn lose(&mut self, why: &str) {
+        if let Some(robot) = &mut self.robot {
+            robot.link = None;
+        }
+        (self.say)(why);
+        self.said.clear();
+    }
+
+    /// Refusals since the last time, by cause.
+    fn tell_refusals(&mut self) {
+        let mut line = "refused:".to_owned();
+        let news = Cause::ALL.iter().zip(self.gate.refused).zip(self.told);
+        for ((cause, now), before) in news.filter(|((_, now), before)| now > before) {
+            let _ = write!(line, " {} {}", now - before, cause.name());
+        }
+        (self.say)(&line);
+        self.told = self.gate.refused;
+    }
+
+    /// Sends a trigger. One that is lost on the way is as one of a camera: the next one comes.
+    fn trigger(&mut self) {
+        self.sequence += 1;
+        let stamp = now();
+        let link = self.robot.as_ref().and_then(|robot| robot.link.as_ref());
+        let lease = if link.is_some_and(Link::has_lease) { flag::LEASE } else { 0 };
+        let held = if link.is_some_and(Link::is_held) { flag::HELD } else { 0 };
+        let sight = self.robot.as_mut().and_then(|robot| robot.observer.look());
+        let robot = if sight.is_some() { flag::ROBOT } else { 0 };
+        let trigger = Trigger {
+            sender: std::process::id().into(),
+            sequence: self.sequence,
+            stamp,
+            cycle: sight.map_or(0, |s| s.cycle),
+            flags: robot | lease | held,
+            gait: sight.map_or(0, |s| s.gait),
+            odometry: sight.map_or(Odometry::UNKNOWN, |s| s.odometry),
+            frames: sight.map_or(Frames::UNKNOWN, |s| s.frames),
+            accepted: self.gate.accepted,
+            refused: self.gate.refused,
+        };
+        self.gate.triggered(stamp);
+        let _ = self.socket.send_to(&trigger.encode(), self.options.to);
+    }
+}

@@ -1,0 +1,206 @@
+//! Pose and odometry of a running robot, from its topics in shared memory, where nobody waits for who looks.
+
+use std::error::Error;
+use std::path::Path;
+
+use config::Setup;
+use ipc::{Reader, Space};
+use messages::topics::{CONTROLLER_STATE, PLAN, SENSORS};
+use messages::{ControllerState, Plan, Process, Sensors};
+use multibody::{Data, Frame, Model};
+use nalgebra::UnitQuaternion;
+use recording::{RecordedPose, odometry};
+
+use crate::trigger::{Frames, Odometry};
+
+/// Bound of the error of the place: share of the way.
+const PLACE_SHARE: f64 = 0.05;
+/// Bound of the error of the heading: of a walk at all \[rad\], per metre of its way \[rad/m\], and share of its turn.
+const HEADING_ERROR: f64 = 0.03;
+const HEADING_PER_WAY: f64 = 0.02;
+const HEADING_SHARE: f64 = 0.1;
+
+/// What is seen of a robot at one instant.
+#[derive(Clone, Copy)]
+pub(crate) struct Sight {
+    pub(crate) cycle: u64,
+    pub(crate) gait: u64,
+    pub(crate) odometry: Odometry,
+    pub(crate) frames: Frames,
+}
+
+/// Robot that is looked at.
+pub(crate) struct Observer {
+    sensors: Reader<Sensors>,
+    state: Reader<ControllerState>,
+    plans: Reader<Plan>,
+    kinematics: Kinematics,
+    way: Way,
+    /// \[m\] Height of the newest plan's frame.
+    height: f64,
+    // Dropped last, after its readers.
+    _space: Space,
+}
+
+impl Observer {
+    /// Of the robot in this run directory.
+    ///
+    /// # Errors
+    /// It does not run, or its files do not fit together.
+    pub(crate) fn open(dir: &Path, setup: &Setup) -> Result<Self, Box<dyn Error>> {
+        let space = Space::open(dir, Process::Observer)?;
+        Ok(Self {
+            sensors: space.reader(&SENSORS)?,
+            state: space.reader(&CONTROLLER_STATE)?,
+            plans: space.reader(&PLAN)?,
+            kinematics: Kinematics::new(setup)?,
+            way: Way::default(),
+            height: 0.0,
+            _space: space,
+        })
+    }
+
+    /// The newest of it; none before stabilizer and sensors have said something.
+    pub(crate) fn look(&mut self) -> Option<Sight> {
+        while let Some(plan) = self.plans.follow() {
+            // It is followed some cycles later: for so long the height is ahead of the place.
+            self.height = plan.height;
+        }
+        let state = *self.state.latest()?;
+        let sensors = self.sensors.latest()?;
+        let planning = odometry::planning_frame(&state, self.height);
+        Some(Sight {
+            cycle: state.header.tick,
+            gait: state.gait,
+            odometry: self.way.to(state.origin, planning.position[2]),
+            frames: self.kinematics.frames(sensors, &state, &planning),
+        })
+    }
+}
+
+/// Way of the planning frame so far, from the beginning of the walk or of the looking.
+#[derive(Default)]
+struct Way {
+    /// \[m, m, rad\] @I_0 Its newest place.
+    last: [f64; 3],
+    /// \[m\]
+    length: f64,
+    /// \[rad\] Both ways are counted.
+    turn: f64,
+}
+
+impl Way {
+    /// The planning frame is here now, at this height \[m\].
+    fn to(&mut self, [x, y, heading]: [f64; 3], height: f64) -> Odometry {
+        let [x0, y0, heading0] = self.last;
+        self.length += (x - x0).hypot(y - y0);
+        self.turn += (heading - heading0).abs();
+        self.last = [x, y, heading];
+        let walked = self.length > 0.0 || self.turn > 0.0;
+        let heading_error = HEADING_PER_WAY * self.length + HEADING_SHARE * self.turn;
+        Odometry {
+            place: [x, y, height, heading],
+            place_error: PLACE_SHARE * self.length,
+            heading_error: heading_error + if walked { HEADING_ERROR } else { 0.0 },
+            way: self.length,
+        }
+    }
+}
+
+/// Kinematics of the robot.
+struct Kinematics {
+    model: Model,
+    data: Data,
+    q: Vec<f64>,
+    soles: [Frame; 2],
+    /// None: it has no camera head.
+    camera: Option<Frame>,
+}
+
+impl Kinematics {
+    fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
+        let robot = &setup.robot;
+        let order: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+        let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?;
+        let [right, left] = [0, 1].map(|i| model.frame(&robot.feet[i].link, robot.feet[i].sole));
+        let camera = robot.head.as_ref().map(|head| model.frame(&head.link, head.camera)).transpose()?;
+        let (data, q) = (Data::new(&model), model.neutral());
+        Ok(Self { data, q, soles: [right?, left?], camera, model })
+    }
+
+    /// Frames in the planning frame: measured joints and inclination, on the foot that the stabilizer knows the place of.
+    fn frames(
+        &mut self,
+        sensors: &Sensors,
+        state: &ControllerState,
+        odom_from_planning: &RecordedPose,
+    ) -> Frames {
+        // The torso is put at the origin.
+        let joints = self.q.len() - 7;
+        self.q[7..].copy_from_slice(&sensors.joint_angle[..joints]);
+        self.model.forward_kinematics(&mut self.data, &self.q);
+        let pose = |frame: &Frame| {
+            let pose = self.model.frame_pose(&self.data, frame);
+            let turn = UnitQuaternion::from_rotation_matrix(&pose.rotation);
+            RecordedPose { position: pose.translation.vector.into(), orientation: turn.coords.into() }
+        };
+        let soles = self.soles.each_ref().map(pose);
+        let height = odom_from_planning.position[2];
+        let Some(torso) = odometry::torso(sensors, state, height, &soles[0]) else { return Frames::UNKNOWN };
+        let torso = torso.seen_from(odom_from_planning);
+        Frames {
+            camera: self.camera.as_ref().map_or(Frames::UNKNOWN.camera, |frame| torso.then(&pose(frame))),
+            torso,
+            soles: soles.map(|sole| torso.then(&sole)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_of_odometry_grows_with_the_way_and_never_shrinks() {
+        let mut way = Way::default();
+        let still = way.to([0.0; 3], 0.0);
+        assert_eq!((still.place_error, still.heading_error, still.way), (0.0, 0.0, 0.0));
+        let mut before = still;
+        // Out and back: the place is the first one, the error is that of the way.
+        for x in [1.0, 2.0, 1.0, 0.0] {
+            let now = way.to([x, 0.0, 0.0], 0.0);
+            assert!(now.place_error > before.place_error && now.heading_error > before.heading_error);
+            before = now;
+        }
+        assert!((before.way - 4.0).abs() < 1e-12 && (before.place_error - 0.2).abs() < 1e-12);
+        let turned = way.to([0.0, 0.0, -0.5], 0.0);
+        assert!(turned.heading_error > before.heading_error && turned.place_error == before.place_error);
+    }
+
+    /// Standing, soles are level under the torso, and the cameras over it look ahead.
+    #[test]
+    fn frames_of_a_standing_robot_are_where_she_has_them() {
+        let setup = Setup::load(&config::root(None), "walk_1kmh").unwrap();
+        let mut kinematics = Kinematics::new(&setup).unwrap();
+        let mut sensors = Sensors::default();
+        sensors.imu.orientation = [0.0, 0.0, 0.0, 1.0];
+        let pose = &setup.robot.poses[&setup.scene.start_pose];
+        sensors.joint_angle[..pose.len()].copy_from_slice(pose);
+        let state = ControllerState {
+            origin: [3.0, -2.0, 0.4],
+            feet: [[0.1, -0.12, 0.0, 0.0], [0.1, 0.12, 0.0, 0.0]],
+            ..ControllerState::default()
+        };
+        let planning = odometry::planning_frame(&state, 0.0);
+        let Frames { camera, torso, soles: [right, left] } = kinematics.frames(&sensors, &state, &planning);
+        let near = |pose: &RecordedPose, wanted: [f64; 3], by: f64| {
+            let off = pose.position.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < by, "{pose:?} is {off} m away from {wanted:?}");
+        };
+        near(&right, [0.1, -0.12, 0.0], 1e-9);
+        assert!((left.position[1] - 0.12).abs() < 0.05 && left.position[2].abs() < 1e-3, "{left:?}");
+        assert!(torso.position[2] > 0.7 && torso.heading().abs() < 1e-9, "{torso:?}");
+        let ahead = camera.place([1.0, 0.0, 0.0])[0] - camera.position[0];
+        assert!(camera.position[2] > torso.position[2] && ahead > 0.5, "{camera:?}");
+    }
+}
