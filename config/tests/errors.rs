@@ -226,7 +226,8 @@ fn scene_and_its_commands() {
          line 19: command[1].forwards: unknown key; the nearest known one is `forward`\n  \
          line 34: command[4].topic: `walk/halt` is not known; it takes one of `system/emergency_stop`, \
          `system/reset`, `system/enable`, `system/end`, `walk/stand`, `walk/start`, `walk/stop`, `walk/step`, \
-         `walk/velocity`, `walk/distance`, `walk/platform`, `joint/home`, `joint/zero_force`, `sim/lower`, `head/fixate`, `head/joints`, `head/rest`"
+         `walk/velocity`, `walk/distance`, `walk/platform`, `joint/home`, `joint/zero_force`, `sim/lower`, `head/fixate`, `head/joints`, `head/rest`, \
+         `vision/box`, `vision/gone`"
     );
 }
 
