@@ -78,11 +78,11 @@ impl Observer {
     }
 }
 
-/// Way of the planning frame so far, from the beginning of the walk or of the looking.
+/// Way of the robot so far. The planning frame goes from foot to foot: between its last two places is her middle.
 #[derive(Default)]
 struct Way {
-    /// \[m, m, rad\] @I_0 Its newest place.
-    last: [f64; 3],
+    /// \[m, m, rad\] @I_0 The last two places of the planning frame, the newest first; none before the first look.
+    places: Option<[[f64; 3]; 2]>,
     /// \[m\]
     length: f64,
     /// \[rad\] Both ways are counted.
@@ -91,11 +91,18 @@ struct Way {
 
 impl Way {
     /// The planning frame is here now, at this height \[m\].
-    fn to(&mut self, [x, y, heading]: [f64; 3], height: f64) -> Odometry {
-        let [x0, y0, heading0] = self.last;
-        self.length += (x - x0).hypot(y - y0);
-        self.turn += (heading - heading0).abs();
-        self.last = [x, y, heading];
+    fn to(&mut self, place: [f64; 3], height: f64) -> Odometry {
+        let [x, y, heading] = place;
+        // Who looks later than she began to walk knows the straight line, at least.
+        let [last, before] = *self.places.get_or_insert_with(|| {
+            (self.length, self.turn) = (x.hypot(y), heading.abs());
+            [place; 2]
+        });
+        if place != last {
+            self.length += 0.5 * (x - before[0]).hypot(y - before[1]);
+            self.turn += (heading - last[2]).abs();
+            self.places = Some([place, last]);
+        }
         let walked = self.length > 0.0 || self.turn > 0.0;
         let heading_error = HEADING_PER_WAY * self.length + HEADING_SHARE * self.turn;
         Odometry {
@@ -165,16 +172,21 @@ mod tests {
         let mut way = Way::default();
         let still = way.to([0.0; 3], 0.0);
         assert_eq!((still.place_error, still.heading_error, still.way), (0.0, 0.0, 0.0));
+        // Out and back by steps of 0.3 m from foot to foot: the place is the first one, the error is that of the way.
         let mut before = still;
-        // Out and back: the place is the first one, the error is that of the way.
-        for x in [1.0, 2.0, 1.0, 0.0] {
-            let now = way.to([x, 0.0, 0.0], 0.0);
-            assert!(now.place_error > before.place_error && now.heading_error > before.heading_error);
+        for k in (0..=10).chain((0..10).rev()) {
+            let foot = if k % 2 == 0 { 0.1 } else { -0.1 };
+            let now = way.to([0.3 * f64::from(k), foot, 0.0], 0.0);
+            assert!(now.place_error >= before.place_error && now.heading_error >= before.heading_error);
+            // Looked at again while she stands on it.
+            assert_eq!(way.to([0.3 * f64::from(k), foot, 0.0], 0.0), now);
             before = now;
         }
-        assert!((before.way - 4.0).abs() < 1e-12 && (before.place_error - 0.2).abs() < 1e-12);
-        let turned = way.to([0.0, 0.0, -0.5], 0.0);
-        assert!(turned.heading_error > before.heading_error && turned.place_error == before.place_error);
+        assert!((before.way - 6.0).abs() < 0.5, "{} m", before.way);
+        assert!((before.place_error - 0.05 * before.way).abs() < 1e-12);
+        let turned = way.to([0.0, 0.1, -0.5], 0.0);
+        assert!(turned.heading_error > before.heading_error + 0.04);
+        assert_eq!(Way::default().to([3.0, 4.0, 0.0], 0.0).way, 5.0, "began to look late");
     }
 
     /// Standing, soles are level under the torso, and the cameras over it look ahead.

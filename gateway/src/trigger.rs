@@ -26,7 +26,7 @@ pub struct Odometry {
     pub place_error: f64,
     /// \[rad\] Bound of its error.
     pub heading_error: f64,
-    /// \[m\] Way that the planning frame has gone.
+    /// \[m\] Way that she has gone.
     pub way: f64,
 }
 
