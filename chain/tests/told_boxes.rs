@@ -2,8 +2,8 @@
 
 use chain::Chain;
 use config::{Setup, root};
-use messages::Command;
-use messages::command::BoxCommand;
+use messages::command::{BoxCommand, VelocityCommand};
+use messages::{Command, EventCode};
 
 /// What a walk was: each plan, and how far she came \[m\], without a fall.
 struct Walk {
@@ -72,4 +72,36 @@ fn a_high_box_is_stopped_before() {
     let way = walk(&wall).way;
     let toes = setup.robot.feet[0].support[1];
     assert!(way > 0.5 && way + toes < 1.47 - begin.x, "she stands at {way} m, her toes {toes} m ahead");
+}
+
+/// Boxes at random instants and places, under the foot that is about to land too, told to a robot that walks on.
+#[test]
+fn boxes_at_random_do_not_throw_her() {
+    let mut setup = Setup::load(&root(None), "obstacle").unwrap();
+    setup.scene.objects.clear();
+    let (mut stops, mut seed) = (0, 5u64);
+    let mut random = |low: f64, high: f64| {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        low + (high - low) * (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut chain = Chain::new(&setup).unwrap();
+    for tick in 1..60_000u32 {
+        let cycle = chain.step();
+        let ([x, y, _], fallen) = (cycle.sim_state.position, cycle.sim_state.fallen);
+        assert_eq!(fallen, 0, "at tick {tick}");
+        stops += cycle.events.iter().filter(|e| e.1 == EventCode::ObstacleTooHigh).count();
+        if tick > 4000 && tick % 70 == 0 {
+            chain.command(&Command::Velocity(VelocityCommand { forward: 0.278, left: 0.0, turn: 0.0 }));
+        }
+        if tick > 4000 && random(0.0, 1.0) < 1e-3 {
+            let (id, lifetime) = (random(1.0, 6.0) as u32, random(0.1, 3.0));
+            let base = [x + random(-0.3, 0.9), y + random(-0.4, 0.4), 0.0];
+            let size = [random(0.02, 0.2), random(0.1, 1.0), random(0.01, 0.25)];
+            let seen = BoxCommand { id, base, yaw: random(-3.0, 3.0), size, lifetime };
+            chain.command(&Command::Box(seen));
+        }
+    }
+    assert!(stops > 3 && chain.last().sim_state.position[0] > 2.0, "{stops} stops: nothing was tried");
 }
