@@ -159,7 +159,12 @@ mod tests {
                 NOW,
             );
             match info.name {
-                "system/emergency_stop" | "walk/stop" | "system/end" | "sim/push" => {
+                "system/emergency_stop"
+                | "walk/stop"
+                | "system/end"
+                | "sim/push"
+                | "vision/box"
+                | "vision/gone" => {
                     assert_eq!(admitted, Ok(0), "{}", info.name);
                 }
                 name => assert_eq!(admitted, Err(Denied::LeaseHeld(1)), "{name}"),

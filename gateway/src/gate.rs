@@ -48,12 +48,14 @@ pub struct Gate {
     pub refused: [u64; Cause::ALL.len()],
 }
 
-impl Gate {
+impl Default for Gate {
     /// Nobody has been heard.
-    pub fn new() -> Self {
+    fn default() -> Self {
         Self { session: None, stamps: VecDeque::new(), saved: (SAVED, 0), accepted: 0, refused: [0; _] }
     }
+}
 
+impl Gate {
     /// A trigger with this stamp goes out.
     pub fn triggered(&mut self, stamp: u64) {
         self.stamps.push_back(stamp);
@@ -118,7 +120,7 @@ mod tests {
     }
 
     fn gate() -> Gate {
-        let mut gate = Gate::new();
+        let mut gate = Gate::default();
         gate.triggered(STAMP);
         gate
     }

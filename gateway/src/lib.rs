@@ -99,7 +99,7 @@ pub fn run(options: &Options, stop: &Stop, say: Say) -> Result<(), String> {
     let mut gateway = Gateway {
         options,
         socket,
-        gate: Gate::new(),
+        gate: Gate::default(),
         robot: None,
         say,
         said: String::new(),

@@ -1,6 +1,7 @@
 //! Readers of bytes from outside, each behind a function that takes any bytes: what libFuzzer calls, and
 //! `tests/seeds.rs` with a few thousand bytes of its own. None panics, hangs or asks for memory that the bytes do not pay.
 
+mod datagram;
 mod files;
 mod frame;
 mod pages;
@@ -20,7 +21,7 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 11] = [
+pub const TARGETS: [Target; 12] = [
     Target { name: "command", read: text::command, seeds: text::command_seeds },
     Target { name: "command_text", read: text::command_text, seeds: text::command_text_seeds },
     Target { name: "frame", read: frame::frame, seeds: frame::seeds },
@@ -28,6 +29,7 @@ pub const TARGETS: [Target; 11] = [
     Target { name: "mcap", read: files::mcap, seeds: files::mcap_seeds },
     Target { name: "dbc", read: text::dbc, seeds: text::dbc_seeds },
     Target { name: "telegram", read: telegram::telegram, seeds: telegram::seeds },
+    Target { name: "datagram", read: datagram::datagram, seeds: datagram::seeds },
     Target { name: "run_file", read: text::run_file, seeds: text::run_file_seeds },
     Target { name: "page", read: pages::page, seeds: pages::page_seeds },
     Target { name: "viewer", read: pages::viewer, seeds: pages::viewer_seeds },
