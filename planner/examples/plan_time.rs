@@ -74,24 +74,23 @@ fn whole_plan(kmh: f64, spacing: f64) {
     );
 }
 
-/// Plans of a walk over low boxes, 0.9 m apart.
+/// Plans of a walk over low boxes, 1.5 m apart, all of them in her way or behind her.
 fn over_boxes(count: u32) -> [f64; 2] {
     let mut r = Robot::new(&robot::gait());
     r.stand();
+    let told = |k: u32| {
+        let (base, size) = ([1.2 + 1.5 * f64::from(k), 0.0, 0.0], [0.06, 1.0, 0.05]);
+        Command::Box(BoxCommand { id: 1 + k, base, yaw: 0.1, size, lifetime: 60.0 })
+    };
     let mut times = Vec::new();
-    while times.len() < 300 {
-        // They go along with her.
-        let told = |k: u32| {
-            let x = r.active.origin[0] + 0.9 * f64::from(k) - 1.0;
-            let size = [0.06, 1.0, 0.05];
-            Command::Box(BoxCommand { id: 1 + k, base: [x, 0.0, 0.0], yaw: 0.1, size, lifetime: 60.0 })
-        };
-        if r.plans.len().is_multiple_of(20) {
-            (0..count).map(told).collect::<Vec<_>>().into_iter().for_each(|told| r.step(&[told]));
+    // Ten minutes, should they leave no way.
+    for cycle in 0..600_000u32 {
+        if cycle % 50_000 < count {
+            r.step(&[told(cycle % 50_000)]);
         }
         let made = r.plans.len();
         r.step(&[Command::Velocity(VelocityCommand { forward: 1.0 / 3.6, left: 0.0, turn: 0.0 })]);
-        if r.plans.len() > made && r.plans.len() > 10 {
+        if r.plans.len() > made && r.plans.len() > 2 && times.len() < 300 {
             times.push(r.took);
         }
     }
