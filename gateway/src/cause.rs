@@ -11,7 +11,7 @@ pub enum Cause {
     NotFinite,
     /// A number out of the range of any use, or not whole where it must be.
     Range,
-    /// Somebody else has the session, or it came from another host.
+    /// Somebody else has the session, or it came from another host or another user of this machine.
     Sender,
     /// It answers a trigger of more than half a second ago, or none.
     Age,

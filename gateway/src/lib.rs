@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `wire` | datagrams as bytes |
 //! | `cause` | why one is refused |
+//! | `owner` | which user of this machine it comes from |
 //! | `gate` | whose, how old, in order, how many |
 //! | `link` | client of the broker: commands out, answers and lease back |
 //! | `observer` | pose and odometry from the topics |
@@ -16,6 +17,7 @@ mod cause;
 pub mod gate;
 mod link;
 mod observer;
+mod owner;
 pub mod trigger;
 pub mod wire;
 
@@ -75,6 +77,8 @@ struct Robot {
 struct Gateway<'a> {
     options: &'a Options,
     socket: UdpSocket,
+    /// Address of the socket.
+    listen: SocketAddr,
     gate: Gate,
     robot: Option<Robot>,
     say: Say,
@@ -99,6 +103,7 @@ pub fn run(options: &Options, stop: &Stop, say: Say) -> Result<(), String> {
     let mut gateway = Gateway {
         options,
         socket,
+        listen,
         gate: Gate::default(),
         robot: None,
         say,
@@ -143,7 +148,7 @@ impl Gateway<'_> {
     }
 
     fn take(&mut self, bytes: &[u8], from: SocketAddr) {
-        if from.ip() != self.options.to.ip() {
+        if from.ip() != self.options.to.ip() || !owner::is_trusted(from, self.listen) {
             return self.gate.count(Cause::Sender);
         }
         if let Ok(command) = self.gate.admit(bytes, from, now()) {

@@ -331,3 +331,42 @@ fn a_trigger_says_where_she_is() {
     assert!((told[2] - walked[2]).abs() < 0.01, "{told:?}, {walked:?} m");
     assert!(seen.numbers.iter().all(|x| x.is_finite()), "{seen:?}");
 }
+
+/// Another user of this machine, who knows all that there is to know.
+#[test]
+fn another_user_of_the_machine_moves_nothing() {
+    use std::os::unix::process::CommandExt;
+    const SEND: &str = "import socket,sys; s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.bind(('127.0.0.1', 0)); \
+        s.sendto(bytes.fromhex(sys.argv[2]), ('127.0.0.1', int(sys.argv[1]))); sys.stdin.read()";
+    let root = std::fs::metadata("/proc/self").is_ok_and(|m| std::os::unix::fs::MetadataExt::uid(&m) == 0);
+    if !root {
+        eprintln!("not run: only root can be somebody else");
+        return;
+    }
+    let _turn = turn();
+    let site = Site::patient(super::EXE);
+    let mut robot = Robot::standing_in(&site, &PACED);
+    let (mut eyes, mut running) = Eyes::and_gateway(&site);
+    for (user, moves) in [(65534, false), (0, true)] {
+        eyes.trigger();
+        let hex: String = eyes.answer(velocity(0.25)).iter().map(|b| format!("{b:02x}")).collect();
+        let mut other = std::process::Command::new("python3")
+            .args(["-c", SEND, &eyes.gateway.port().to_string(), &hex])
+            .stdin(std::process::Stdio::piped())
+            .uid(user)
+            .gid(user)
+            .current_dir("/")
+            .spawn()
+            .expect("python3 is there");
+        let count = |seen: &Seen| [seen.accepted, seen.refused[Cause::Sender as usize]];
+        let before = count(&eyes.seen);
+        while count(&eyes.trigger()) == before {
+            assert!(other.try_wait().unwrap().is_none() && running.is_alive(), "{}", running.out());
+        }
+        let [accepted, refused] = count(&eyes.seen);
+        assert_eq!([accepted - before[0] == 1, refused - before[1] == 1], [moves, !moves], "user {user}");
+        drop(other.stdin.take());
+        other.wait().unwrap();
+    }
+    robot.stands();
+}

@@ -1,0 +1,93 @@
+//! Owner of a socket of this machine, by the kernel's tables of UDP sockets: on the loopback interface everybody can send.
+
+use std::fs;
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+
+/// Tables of IPv4 and IPv6 sockets.
+const TABLES: [&str; 2] = ["/proc/net/udp", "/proc/net/udp6"];
+/// Places of a socket's own address and of its user's number in a line.
+const ADDRESS: usize = 1;
+const USER: usize = 7;
+
+/// True if what came from there is root's, or his whose socket `own` is. Of another machine's address nothing is known: true.
+///
+/// An address is somebody's while his socket is open; of several sockets with one address each has to be trusted.
+pub(crate) fn is_trusted(from: SocketAddr, own: SocketAddr) -> bool {
+    if !from.ip().to_canonical().is_loopback() {
+        return true;
+    }
+    let tables = TABLES.map(|table| fs::read_to_string(table).unwrap_or_default());
+    let users = |at| tables.iter().flat_map(move |table| users_of(table, at)).collect::<Vec<_>>();
+    let (senders, mine) = (users(from), users(own));
+    !senders.is_empty()
+        && senders.iter().all(|user| *user == Some(0) || user.is_some() && mine.contains(user))
+}
+
+/// Users of the sockets of a table that send from `at`; none of a line that is not understood.
+fn users_of(table: &str, at: SocketAddr) -> impl Iterator<Item = Option<u32>> {
+    table.lines().skip(1).filter_map(move |line| {
+        let mut fields = line.split_whitespace();
+        let (ip, port) = fields.nth(ADDRESS)?.rsplit_once(':')?;
+        let user = fields.nth(USER - ADDRESS - 1);
+        let ip = address(ip)?;
+        let sends = ip == at.ip().to_canonical() || ip.is_unspecified();
+        let of_port = u16::from_str_radix(port, 16) == Ok(at.port());
+        (sends && of_port).then(|| user.and_then(|user| user.parse().ok()))
+    })
+}
+
+/// Address of one or four words in this machine's order of bytes, 8 digits each.
+fn address(digits: &str) -> Option<IpAddr> {
+    let word =
+        |at: usize| u32::from_str_radix(digits.get(8 * at..8 * at + 8)?, 16).ok().map(u32::to_ne_bytes);
+    match digits.len() {
+        8 => Some(Ipv4Addr::from(word(0)?).into()),
+        32 => {
+            let mut bytes = [0; 16];
+            for (at, four) in bytes.chunks_exact_mut(4).enumerate() {
+                four.copy_from_slice(&word(at)?);
+            }
+            Some(IpAddr::from(Ipv6Addr::from(bytes)).to_canonical())
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::net::UdpSocket;
+
+    #[cfg(target_endian = "little")]
+    #[test]
+    fn users_are_read_by_the_address_of_the_socket_itself() {
+        let table = "\
+  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode ref pointer drops
+ 2150: 0100007F:B861 00000000:0000 07 00000000:00000000 00:00000000 00000000  1000        0 21487 2 0000000000000000 0
+ 2151: 00000000:B862 0100007F:B861 07 00000000:00000000 00:00000000 00000000     0        0 21488 2 0000000000000000 0
+ 2152: 0100007F:B862 00000000:0000 07 00000000:00000000 00:00000000 00000000   lots       0 21489 2 0000000000000000 0
+ 2153: 0200007F:B861 00000000:0000 07 00000000:00000000 00:00000000 00000000  1001        0 21490 2 0000000000000000 0
+ 2154: 00000000000000000000000001000000:B863 00000000:0000 07 00000000:00000000 00:00000000 00000000  1002 0 21491 2
+ 2155: 0000000000000000FFFF00000100007F:B863 00000000:0000 07 00000000:00000000 00:00000000 00000000  1003 0 21492 2
+";
+        let users = |at: &str| users_of(table, at.parse().unwrap()).collect::<Vec<_>>();
+        assert_eq!(users("127.0.0.1:47201"), [Some(1000)], "somebody else has its port at another address");
+        assert_eq!(users("127.0.0.1:47202"), [Some(0), None]);
+        assert_eq!(users("[::1]:47203"), [Some(1002)]);
+        assert_eq!(users("127.0.0.1:47203"), [Some(1003)]);
+        assert_eq!(users("[::ffff:127.0.0.1]:47203"), [Some(1003)]);
+        assert_eq!(users("127.0.0.1:0"), []);
+    }
+
+    #[test]
+    fn a_socket_is_trusted_while_it_is_open() {
+        for host in ["127.0.0.1", "::1"] {
+            let [from, own] = [0; 2].map(|_| UdpSocket::bind((host, 0)).unwrap());
+            let [at, by] = [&from, &own].map(|socket| socket.local_addr().unwrap());
+            assert!(is_trusted(at, by), "{at}");
+            drop(from);
+            assert!(!is_trusted(at, by), "nobody's");
+            assert!(is_trusted("192.0.2.1:1".parse().unwrap(), by), "another machine's");
+        }
+    }
+}
