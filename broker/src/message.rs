@@ -98,7 +98,7 @@ pub fn describe() -> Vec<String> {
         let (number, lease) = (number.map_or(0, u32::from_le_bytes), u8::from(command.needs_lease()));
         let mut line = format!("{} {} {id} {number} {lease}", info.name, domain as u16);
         for f in info.fields {
-            let kind = if matches!(f.name, "number" | "id") { "I" } else { "d" };
+            let kind = if f.is_whole() { "I" } else { "d" };
             let default = f.default.map_or(String::new(), |d| format!("{d:?}"));
             line += &format!(" {}:{kind}:{}:{:?}:{:?}:{default}", f.name, f.unit, f.range[0], f.range[1]);
         }

@@ -52,12 +52,12 @@ impl Link {
         Ok(Self { client, mine: false, walks: None, held: None, awaited, next_ping: 0 })
     }
 
-    /// Whether velocities move her.
+    /// True: velocities move her.
     pub(crate) const fn has_lease(&self) -> bool {
         self.mine
     }
 
-    /// Whether a velocity of zero has to come first.
+    /// True: a velocity of zero has to come first.
     pub(crate) const fn is_held(&self) -> bool {
         self.held.is_some()
     }

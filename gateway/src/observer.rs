@@ -20,7 +20,7 @@ const HEADING_ERROR: f64 = 0.03;
 const HEADING_PER_WAY: f64 = 0.02;
 const HEADING_SHARE: f64 = 0.1;
 
-/// What is seen of a robot at one instant.
+/// A robot at one instant.
 #[derive(Clone, Copy)]
 pub(crate) struct Sight {
     pub(crate) cycle: u64,

@@ -1,4 +1,4 @@
-//! What a vision system is told with each trigger of its cameras: where the robot is and how it stands (thesis 6.2).
+//! Trigger: pose and odometry of the robot, as a vision system is told with each trigger of its cameras (thesis 6.2).
 
 use recording::RecordedPose;
 
@@ -56,9 +56,9 @@ pub struct Trigger {
     pub flags: u64,
     /// A [`GaitState`](messages::GaitState).
     pub gait: u64,
-    /// Where the planning frame is.
+    /// Place of the planning frame.
     pub odometry: Odometry,
-    /// How the robot stands.
+    /// Poses of the robot.
     pub frames: Frames,
     /// Datagrams accepted so far.
     pub accepted: u64,

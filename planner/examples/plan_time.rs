@@ -26,6 +26,7 @@ fn main() {
     for (kmh, spacing) in cases {
         whole_plan(kmh, spacing);
     }
+    // Looks at triangles grow with what lies near.
     println!("\nplans on a way with boxes that were told (4.3.3)             median   p99");
     for boxes in [0, 1, 32] {
         row(&format!("{boxes} boxes"), over_boxes(boxes));

@@ -24,7 +24,7 @@ fn gait(r: &Robot) -> GaitState {
     if r.time() > r.active.end() { GaitState::Standing } else { GaitState::from(r.active.state) }
 }
 
-/// What the planner answers to a command.
+/// Answer of the planner to a command.
 fn answer(r: &mut Robot, command: Command) -> Result<(), Reason> {
     r.tick += 1;
     r.planner.step(r.tick, CYCLE, Some(&r.state), &[command]).answers[0]

@@ -238,6 +238,11 @@ impl CommandInfo {
 }
 
 impl FieldInfo {
+    /// Numbers of a parameter and of a box are whole.
+    pub fn is_whole(&self) -> bool {
+        matches!(self.name, "number" | "id")
+    }
+
     /// Refuses what is not a number or out of range. NaN lies in no range.
     fn check(&self, command: &str, x: f64) -> Result<(), String> {
         let Self { name, unit, range: [lo, hi], .. } = *self;
@@ -302,6 +307,7 @@ impl Command {
             let names: Vec<_> = COMMANDS.iter().map(|c| c.name).collect();
             unknown("topic", name, &names, "`gangwerk topic list` shows them all")
         })?;
+        // What was written, whatever the order.
         let mut given = [None; MAX_FIELDS];
         for part in text.split([' ', ',', '\t', '\n']).filter(|p| !p.is_empty()) {
             let (index, value) = info.parse_field(part)?;
@@ -312,6 +318,7 @@ impl Command {
         if !info.fields.is_empty() && given.iter().all(Option::is_none) {
             return Err(format!("{name}: give it numbers, for example {}", info.usage()));
         }
+        // What was left out.
         let mut values = [0.0; MAX_FIELDS];
         for (i, f) in info.fields.iter().enumerate() {
             values[i] = given[i].or(f.default).ok_or_else(|| {

@@ -5,11 +5,11 @@ use messages::command::{Domain, Priority, PushCommand, StepCommand, VelocityComm
 use messages::command_text::{COMMANDS, FieldInfo};
 use proptest::prelude::*;
 
-/// The middle of a field's range, whole where it counts something.
+/// The middle of a field's range, whole where it must be.
 fn middle(f: &FieldInfo) -> f64 {
     let [low, high] = f.range;
     let middle = 0.5 * (low + high);
-    if ["id", "number"].contains(&f.name) { middle.floor() } else { middle }
+    if f.is_whole() { middle.floor() } else { middle }
 }
 
 fn refused(name: &str, text: &str) -> String {
