@@ -18,6 +18,7 @@ mod robot_command;
 mod run_command;
 mod sim_command;
 mod study;
+mod sweep_command;
 mod topic_command;
 mod words;
 
@@ -168,6 +169,9 @@ enum GangwerkTask {
         #[command(flatten)]
         form: study::SheetForm,
     },
+    /// Walk scenes again and again with other numbers and seeds: a table of all walks, and maps of what was survived.
+    #[command(after_help = sweep_command::HELP)]
+    Sweep(sweep_command::SweepArguments),
     /// Walk everything the robots are to be able to do, and hold it against what is demanded and what others reached.
     Scorecard {
         /// Only entries whose name contains this, for example: "2 km/h", push.
@@ -354,6 +358,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         }
         GangwerkTask::Study { what, form } => study::run(&config()?, &what, &form),
         GangwerkTask::Tune { what, form } => study::tune(&config()?, &what, &form),
+        GangwerkTask::Sweep(arguments) => sweep_command::main(&config()?, &arguments),
         GangwerkTask::Scorecard { only, quick, seed, json, out } => {
             let config = config()?;
             let order =

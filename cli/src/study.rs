@@ -88,7 +88,7 @@ fn answer(config: &Path, study: &dyn Study, form: &SheetForm) -> Result<ExitCode
     Ok(ExitCode::SUCCESS)
 }
 
-fn print(sheet: &Sheet, form: &SheetForm) {
+pub(super) fn print(sheet: &Sheet, form: &SheetForm) {
     let text = match form {
         SheetForm { json: true, .. } => sheet.json().to_string(),
         SheetForm { markdown: true, .. } => sheet.markdown(),

@@ -1,9 +1,9 @@
 //! Numbers in the text of a configuration file: read and replaced by their keys, with comments and order as they were.
 //!
 //! A key is the path to the number, as in `model.com_height`; the components of a list are counted from 0, as in
-//! `step.by_speed.3.1`.
+//! `step.by_speed.3.1`, and tables in a list as well, as in `push.0.force.1`.
 
-use toml_edit::{DocumentMut, Item, Value};
+use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 /// The number at `key`.
 ///
@@ -48,16 +48,20 @@ fn parsed(text: &str) -> Result<DocumentMut, String> {
 
 fn find<'d>(document: &'d mut DocumentMut, key: &str) -> Result<&'d mut Value, String> {
     let mut keys = key.split('.');
-    let mut item: &mut Item = document.as_item_mut();
-    // Tables down to a value ...
+    let mut table: &mut dyn TableLike = document.as_table_mut();
+    // Tables, and tables in lists, down to a value ...
     let mut value = loop {
-        item = match item {
-            Item::Value(value) => break value,
-            Item::Table(table) => {
-                let next = keys.next().ok_or_else(|| format!("{key}: is a table; name one of its keys"))?;
-                table.get_mut(next).ok_or_else(|| format!("{key}: there is no `{next}`"))?
+        let next = keys.next().ok_or_else(|| format!("{key}: is a table; name one of its keys"))?;
+        table = match table.get_mut(next) {
+            Some(Item::Value(Value::InlineTable(table))) => table,
+            Some(Item::Value(value)) => break value,
+            Some(Item::Table(table)) => table,
+            Some(Item::ArrayOfTables(all)) => {
+                let (count, next) = (all.len(), keys.next().unwrap_or_default());
+                let place = next.parse().ok();
+                place.and_then(|k| all.get_mut(k)).ok_or_else(|| no_component(key, next, count))?
             }
-            _ => return Err(format!("{key}: there is no such key")),
+            Some(Item::None) | None => return Err(format!("{key}: there is no `{next}`")),
         };
     };
     // ... and components within it.
@@ -66,9 +70,13 @@ fn find<'d>(document: &'d mut DocumentMut, key: &str) -> Result<&'d mut Value, S
         let place = next.parse::<usize>().ok();
         value = place
             .and_then(|k| value.as_array_mut()?.get_mut(k))
-            .ok_or_else(|| format!("{key}: `{next}` is no component; there are {count}, counted from 0"))?;
+            .ok_or_else(|| no_component(key, next, count))?;
     }
     Ok(value)
+}
+
+fn no_component(key: &str, next: &str, count: usize) -> String {
+    format!("{key}: `{next}` is no component; there are {count}, counted from 0")
 }
 
 #[cfg(test)]
@@ -87,6 +95,17 @@ mod tests {
             assert_eq!(number_at(&text, key), Ok(number));
         }
         assert_eq!(with_numbers(TEXT, []).unwrap(), TEXT);
+    }
+
+    #[test]
+    fn tables_in_lists_and_in_braces_have_numbers_too() {
+        let text = "[[push]]\ntime = 1.0\n[[push]]\ntime = 2.0 # [s]\nat = { x = 3 }\n";
+        assert_eq!(number_at(text, "push.1.time"), Ok(2.0));
+        let edited = with_numbers(text, [("push.1.time", 2.5), ("push.1.at.x", 4.0)]).unwrap();
+        assert_eq!(edited, text.replace("2.0", "2.5").replace("3", "4"));
+        let why = "push.2.time: `2` is no component; there are 2, counted from 0";
+        assert_eq!(number_at(text, "push.2.time").unwrap_err(), why);
+        assert_eq!(number_at(text, "push.0").unwrap_err(), "push.0: is a table; name one of its keys");
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use crate::edit;
 use crate::error::ConfigError;
 
 /// Directory under which the set inside the executable is read, as if it lay on disk.
@@ -28,12 +29,13 @@ pub(crate) fn embedded() -> &'static [Embedded] {
 /// A file as it was read.
 pub(crate) type Read = (PathBuf, Vec<u8>);
 
-/// FNV-1a, 64 bits, over the bytes of all files that went into a configuration, in the order they were read; and the files.
-pub(crate) struct Hash(pub(crate) u64, pub(crate) Vec<Read>);
+/// FNV-1a, 64 bits, over the bytes of all files that went into a configuration, in the order they were read; the files; and what
+/// is read instead of those that were edited.
+pub(crate) struct Hash(pub(crate) u64, pub(crate) Vec<Read>, Vec<Read>);
 
 impl Default for Hash {
     fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325, Vec::new())
+        Self(0xcbf2_9ce4_8422_2325, Vec::new(), Vec::new())
     }
 }
 
@@ -43,6 +45,17 @@ impl Hash {
         let mut hash = Self::default();
         files.for_each(|bytes| hash.add(bytes));
         hash.0
+    }
+
+    /// The file has other numbers at these keys, when it is read.
+    pub(crate) fn edit(&mut self, path: &Path, numbers: &[(String, f64)]) -> Result<(), ConfigError> {
+        if !numbers.is_empty() {
+            let text = text(path, &mut Self::default())?;
+            let numbers = numbers.iter().map(|(key, number)| (key.as_str(), *number));
+            let edited = edit::with_numbers(&text, numbers).map_err(|e| ConfigError::of_file(path, e))?;
+            self.2.push((path.into(), edited.into_bytes()));
+        }
+        Ok(())
     }
 
     fn read(&mut self, path: &Path, bytes: &[u8]) {
@@ -63,9 +76,12 @@ pub(crate) fn text(path: &Path, hash: &mut Hash) -> Result<String, ConfigError> 
 
 /// The bytes of a file that another part makes sense of; they are added to the hash.
 pub(crate) fn include(path: &Path, hash: &mut Hash) -> Result<Vec<u8>, ConfigError> {
-    let bytes = bytes(path).map_err(|e| unreadable(path, &e))?;
+    let bytes = match hash.2.iter().find(|(edited, _)| edited == path) {
+        Some((_, bytes)) => bytes.clone(),
+        None => bytes(path).map_err(|e| unreadable(path, &e))?.into_owned(),
+    };
     hash.read(path, &bytes);
-    Ok(bytes.into_owned())
+    Ok(bytes)
 }
 
 /// The bytes of a file on disk or of the set inside the executable.

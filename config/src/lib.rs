@@ -4,11 +4,12 @@
 //! - [`gait::Gait`]: `gaits/NAME.toml`: how the robot walks and how it is stabilized.
 //! - [`scene::Scene`]: `scenes/NAME.toml`: what is simulated.
 //! - [`joystick::Joystick`]: `joystick.toml`: what the sticks and buttons of a gamepad do.
+//! - [`sweep::Sweep`]: a file of your own: which numbers of a scene and its gait are varied, and how.
 //! - [`system::System`]: `system.toml`: processes, cores, priorities, deadlines, limits of the run-time system.
 //!
 //! [`registry`] lists the parameters of all processes; those of [`parameters`] may be changed while the robot runs.
 //!
-//! [`Setup`] reads all four for a scene, checks what they say about each other, and hashes them.
+//! [`Setup`] reads scene, robot, gait and system for a scene, checks what they say about each other, and hashes them.
 //!
 //! [`keys`] lists the keys of all files, for the reference.
 //!
@@ -55,6 +56,7 @@ mod section;
 pub mod sensors;
 mod setup;
 mod snapshot;
+pub mod sweep;
 pub mod system;
 pub mod tables;
 pub mod terrain;
@@ -75,8 +77,9 @@ pub use robot::Robot;
 pub use scene::Scene;
 pub use search::{ConfigDirectory, find, root};
 pub use sensors::SensorErrors;
-pub use setup::Setup;
+pub use setup::{Setup, SetupNumbers};
 pub use snapshot::snapshot;
+pub use sweep::Sweep;
 pub use system::System;
 pub use tables::TableDrives;
 pub use timeline::Timeline;

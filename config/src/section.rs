@@ -200,6 +200,15 @@ impl<'a, 't> Section<'a, 't> {
         }
     }
 
+    /// Numbers in `range`, at least one.
+    #[track_caller]
+    pub(crate) fn list(&self, key: &str, unit: &str, range: RangeInclusive<f64>) -> Vec<f64> {
+        let name = self.path(key);
+        let items = self.items(key, &format!("a list of numbers, each {}", number_in(unit, &range)));
+        let number = |(i, item)| self.number_of(&format!("{name}[{i}]"), item, unit, &range);
+        items.iter().enumerate().map(number).collect()
+    }
+
     /// Two numbers in `range`, ascending.
     #[track_caller]
     pub(crate) fn interval(&self, key: &str, unit: &str, range: RangeInclusive<f64>) -> [f64; 2] {

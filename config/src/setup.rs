@@ -29,12 +29,30 @@ pub struct Setup {
     pub files: Arc<[(String, Vec<u8>)]>,
 }
 
+/// Numbers by their keys ([`crate::edit`]) that take the place of those in a scene's file and its gait's.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SetupNumbers {
+    /// Those of the scene.
+    pub scene: Vec<(String, f64)>,
+    /// Those of the gait.
+    pub gait: Vec<(String, f64)>,
+}
+
 impl Setup {
     /// Reads the scene of that name in the configuration directory `root`, or of that path, and all it names; see
     /// [`crate::find`].
     pub fn load(root: &Path, scene: &str) -> Result<Self, ConfigError> {
+        Self::load_with(root, scene, &SetupNumbers::default())
+    }
+
+    /// The same with other numbers in its files; each of them has to stand there already.
+    ///
+    /// # Errors
+    /// A file cannot be read, has no such number, or is wrong with it.
+    pub fn load_with(root: &Path, scene: &str, numbers: &SetupNumbers) -> Result<Self, ConfigError> {
         let mut hash = Hash::default();
         let path = scenes::locate(root, scene)?;
+        hash.edit(&path, &numbers.scene)?;
         let scene = Scene::load_hashed(&path, root, &mut hash)?;
         let mut robot = Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut hash)?;
         if let Some(control) = scene.joint_control {
@@ -43,8 +61,9 @@ impl Setup {
         if scene.plays_tables {
             robot.play_tables().map_err(|text| ConfigError::of_file(&path, format!("points: {text}")))?;
         }
-        let gait =
-            Gait::load_hashed(&root.join("gaits").join(&scene.gait).with_extension("toml"), &mut hash)?;
+        let gait = root.join("gaits").join(&scene.gait).with_extension("toml");
+        hash.edit(&gait, &numbers.gait)?;
+        let gait = Gait::load_hashed(&gait, &mut hash)?;
         let system = System::load_hashed(&root.join("system.toml"), &mut hash)?;
         let name = |file: &Path| match file.strip_prefix(root) {
             Err(_) if file == path => format!("scenes/{}.toml", scene.name),

@@ -1,7 +1,7 @@
 //! Speed against accuracy, and where methods fail: `gangwerk study ...`.
 //!
-//! The table of studies is [`SimulatedStudy`]; beside it stand the [`scorecard`], which walks everything that is to walk, and
-//! [`stability::log`], which judges a log.
+//! The table of studies is [`SimulatedStudy`]; beside it stand the [`scorecard`], which walks everything that is to walk,
+//! [`stability::log`], which judges a log, and [`sweep`]s, whose questions are in files of their own.
 //!
 //! They work on [`chain`], a whole robot in one process; [`second`] replays a part of it. A study is a struct of its arguments
 //! that implements [`Study`], and a row in [`SimulatedStudy`]; what it finds is a [`Sheet`].
@@ -33,6 +33,7 @@ pub mod simulation_speed;
 pub mod speed;
 pub mod stability;
 pub mod stalls;
+pub mod sweep;
 pub mod tables;
 pub mod tune;
 mod undisturbed;

@@ -1,0 +1,268 @@
+//! Sweeps, `gangwerk sweep FILE`: numbers of scenes and gaits × seeds × scenes, each combination a walk and a row of a table.
+//!
+//! | file | what |
+//! |---|---|
+//! | `config/src/sweep.rs` | the sweep's file |
+//! | `case` | one walk: its numbers, and how it ends |
+//! | `columns` | what a row holds |
+//! | `rows` | rows as they come in, on disk; who was killed goes on from there |
+//! | `table` | all of them, in order, as Parquet |
+//! | `map` | survival and cost over two of the numbers |
+//!
+//! Walks come from all cores of this machine, or as lines from others (`python/gangwerk/sweep.py`), whose [`piece`]s these are.
+
+mod case;
+mod columns;
+mod map;
+mod rows;
+mod table;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hasher};
+use std::io::{BufRead, Write};
+use std::ops::Range;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::time::Instant;
+
+use config::Sweep;
+use config::sweep::SweptValues;
+use serde::Serialize;
+
+use crate::sheet::{Column, fixed, plain};
+use crate::{Error, Given, Sheet};
+use case::Case;
+use columns::Cell;
+use rows::Rows;
+
+/// Rows that may wait to be written, before walks do.
+const WAITING: usize = 64;
+
+const COLUMNS: &[Column] = &[
+    plain("/scene", "scene"),
+    plain("/survived", "survived"),
+    plain("/walks", "of"),
+    fixed("/rate", "rate", 3),
+    plain("/how", "others"),
+];
+
+/// A sweep that can be walked: its file is right, and so are the files that it names.
+pub struct SweepOrder<'a> {
+    sweep: Sweep,
+    config: &'a Path,
+    identity: String,
+}
+
+/// Walks of a scene.
+#[derive(Serialize)]
+struct Row<'a> {
+    scene: &'a str,
+    survived: u64,
+    walks: u64,
+    /// \[1\]
+    rate: f64,
+    /// How many of the others ended in each way.
+    how: BTreeMap<String, u64>,
+}
+
+impl<'a> SweepOrder<'a> {
+    /// Reads a sweep's file, and tries every value of every number once; `program` says which program this is.
+    ///
+    /// # Errors
+    /// A file, key, value or name is wrong.
+    pub fn load(config: &'a Path, file: &Path, program: &str) -> Result<Self, Error> {
+        let sweep = Sweep::load(file)?;
+        columns::check(&sweep)?;
+        let mut files = DefaultHasher::new();
+        for scene in &sweep.scenes {
+            let first = Case { scene, ..Case::of(&sweep, 0) };
+            let setup = first.setup(&sweep, config).map_err(|e| format!("{}: {e}", file.display()))?;
+            files.write_u64(setup.hash);
+            for (k, number) in sweep.numbers.iter().enumerate() {
+                let ends = match &number.values {
+                    SweptValues::Each(values) => values.as_slice(),
+                    SweptValues::Drawn(range) => range,
+                };
+                for value in ends {
+                    let mut case = first.clone();
+                    case.values[k] = *value;
+                    let problem = |e| format!("{}: {} = {value}: {e}", file.display(), number.key);
+                    case.setup(&sweep, config).map_err(problem)?;
+                }
+            }
+        }
+        let identity = format!("{program}, sweep {:016x}, configuration {:016x}", sweep.hash, files.finish());
+        Ok(Self { sweep, config, identity })
+    }
+
+    /// Program, sweep and configuration: walks of the same identity are the same, bit for bit.
+    pub fn identity(&self) -> &str {
+        &self.identity
+    }
+
+    /// How many walks the sweep asks for.
+    pub fn walks(&self) -> u64 {
+        // Loading has multiplied them.
+        self.sweep.combinations().unwrap_or(0) * self.sweep.seeds
+    }
+
+    fn line(&self, walk: u64) -> Result<String, String> {
+        let case = Case::of(&self.sweep, walk);
+        let row = case.walk(&self.sweep, self.config).map_err(|e| format!("walk {walk}: {e}"))?;
+        Ok(columns::line(&row))
+    }
+}
+
+/// Walks some of a sweep on one core, and writes each row as soon as it is there.
+///
+/// # Errors
+/// The identity is not the one that is `expected`, there are no such walks, or nobody reads.
+pub fn piece(
+    order: &SweepOrder<'_>,
+    walks: Range<u64>,
+    expected: &str,
+    to: &mut dyn Write,
+) -> Result<(), Error> {
+    if order.identity() != expected {
+        let is = order.identity();
+        return Err(format!(
+            "this is `{is}`, but the sweep was begun by `{expected}`: install the same program and files here"
+        )
+        .into());
+    }
+    if walks.start >= walks.end || walks.end > order.walks() {
+        let (from, to, all) = (walks.start, walks.end, order.walks());
+        return Err(format!("walks {from} to {to}: the sweep has {all}").into());
+    }
+    for walk in walks {
+        writeln!(to, "{}", order.line(walk)?)?;
+        to.flush()?;
+    }
+    Ok(())
+}
+
+/// Carries out what is left of a sweep on this machine, on so many cores, and makes table and maps.
+///
+/// # Errors
+/// The directory `out` belongs to another sweep, or cannot be written; a robot cannot be built.
+pub fn run(order: &SweepOrder<'_>, out: &Path, cores: usize, given: &Given<'_>) -> Result<Sheet, Error> {
+    let mut rows = open(order, out)?;
+    let left: Vec<u64> = rows.left().collect();
+    let (next, stop, begun) = (AtomicUsize::new(0), AtomicBool::new(false), Instant::now());
+    let (all, before) = (order.walks() as usize, rows.found.len());
+    std::thread::scope(|scope| -> Result<(), String> {
+        let (to, from) = mpsc::sync_channel(WAITING);
+        for _ in 0..cores {
+            let (to, next, stop, left) = (to.clone(), &next, &stop, &left);
+            scope.spawn(move || {
+                while !stop.load(Ordering::Relaxed) {
+                    let Some(walk) = left.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
+                    if to.send(order.line(*walk)).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(to);
+        for line in from {
+            // Whoever still walks finishes that one walk.
+            let added = line.and_then(|line| rows.add(&line));
+            if added.is_err() {
+                stop.store(true, Ordering::Relaxed);
+            }
+            added?;
+            (given.progress)(rows.found.len(), all, "walks");
+        }
+        Ok(())
+    })?;
+    let mut sheet = finish(order, out, &rows)?;
+    let walked = rows.found.len() - before;
+    if walked > 0 {
+        let minutes = begun.elapsed().as_secs_f64() / 60.0;
+        let rate = walked as f64 / (minutes * cores as f64);
+        sheet.fact("walks_per_core_minute", rate);
+        sheet.line(format!(
+            "{walked} walks in {minutes:.1} min on {cores} cores: {rate:.1} per core and minute"
+        ));
+    }
+    Ok(sheet)
+}
+
+/// Makes table and maps from rows that others walk: first tells them, in one line of JSON, the sweep's identity and which walks are
+/// left, and then reads their rows.
+///
+/// # Errors
+/// As [`run`]; or rows are missing when nobody writes any more.
+pub fn collect(
+    order: &SweepOrder<'_>,
+    out: &Path,
+    (from, to): (&mut dyn BufRead, &mut dyn Write),
+    given: &Given<'_>,
+) -> Result<Sheet, Error> {
+    let mut rows = open(order, out)?;
+    let left: Vec<u64> = rows.left().collect();
+    let told = serde_json::json!({ "identity": order.identity(), "walks": order.walks(), "left": left });
+    writeln!(to, "{told}")?;
+    to.flush()?;
+    for line in from.lines() {
+        rows.add(&line?)?;
+        (given.progress)(rows.found.len(), order.walks() as usize, "walks");
+    }
+    finish(order, out, &rows)
+}
+
+fn open(order: &SweepOrder<'_>, out: &Path) -> Result<Rows, String> {
+    Rows::open(out, order.identity(), columns::columns(&order.sweep), order.walks())
+}
+
+/// Table, maps, and a sheet of them.
+fn finish(order: &SweepOrder<'_>, out: &Path, rows: &Rows) -> Result<Sheet, Error> {
+    let missing = rows.left().count();
+    if missing > 0 {
+        let (all, out) = (order.walks(), out.display());
+        return Err(format!(
+            "{missing} of {all} walks are missing; start the sweep again with --out {out}: it goes on"
+        )
+        .into());
+    }
+    let (sweep, columns, found) = (&order.sweep, columns::columns(&order.sweep), rows.found.values());
+    let path = out.join("table.parquet");
+    table::write(&path, &columns, found.clone())?;
+    let mut sheet = Sheet::titled(format!("{}: {} walks", sweep.about, order.walks()));
+    let place = |name: &str| columns.iter().position(|(known, _)| known == name);
+    let (survived, ended) = (place("survived").unwrap_or(0), place("ended_by").unwrap_or(0));
+    let of_scene = |scene: &'_ String| {
+        let mine = found.clone().filter(|row| row[1] == Cell::Text(scene.clone()));
+        let mut how = BTreeMap::new();
+        let (mut walks, mut good) = (0, 0);
+        for row in mine {
+            walks += 1;
+            match (&row[survived], &row[ended]) {
+                (Cell::YesNo(true), _) => good += 1,
+                (_, Cell::Text(end)) => {
+                    *how.entry(end.split(": ").next().unwrap_or(end).into()).or_default() += 1
+                }
+                _ => {}
+            }
+        }
+        (walks, good, how)
+    };
+    let table: Vec<Row<'_>> = sweep
+        .scenes
+        .iter()
+        .map(|scene| {
+            let (walks, survived, how) = of_scene(scene);
+            Row { scene, survived, walks, rate: survived as f64 / walks as f64, how }
+        })
+        .collect();
+    sheet.rows("rows", COLUMNS, &table);
+    sheet.fact("table", path.display().to_string());
+    sheet.line(path.display().to_string());
+    if let Some(maps) = map::maps(sweep, &columns, found) {
+        sheet.draw(out, "maps.png", &maps)?;
+    }
+    Ok(sheet)
+}

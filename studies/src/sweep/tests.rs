@@ -1,0 +1,184 @@
+//! Order of walks, rows on disk that survive what happens to them, tables that an independent reader reads.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::PathBuf;
+
+use super::*;
+use columns::CellType;
+
+const TEXT: &str = "about = \"Pushes\"\nscenes = [\"push\", \"walk_1kmh\"]\nseeds = 3\nfirst_seed = 7\n\
+    [[number]]\nkey = \"gait.control.height_p\"\nvalues = [8000, 9000]\n\
+    [[number]]\nkey = \"scene.duration\"\nrange = [0.01, 0.02]\n\
+    [[number]]\nkey = \"scene.cycle\"\nvalues = [0.001, 0.002]\n";
+
+fn dir(name: &str) -> PathBuf {
+    let dir = std::env::temp_dir().join(format!("gangwerk-sweep-{name}-{}", std::process::id()));
+    let _ = fs::remove_dir_all(&dir);
+    fs::create_dir_all(&dir).unwrap();
+    dir
+}
+
+fn sweep(dir: &Path, text: &str) -> PathBuf {
+    let path = dir.join("sweep.toml");
+    fs::write(&path, text).unwrap();
+    path
+}
+
+fn given(config: &Path) -> Given<'_> {
+    Given { config, progress: &|_, _, _| () }
+}
+
+#[test]
+fn each_combination_has_each_seed_once_and_draws_depend_on_the_seed_alone() {
+    let dir = dir("order");
+    let sweep = Sweep::load(&sweep(&dir, TEXT)).unwrap();
+    let cases: Vec<Case<'_>> = (0..24).map(|walk| Case::of(&sweep, walk)).collect();
+    let key = |c: &Case<'_>| format!("{} {} {} {}", c.scene, c.values[0], c.values[2], c.seed);
+    assert_eq!(cases.iter().map(key).collect::<BTreeSet<_>>().len(), 24);
+    for case in &cases {
+        assert!((7..10).contains(&case.seed) && (0.01..0.02).contains(&case.values[1]));
+        assert_eq!(case.values[1], cases[(case.seed - 7) as usize].values[1], "{case:?}");
+    }
+    assert_ne!(cases[0].values[1], cases[1].values[1]);
+    assert_eq!((cases[0].scene, cases[23].scene), ("push", "walk_1kmh"));
+}
+
+/// On one core, on three, in pieces, and killed after any byte: the same table.
+#[test]
+fn who_walked_what_does_not_matter() {
+    let (dir, config) = (dir("bytes"), config::root(None));
+    let order = SweepOrder::load(&config, &sweep(&dir, TEXT), "program").unwrap();
+    let table = |name: &str| fs::read(dir.join(name).join("table.parquet")).unwrap();
+    run(&order, &dir.join("one"), 1, &given(&config)).unwrap();
+    run(&order, &dir.join("three"), 3, &given(&config)).unwrap();
+    let mut lines = Vec::new();
+    for walks in [20..24, 0..20] {
+        piece(&order, walks, order.identity(), &mut lines).unwrap();
+    }
+    collect(&order, &dir.join("told"), (&mut lines.as_slice(), &mut Vec::new()), &given(&config)).unwrap();
+    let whole = fs::read(dir.join("one").join(rows::NAME)).unwrap();
+    let mut random = crate::random::Random(20261128);
+    for k in 0..20 {
+        let name = format!("cut{k}");
+        fs::create_dir_all(dir.join(&name)).unwrap();
+        let end = random.within([0.0, whole.len() as f64]) as usize;
+        fs::write(dir.join(&name).join(rows::NAME), &whole[..end]).unwrap();
+        run(&order, &dir.join(&name), 2, &given(&config)).unwrap();
+        assert_eq!(table(&name), table("one"), "cut after {end} bytes");
+    }
+    assert_eq!(table("three"), table("one"));
+    assert_eq!(table("told"), table("one"));
+}
+
+#[test]
+fn rows_of_something_else_are_refused_and_stay() {
+    let (dir, config) = (dir("else"), config::root(None));
+    let order = SweepOrder::load(&config, &sweep(&dir, TEXT), "program").unwrap();
+    let out = dir.join("out");
+    run(&order, &out, 1, &given(&config)).unwrap();
+    let rows = fs::read_to_string(out.join(rows::NAME)).unwrap();
+    let refused = |order: &SweepOrder<'_>| run(order, &out, 1, &given(&config)).unwrap_err().to_string();
+
+    let other = SweepOrder::load(&config, &dir.join("sweep.toml"), "another program").unwrap();
+    assert!(refused(&other).contains("holds rows of `# program, sweep"), "{}", refused(&other));
+    let why = piece(&other, 0..1, order.identity(), &mut Vec::new()).unwrap_err().to_string();
+    assert!(why.starts_with("this is `another program, ") && why.contains("begun by `program, "), "{why}");
+    let other = sweep(&dir, &TEXT.replace("9000", "9001"));
+    let other = SweepOrder::load(&config, &other, "program").unwrap();
+    assert!(refused(&other).contains("choose another place with --out"));
+    assert_eq!(fs::read_to_string(out.join(rows::NAME)).unwrap(), rows);
+
+    // A walk that comes out in two ways, one that there is not, and half a line in the middle.
+    let line = rows.lines().nth(2).unwrap();
+    let mut open = open(&order, &out).unwrap();
+    assert_eq!(open.add(line), Ok(false), "the same again");
+    assert!(
+        open.add(&line.replacen("false", "true", 1).replacen("0.0", "0.1", 1))
+            .unwrap_err()
+            .contains("two ways")
+    );
+    let (_, rest) = line.split_once('\t').unwrap();
+    assert!(open.add(&format!("24\t{rest}")).unwrap_err().contains("is no walk of this sweep, which has 24"));
+    assert!(open.add("1\tpush").unwrap_err().contains("does not have the columns"));
+    let twice = run(&order, &out, 1, &given(&config)).unwrap_err().to_string();
+    assert!(twice.contains("another `gangwerk sweep` writes there"), "{twice}");
+    drop(open);
+    fs::write(out.join(rows::NAME), rows.replacen('\t', " ", 40)).unwrap();
+    assert!(refused(&order).contains("rows.tsv: line 2: holds rows of"));
+}
+
+#[test]
+fn missing_rows_are_counted() {
+    let (dir, config) = (dir("missing"), config::root(None));
+    let order = SweepOrder::load(&config, &sweep(&dir, TEXT), "program").unwrap();
+    let (mut lines, mut told) = (Vec::new(), Vec::new());
+    piece(&order, 3..5, order.identity(), &mut lines).unwrap();
+    let collect = |lines: &[u8], told: &mut Vec<u8>| {
+        collect(&order, &dir.join("out"), (&mut &lines[..], told), &given(&config)).map(|_| ())
+    };
+    let why = collect(&lines, &mut told).unwrap_err().to_string();
+    assert!(why.starts_with("22 of 24 walks are missing; start the sweep again"), "{why}");
+    told.clear();
+    assert!(collect(&[], &mut told).is_err());
+    let told: serde_json::Value = serde_json::from_slice(&told).unwrap();
+    assert_eq!(told["left"].as_array().unwrap().len(), 22);
+    assert_eq!(told["identity"], order.identity());
+    assert!(piece(&order, 20..25, order.identity(), &mut Vec::new()).is_err());
+}
+
+#[test]
+fn what_is_wrong_is_refused_before_anything_is_walked() {
+    let (dir, config) = (dir("wrong"), config::root(None));
+    let head = "about = \"a\"\nscenes = [\"push\"]\n";
+    let number = |key: &str, value: &str| format!("{head}[[number]]\nkey = \"{key}\"\n{value}\n");
+    for (text, why) in [
+        (number("scene.push.0.time", "values = [10.0, -1.0]"), "sweep.toml: scene.push.0.time = -1: "),
+        (number("gait.control.height_p", "range = [1.0, 1e12]"), "gait.control.height_p = 1000000000000: "),
+        (number("scene.push.1.time", "values = [1.0]"), "push.1.time: `1` is no component; there are 1"),
+        (number("scene.pusch.0.time", "values = [1.0]"), "pusch.0.time: there is no `pusch`"),
+        (format!("{head}[survived]\ndistance = [0.0, 1.0]\n"), "the nearest is `distance_m`"),
+        (format!("{head}[map]\nacross = \"scene.a\"\nup = \"scene.b\"\n"), "`scene.a` is not the key of a"),
+        (head.replace("push", "pusch"), "pusch"),
+    ] {
+        let error = SweepOrder::load(&config, &sweep(&dir, &text), "program").map(|_| ()).unwrap_err();
+        assert!(error.to_string().contains(why), "{error}, not {why}");
+    }
+}
+
+/// Values that are allowed one by one, and not together, are rows: a sweep that runs for a night does not end at one of them.
+#[test]
+fn values_that_do_not_go_together_are_told_in_their_rows() {
+    let (dir, config) = (dir("together"), config::root(None));
+    let text = "about = \"a\"\nscenes = [\"push\"]\n[[number]]\nkey = \"gait.limits.duration.0\"\nvalues = [0.6, 1.1]\n\
+                [[number]]\nkey = \"gait.limits.duration.1\"\nvalues = [1.6, 0.9]\n\
+                [[number]]\nkey = \"scene.duration\"\nvalues = [0.01]\n";
+    let order = SweepOrder::load(&config, &sweep(&dir, text), "program").unwrap();
+    run(&order, &dir.join("out"), 1, &given(&config)).unwrap();
+    let rows = fs::read_to_string(dir.join("out").join(rows::NAME)).unwrap();
+    let ends: Vec<&str> = rows.lines().skip(2).map(|line| line.split('\t').nth(7).unwrap()).collect();
+    assert!(ends[3].starts_with("refused: ") && ends[3].contains("duration"), "{ends:?}");
+    assert!(ends[..3].iter().all(|end| *end == "done"), "{ends:?}");
+}
+
+/// Any number comes back with its bits, whatever it is.
+#[test]
+fn a_line_gives_back_its_row() {
+    let columns =
+        [("walk", CellType::Whole), ("a", CellType::Number), ("b", CellType::Text), ("c", CellType::YesNo)];
+    let columns = columns.map(|(name, of)| (name.to_owned(), of));
+    let mut random = crate::random::Random(3);
+    for walk in 0..1000 {
+        let x = f64::from_bits((random.unit() * u64::MAX as f64) as u64);
+        let row = vec![
+            Cell::Whole(walk),
+            Cell::Number(Some(x).filter(|x| x.is_finite())),
+            Cell::Text("fell".into()),
+            Cell::YesNo(walk % 2 == 0),
+        ];
+        assert_eq!(columns::row(&columns::line(&row), &columns), Some(row));
+    }
+    for bad in ["", "1\tinf\tfell\ttrue", "1\t\tfell\tmaybe", "-1\t\tfell\ttrue", "1\t\tfell"] {
+        assert_eq!(columns::row(bad, &columns), None, "{bad}");
+    }
+}

@@ -1,0 +1,13 @@
+#!/bin/sh
+# A sweep on a Dask cluster whose workers are killed, beside the same sweep on one core: the same table, which PyArrow reads.
+# KILLS: how many workers are killed (default 5). GANGWERK: the executable; default: that of the release build.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+cd "$here/../.."
+python=$(sh tests/peers/setup.sh)
+if [ -z "${GANGWERK:-}" ]; then
+    cargo build --quiet --locked --release -p cli >&2
+    GANGWERK=$(cd "${CARGO_TARGET_DIR:-target}/release" && pwd)/gangwerk
+fi
+export GANGWERK
+exec "$python" tests/peers/sweep.py "${KILLS:-5}"
