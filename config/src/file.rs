@@ -58,7 +58,7 @@ impl Hash {
         Ok(())
     }
 
-    fn read(&mut self, path: &Path, bytes: &[u8]) {
+    pub(crate) fn read(&mut self, path: &Path, bytes: &[u8]) {
         self.add(bytes);
         self.1.push((path.into(), bytes.into()));
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use messages::{Command, nearest};
 
 use crate::error::{ConfigError, Problem};
-use crate::file::Hash;
+use crate::file::{self, Hash};
 use crate::method::Method;
 use crate::section::listed;
 use crate::{Gait, Robot, Scene, System, scenes};
@@ -38,23 +38,54 @@ pub struct SetupNumbers {
     pub gait: Vec<(String, f64)>,
 }
 
+/// A robot as its files say, and those files: reading them takes ten times as long as a scene and a gait.
+#[derive(Clone, Debug)]
+pub struct KnownRobot {
+    name: String,
+    robot: Robot,
+    files: Vec<file::Read>,
+}
+
+impl KnownRobot {
+    /// Reads the robot of that name in the configuration directory `root`.
+    ///
+    /// # Errors
+    /// A file cannot be read, or is wrong.
+    pub fn load(root: &Path, name: &str) -> Result<Self, ConfigError> {
+        let mut hash = Hash::default();
+        let robot = Robot::load_hashed(&root.join("robots").join(name), &mut hash)?;
+        Ok(Self { name: name.into(), robot, files: hash.1 })
+    }
+}
+
 impl Setup {
     /// Reads the scene of that name in the configuration directory `root`, or of that path, and all it names; see
     /// [`crate::find`].
     pub fn load(root: &Path, scene: &str) -> Result<Self, ConfigError> {
-        Self::load_with(root, scene, &SetupNumbers::default())
+        Self::load_with(root, scene, &SetupNumbers::default(), None)
     }
 
-    /// The same with other numbers in its files; each of them has to stand there already.
+    /// The same with other numbers in its files; each of them has to stand there already. The robot is not read again if it is `known`.
     ///
     /// # Errors
     /// A file cannot be read, has no such number, or is wrong with it.
-    pub fn load_with(root: &Path, scene: &str, numbers: &SetupNumbers) -> Result<Self, ConfigError> {
+    pub fn load_with(
+        root: &Path,
+        scene: &str,
+        numbers: &SetupNumbers,
+        known: Option<&KnownRobot>,
+    ) -> Result<Self, ConfigError> {
         let mut hash = Hash::default();
         let path = scenes::locate(root, scene)?;
         hash.edit(&path, &numbers.scene)?;
         let scene = Scene::load_hashed(&path, root, &mut hash)?;
-        let mut robot = Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut hash)?;
+        let mut robot = match known.filter(|known| known.name == scene.robot) {
+            Some(known) => {
+                known.files.iter().for_each(|(path, bytes)| hash.read(path, bytes));
+                known.robot.clone()
+            }
+            None => Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut hash)?,
+        };
         if let Some(control) = scene.joint_control {
             robot.drives.iter_mut().for_each(|drive| drive.set_control(control));
         }
@@ -258,5 +289,44 @@ impl Setup {
             }
             _ => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A robot that is not read again makes the same configuration, its files and their hash included, whatever a scene does to it.
+    #[test]
+    fn a_known_robot_changes_nothing() {
+        let root = crate::root(None);
+        for scene in ["push", "walk_link_motor", "archie_tables"] {
+            let Ok(read) = Setup::load(&root, scene) else { panic!("{scene}") };
+            for name in ["lola", "archie"] {
+                let known = KnownRobot::load(&root, name).unwrap();
+                let again = Setup::load_with(&root, scene, &SetupNumbers::default(), Some(&known)).unwrap();
+                assert_eq!((again.hash, &again.files), (read.hash, &read.files), "{scene}, {name}");
+                assert_eq!(format!("{:?}", again.robot), format!("{:?}", read.robot), "{scene}, {name}");
+            }
+        }
+    }
+
+    #[test]
+    fn edited_files_are_what_a_log_holds() {
+        let root = crate::root(None);
+        let numbers = SetupNumbers {
+            scene: vec![("push.0.force.1".into(), -35.5)],
+            gait: vec![("control.height_p".into(), 9000.0)],
+        };
+        let setup = Setup::load_with(&root, "push", &numbers, None).unwrap();
+        assert_eq!((setup.scene.pushes[0].force[1], setup.gait.control.height_p), (-35.5, 9000.0));
+        let copy = std::env::temp_dir().join(format!("gangwerk-edited-{}", std::process::id()));
+        for (name, bytes) in setup.files.iter() {
+            let file = copy.join(name);
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            std::fs::write(file, bytes).unwrap();
+        }
+        assert_eq!(Setup::load(&copy, "push").unwrap().hash, setup.hash);
+        assert_ne!(Setup::load(&root, "push").unwrap().hash, setup.hash);
     }
 }

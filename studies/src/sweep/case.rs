@@ -6,7 +6,7 @@ use chain::Chain;
 use chain::ending::{Ending, WalkEnd};
 use chain::figures::{Figures, Gatherer};
 use config::sweep::SweptValues;
-use config::{Setup, Sweep};
+use config::{KnownRobot, Setup, Sweep};
 
 use super::columns::{self, Cell};
 use crate::random::Random;
@@ -43,13 +43,23 @@ impl<'a> Case<'a> {
         Self { walk, scene: &sweep.scenes[rest as usize], seed, values }
     }
 
+    /// What is varied in it, in words.
+    pub(super) fn told(&self, sweep: &Sweep) -> String {
+        let numbers = sweep.numbers.iter().zip(&self.values).map(|(n, value)| format!("{} = {value}", n.key));
+        [format!("scene {}", self.scene)].into_iter().chain(numbers).collect::<Vec<_>>().join(", ")
+    }
+
     /// Its configuration.
     ///
     /// # Errors
     /// A file is missing, or says something wrong with these values.
-    pub(super) fn setup(&self, sweep: &Sweep, config: &Path) -> Result<Setup, String> {
-        let mut setup = Setup::load_with(config, self.scene, &sweep.setup_numbers(&self.values))
-            .map_err(|e| e.to_string())?;
+    pub(super) fn setup(
+        &self,
+        sweep: &Sweep,
+        (config, robot): (&Path, Option<&KnownRobot>),
+    ) -> Result<Setup, String> {
+        let numbers = sweep.setup_numbers(&self.values);
+        let mut setup = Setup::load_with(config, self.scene, &numbers, robot).map_err(|e| e.to_string())?;
         setup.scene.seed = self.seed;
         setup.with_method(None)
     }
@@ -58,8 +68,12 @@ impl<'a> Case<'a> {
     ///
     /// # Errors
     /// The robot cannot be built.
-    pub(super) fn walk(&self, sweep: &Sweep, config: &Path) -> Result<Vec<Cell>, String> {
-        match self.setup(sweep, config) {
+    pub(super) fn walk(
+        &self,
+        sweep: &Sweep,
+        (config, robot): (&Path, Option<&KnownRobot>),
+    ) -> Result<Vec<Cell>, String> {
+        match self.setup(sweep, (config, robot)) {
             Err(why) => Ok(columns::refused(self, &why)),
             Ok(setup) => Ok(columns::walked(self, sweep, &walk(&setup)?)),
         }

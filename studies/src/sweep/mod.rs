@@ -26,10 +26,9 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
-use std::time::Instant;
 
-use config::Sweep;
 use config::sweep::SweptValues;
+use config::{KnownRobot, Sweep};
 use serde::Serialize;
 
 use crate::sheet::{Column, fixed, plain};
@@ -53,6 +52,8 @@ const COLUMNS: &[Column] = &[
 pub struct SweepOrder<'a> {
     sweep: Sweep,
     config: &'a Path,
+    /// Of each scene.
+    robots: Vec<KnownRobot>,
     identity: String,
 }
 
@@ -76,11 +77,22 @@ impl<'a> SweepOrder<'a> {
     pub fn load(config: &'a Path, file: &Path, program: &str) -> Result<Self, Error> {
         let sweep = Sweep::load(file)?;
         columns::check(&sweep)?;
-        let mut files = DefaultHasher::new();
+        let (mut files, mut robots) = (DefaultHasher::new(), Vec::new());
         for scene in &sweep.scenes {
-            let first = Case { scene, ..Case::of(&sweep, 0) };
-            let setup = first.setup(&sweep, config).map_err(|e| format!("{}: {e}", file.display()))?;
-            files.write_u64(setup.hash);
+            // The first combination, and with it each value, or each end of a range, of every number.
+            let mut first = Case { scene, ..Case::of(&sweep, 0) };
+            for (value, number) in first.values.iter_mut().zip(&sweep.numbers) {
+                if let SweptValues::Drawn([low, _]) = number.values {
+                    *value = low;
+                }
+            }
+            let setup = |case: &Case<'_>, robot| {
+                let problem = |e| format!("{}: {}: {e}", file.display(), case.told(&sweep));
+                case.setup(&sweep, (config, robot)).map_err(problem)
+            };
+            let read = setup(&first, None)?;
+            files.write_u64(read.hash);
+            let robot = KnownRobot::load(config, &read.scene.robot)?;
             for (k, number) in sweep.numbers.iter().enumerate() {
                 let ends = match &number.values {
                     SweptValues::Each(values) => values.as_slice(),
@@ -89,13 +101,13 @@ impl<'a> SweepOrder<'a> {
                 for value in ends {
                     let mut case = first.clone();
                     case.values[k] = *value;
-                    let problem = |e| format!("{}: {} = {value}: {e}", file.display(), number.key);
-                    case.setup(&sweep, config).map_err(problem)?;
+                    setup(&case, Some(&robot))?;
                 }
             }
+            robots.push(robot);
         }
         let identity = format!("{program}, sweep {:016x}, configuration {:016x}", sweep.hash, files.finish());
-        Ok(Self { sweep, config, identity })
+        Ok(Self { sweep, config, robots, identity })
     }
 
     /// Program, sweep and configuration: walks of the same identity are the same, bit for bit.
@@ -111,7 +123,9 @@ impl<'a> SweepOrder<'a> {
 
     fn line(&self, walk: u64) -> Result<String, String> {
         let case = Case::of(&self.sweep, walk);
-        let row = case.walk(&self.sweep, self.config).map_err(|e| format!("walk {walk}: {e}"))?;
+        let of = self.sweep.scenes.iter().position(|scene| scene == case.scene);
+        let robot = of.map(|k| &self.robots[k]);
+        let row = case.walk(&self.sweep, (self.config, robot)).map_err(|e| format!("walk {walk}: {e}"))?;
         Ok(columns::line(&row))
     }
 }
@@ -151,7 +165,7 @@ pub fn piece(
 pub fn run(order: &SweepOrder<'_>, out: &Path, cores: usize, given: &Given<'_>) -> Result<Sheet, Error> {
     let mut rows = open(order, out)?;
     let left: Vec<u64> = rows.left().collect();
-    let (next, stop, begun) = (AtomicUsize::new(0), AtomicBool::new(false), Instant::now());
+    let (next, stop, begun) = (AtomicUsize::new(0), AtomicBool::new(false), realtime::clock::now());
     let (all, before) = (order.walks() as usize, rows.found.len());
     std::thread::scope(|scope| -> Result<(), String> {
         let (to, from) = mpsc::sync_channel(WAITING);
@@ -181,7 +195,7 @@ pub fn run(order: &SweepOrder<'_>, out: &Path, cores: usize, given: &Given<'_>) 
     let mut sheet = finish(order, out, &rows)?;
     let walked = rows.found.len() - before;
     if walked > 0 {
-        let minutes = begun.elapsed().as_secs_f64() / 60.0;
+        let minutes = (realtime::clock::now() - begun) as f64 * 1e-9 / 60.0;
         let rate = walked as f64 / (minutes * cores as f64);
         sheet.fact("walks_per_core_minute", rate);
         sheet.line(format!(
