@@ -24,7 +24,7 @@ const LAYERS: [&[&str]; 8] = [
 const PROCESSES: usize = 3;
 
 /// Libraries that only these crates name.
-const ONLY: [(&str, &[&str]); 16] = [
+const ONLY: [(&str, &[&str]); 17] = [
     ("iceoryx2", &["ipc", "latency"]),
     ("toml", &["config"]),
     ("bincode", &["messages"]),
@@ -41,6 +41,7 @@ const ONLY: [(&str, &[&str]); 16] = [
     ("libc", &["ipc", "realtime", "sercos"]),
     ("pyo3", &["python"]),
     ("numpy", &["python"]),
+    ("parquet", &["studies"]),
 ];
 
 /// Folders that hold no source of ours.

@@ -319,7 +319,7 @@ mod tests {
             gait: vec![("control.height_p".into(), 9000.0)],
         };
         let setup = Setup::load_with(&root, "push", &numbers, None).unwrap();
-        assert_eq!((setup.scene.pushes[0].force[1], setup.gait.control.height_p), (-35.5, 9000.0));
+        assert_eq!((setup.scene.pushes[0].1.force[1], setup.gait.control.height_p), (-35.5, 9000.0));
         let copy = std::env::temp_dir().join(format!("gangwerk-edited-{}", std::process::id()));
         for (name, bytes) in setup.files.iter() {
             let file = copy.join(name);

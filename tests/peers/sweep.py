@@ -102,6 +102,21 @@ def kill_workers(file, out, kills):
         log.close()
 
 
+def killed_again_and_again(file, out):
+    """Killed at random instants and started again, on all cores, until it ends by itself. How often it was killed."""
+    instants = random.Random(20261129)
+    for kills in range(1000):
+        running = subprocess.Popen([GANGWERK, "sweep", file, "--out", out], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        try:
+            _, complaints = running.communicate(timeout=instants.uniform(0.5, 5.0))
+            assert running.returncode == 0, complaints
+            return kills
+        except subprocess.TimeoutExpired:
+            running.kill()
+            running.communicate()
+    raise AssertionError("it does not get on")
+
+
 def full_disk(file, out):
     """A directory that takes 12 kB: one error, and the rows that fit are gone on from elsewhere."""
     small = out.with_suffix(".small")
@@ -139,6 +154,10 @@ def main():
         took = kill_workers(file, directory / "dask", kills)
         assert (directory / "dask" / "table.parquet").read_bytes() == one, "another table"
         print(f"the same table from two workers, of which {kills} were killed, in {took:.1f} s")
+
+        kills = killed_again_and_again(file, directory / "killed")
+        assert kills > 0 and (directory / "killed" / "table.parquet").read_bytes() == one, f"another table after {kills} kills"
+        print(f"the same table from a sweep that was killed {kills} times")
 
         full_disk(file, directory / "full")
         if (directory / "full").exists():
