@@ -22,7 +22,7 @@ def walk(gangwerk, arguments, identity, begin, end):
     except OSError as error:
         raise RuntimeError(f"{gangwerk[0]}: {error}") from None
     if done.returncode != 0:
-        raise RuntimeError(done.stderr.strip() or f"{command[0]} ended with {done.returncode}")
+        raise RuntimeError(done.stderr.strip().removeprefix("error: ") or f"{command[0]} ended with {done.returncode}")
     return done.stdout
 
 
@@ -113,6 +113,8 @@ def main(argv=None):
         pass  # the collector has said why
     except (RuntimeError, OSError) as error:
         failed = error
+    except KeyboardInterrupt:
+        failed = "interrupted; start the same command again: it goes on"
     try:
         collector.stdin.close()
     except BrokenPipeError:

@@ -19,7 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 GANGWERK = os.environ["GANGWERK"]
 SWEEP = """about = "Pushes on the spot."
 scenes = ["push"]
-seeds = 20
+seeds = 10
 [[number]]
 key = "scene.push.0.force.1"
 values = [20, 200, 300, 400]
@@ -29,10 +29,13 @@ range = [4.0, 5.2]
 [[number]]
 key = "scene.duration"
 values = [6.0]
+[[number]]
+key = "scene.command.2.time"
+values = [5.9]
 [survived]
 "end_pose.1" = [-0.1, 0.1]
 """
-WALKS = 80
+WALKS = 40
 environment = dict(os.environ, PYTHONPATH=str(ROOT / "python"))
 
 
@@ -108,7 +111,7 @@ def killed_again_and_again(file, out):
     for kills in range(1000):
         running = subprocess.Popen([GANGWERK, "sweep", file, "--out", out], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         try:
-            _, complaints = running.communicate(timeout=instants.uniform(0.5, 5.0))
+            _, complaints = running.communicate(timeout=instants.uniform(0.5, 4.0))
             assert running.returncode == 0, complaints
             return kills
         except subprocess.TimeoutExpired:
@@ -118,10 +121,10 @@ def killed_again_and_again(file, out):
 
 
 def full_disk(file, out):
-    """A directory that takes 12 kB: one error, and the rows that fit are gone on from elsewhere."""
+    """A directory that takes 8 kB: one error, and the rows that fit are gone on from elsewhere."""
     small = out.with_suffix(".small")
     small.mkdir()
-    script = 'mount -t tmpfs -o size=12k none "$1" && { "$2" sweep "$3" --out "$1"; code=$?; cp "$1/rows.tsv" "$4"; exit $code; }'
+    script = 'mount -t tmpfs -o size=8k none "$1" && { "$2" sweep "$3" --out "$1"; code=$?; cp "$1/rows.tsv" "$4"; exit $code; }'
     kept = out / "rows.tsv"
     out.mkdir()
     done = subprocess.run(["unshare", "-rm", "sh", "-c", script, "sh", small, GANGWERK, file, kept], capture_output=True, text=True)

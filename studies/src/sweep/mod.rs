@@ -35,7 +35,9 @@ use crate::sheet::{Column, fixed, plain};
 use crate::{Error, Given, Sheet};
 use case::Case;
 use columns::Cell;
+use map::Maps;
 use rows::Rows;
+use table::Table;
 
 /// Rows that may wait to be written, before walks do.
 const WAITING: usize = 64;
@@ -166,7 +168,7 @@ pub fn run(order: &SweepOrder<'_>, out: &Path, cores: usize, given: &Given<'_>) 
     let mut rows = open(order, out)?;
     let left: Vec<u64> = rows.left().collect();
     let (next, stop, begun) = (AtomicUsize::new(0), AtomicBool::new(false), realtime::clock::now());
-    let (all, before) = (order.walks() as usize, rows.found.len());
+    let (all, before) = (order.walks() as usize, rows.count());
     std::thread::scope(|scope| -> Result<(), String> {
         let (to, from) = mpsc::sync_channel(WAITING);
         for _ in 0..cores {
@@ -188,12 +190,12 @@ pub fn run(order: &SweepOrder<'_>, out: &Path, cores: usize, given: &Given<'_>) 
                 stop.store(true, Ordering::Relaxed);
             }
             added?;
-            (given.progress)(rows.found.len(), all, "walks");
+            (given.progress)(rows.count(), all, "walks");
         }
         Ok(())
     })?;
     let mut sheet = finish(order, out, &rows)?;
-    let walked = rows.found.len() - before;
+    let walked = rows.count() - before;
     if walked > 0 {
         let minutes = (realtime::clock::now() - begun) as f64 * 1e-9 / 60.0;
         let rate = walked as f64 / (minutes * cores as f64);
@@ -223,7 +225,7 @@ pub fn collect(
     to.flush()?;
     for line in from.lines() {
         rows.add(&line?)?;
-        (given.progress)(rows.found.len(), order.walks() as usize, "walks");
+        (given.progress)(rows.count(), order.walks() as usize, "walks");
     }
     finish(order, out, &rows)
 }
@@ -242,41 +244,50 @@ fn finish(order: &SweepOrder<'_>, out: &Path, rows: &Rows) -> Result<Sheet, Erro
         )
         .into());
     }
-    let (sweep, columns, found) = (&order.sweep, columns::columns(&order.sweep), rows.found.values());
+    let (sweep, columns) = (&order.sweep, columns::columns(&order.sweep));
     let path = out.join("table.parquet");
-    table::write(&path, &columns, found.clone())?;
-    let mut sheet = Sheet::titled(format!("{}: {} walks", sweep.about, order.walks()));
-    let place = |name: &str| columns.iter().position(|(known, _)| known == name);
-    let (survived, ended) = (place("survived").unwrap_or(0), place("ended_by").unwrap_or(0));
-    let of_scene = |scene: &'_ String| {
-        let mine = found.clone().filter(|row| row[1] == Cell::Text(scene.clone()));
-        let mut how = BTreeMap::new();
-        let (mut walks, mut good) = (0, 0);
-        for row in mine {
-            walks += 1;
-            match (&row[survived], &row[ended]) {
-                (Cell::YesNo(true), _) => good += 1,
-                (_, Cell::Text(end)) => {
-                    *how.entry(end.split(": ").next().unwrap_or(end).into()).or_default() += 1
-                }
-                _ => {}
-            }
+    let (mut table, mut maps) = (Table::create(&path, &columns)?, Maps::of(sweep, &columns));
+    let of_scene = |scene| Row { scene, survived: 0, walks: 0, rate: 0.0, how: BTreeMap::new() };
+    let mut scenes: Vec<Row<'_>> = sweep.scenes.iter().map(|scene| of_scene(scene)).collect();
+    for row in rows.each() {
+        let row = row?;
+        if let Some(scene) = scenes.iter_mut().find(|s| row[1] == Cell::Text(s.scene.into())) {
+            scene.add(&row, sweep.numbers.len());
         }
-        (walks, good, how)
-    };
-    let table: Vec<Row<'_>> = sweep
-        .scenes
-        .iter()
-        .map(|scene| {
-            let (walks, survived, how) = of_scene(scene);
-            Row { scene, survived, walks, rate: survived as f64 / walks as f64, how }
-        })
-        .collect();
-    sheet.rows("rows", COLUMNS, &table);
+        if let Some(maps) = &mut maps {
+            maps.add(&row);
+        }
+        table.push(row)?;
+    }
+    table.finish()?;
+    let mut sheet = Sheet::titled(format!("{}: {} walks", sweep.about, order.walks()));
+    sheet.rows("rows", COLUMNS, &scenes);
     sheet.fact("table", path.display().to_string());
     sheet.line(path.display().to_string());
-    if let Some(maps) = map::maps(sweep, &columns, found) {
-        sheet.draw(out, "maps.png", &maps)?;
+    if let Some(maps) = maps {
+        sheet.draw(out, "maps.png", &maps.figure(order.walks()))?;
     }
     Ok(sheet)
+}
+
+impl Row<'_> {
+    /// Adds a walk with so many numbers.
+    fn add(&mut self, row: &[Cell], numbers: usize) {
+        self.walks += 1;
+        match &row[3 + numbers..5 + numbers] {
+            [Cell::YesNo(true), _] => self.survived += 1,
+            [_, Cell::Text(end)] => *self.how.entry(kind(end)).or_default() += 1,
+            _ => {}
+        }
+        self.rate = self.survived as f64 / self.walks as f64;
+    }
+}
+
+/// How a walk that was not survived ended: to the end of the scene it came where `[survived]` does not have it, or something was refused.
+fn kind(end: &str) -> String {
+    match end.split_once(": ") {
+        Some(("refused", _)) => "refused".into(),
+        _ if end == "done" => "not as told".into(),
+        _ => end.into(),
+    }
 }

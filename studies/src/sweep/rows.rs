@@ -5,7 +5,9 @@
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::hash::{DefaultHasher, Hasher};
+use std::io::{BufRead, BufReader};
+use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 
 use super::columns::{self, Cell, CellType};
@@ -13,7 +15,14 @@ use super::columns::{self, Cell, CellType};
 /// Name in the directory of results.
 pub(super) const NAME: &str = "rows.tsv";
 
-/// The rows so far.
+/// Where a row is in the file \[byte\], and the hash of its line.
+struct RowPlace {
+    begin: u64,
+    length: usize,
+    hash: u64,
+}
+
+/// The rows so far, on disk: memory holds a few words of each.
 pub(super) struct Rows {
     file: File,
     path: PathBuf,
@@ -23,7 +32,7 @@ pub(super) struct Rows {
     /// Walks of the sweep.
     walks: u64,
     /// By the number of the walk.
-    pub(super) found: BTreeMap<u64, Vec<Cell>>,
+    found: BTreeMap<u64, RowPlace>,
 }
 
 impl Rows {
@@ -41,7 +50,7 @@ impl Rows {
         let path = out.join(NAME);
         let problem = |e: std::io::Error| format!("{}: {e}; choose another place with --out", path.display());
         let mut options = OpenOptions::new();
-        let mut file =
+        let file =
             options.read(true).write(true).create(true).truncate(false).open(&path).map_err(problem)?;
         match file.try_lock() {
             Ok(()) => {}
@@ -53,34 +62,55 @@ impl Rows {
             }
             Err(TryLockError::Error(e)) => return Err(problem(e)),
         }
-        let mut text = Vec::new();
-        file.read_to_end(&mut text).map_err(problem)?;
+        let mut lines = BufReader::new(file.try_clone().map_err(problem)?);
         let mut rows = Self { file, path, end: 0, columns, walks, found: BTreeMap::new() };
         let names: Vec<&str> = rows.columns.iter().map(|(name, _)| name.as_str()).collect();
-        let head = [format!("# {identity}"), names.join("\t")];
-        // A line that was cut off is walked again.
-        let whole = text.iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
-        let text = String::from_utf8_lossy(&text[..whole]).into_owned();
-        let mut lines = text.lines();
-        for (number, wanted) in head.iter().enumerate() {
-            match lines.next() {
-                Some(line) if line == wanted => {}
-                Some(line) => {
-                    let (path, number) = (rows.path.display(), number + 1);
+        let mut head = vec![names.join("\t"), format!("# {identity}")];
+        // Lines up to one that was cut off, which is walked again.
+        let (mut line, mut number) = (String::new(), 0);
+        loop {
+            line.clear();
+            let length = lines.read_line(&mut line).map_err(|e| format!("{}: {e}", rows.path.display()))?;
+            if !line.ends_with('\n') {
+                break;
+            }
+            let text = line.trim_end_matches('\n');
+            number += 1;
+            match head.pop() {
+                Some(wanted) if text == wanted => {}
+                Some(wanted) => {
+                    let path = rows.path.display();
                     return Err(format!(
-                        "{path}: line {number}: holds rows of `{line}`, but this is `{wanted}`; go on with that one, or choose another place with --out"
+                        "{path}: line {number}: holds rows of `{text}`, but this is `{wanted}`; go on with that one, or choose another place with --out"
                     ));
                 }
-                None => rows.write(wanted)?,
+                None => {
+                    let taken = rows.take(text);
+                    taken.map_err(|why| format!("{}: line {number}: {why}", rows.path.display()))?;
+                }
             }
+            rows.end += length as u64;
         }
-        if whole > 0 {
-            rows.end = whole as u64;
-        }
-        for (k, line) in lines.enumerate() {
-            rows.take(line).map_err(|why| format!("{}: line {}: {why}", rows.path.display(), k + 3))?;
+        while let Some(missing) = head.pop() {
+            rows.write(&missing)?;
         }
         Ok(rows)
+    }
+
+    /// How many walks are done.
+    pub(super) fn count(&self) -> usize {
+        self.found.len()
+    }
+
+    /// All rows, in the order of their walks.
+    pub(super) fn each(&self) -> impl Iterator<Item = Result<Vec<Cell>, String>> {
+        self.found.values().map(|place| {
+            let mut bytes = vec![0; place.length];
+            let path = self.path.display();
+            self.file.read_exact_at(&mut bytes, place.begin).map_err(|e| format!("{path}: {e}"))?;
+            let row = columns::row(&String::from_utf8_lossy(&bytes), &self.columns);
+            row.ok_or_else(|| format!("{path}: was changed meanwhile"))
+        })
     }
 
     /// Walks that are not done.
@@ -108,21 +138,23 @@ impl Rows {
         else {
             return Err(format!("`{line}` is no walk of this sweep, which has {}", self.walks));
         };
+        let mut hash = DefaultHasher::new();
+        hash.write(line.as_bytes());
+        let place = RowPlace { begin: self.end, length: line.len(), hash: hash.finish() };
         match self.found.get(&walk) {
             None => {}
-            Some(known) if *known == row => return Ok(false),
+            Some(known) if known.hash == place.hash => return Ok(false),
             Some(_) => {
                 return Err(format!("walk {walk} came out in two ways; walks are to be the same everywhere"));
             }
         }
-        self.found.insert(walk, row);
+        self.found.insert(walk, place);
         Ok(true)
     }
 
     fn write(&mut self, line: &str) -> Result<(), String> {
         let bytes = format!("{line}\n").into_bytes();
-        let written = self.file.seek(SeekFrom::Start(self.end)).and_then(|_| self.file.write_all(&bytes));
-        if let Err(e) = written {
+        if let Err(e) = self.file.write_all_at(&bytes, self.end) {
             // Half a line would not be read again anyway.
             let _ = self.file.set_len(self.end);
             let path = self.path.display();

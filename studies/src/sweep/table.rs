@@ -1,6 +1,8 @@
 //! `table.parquet` of a sweep: all rows in the order of the walks, the same bytes whoever walked them.
 
-use std::path::Path;
+use std::fmt::Display;
+use std::fs::File;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
@@ -12,44 +14,74 @@ use parquet::schema::types::Type;
 
 use super::columns::{Cell, CellType};
 
-/// Writes rows as a table of these columns; a table that was there stays until the new one is whole.
-///
-/// # Errors
-/// It cannot be written there.
-pub(super) fn write<'r>(
-    path: &Path,
-    columns: &[(String, CellType)],
-    rows: impl Iterator<Item = &'r Vec<Cell>> + Clone,
-) -> Result<(), String> {
-    let beside = path.with_extension("parquet.part");
-    let problem =
-        |e: String| format!("{}: {e}; the rows are there, so start the sweep again", path.display());
-    written(&beside, columns, rows).map_err(|e| problem(e.to_string()))?;
-    std::fs::rename(&beside, path).map_err(|e| problem(e.to_string()))
+/// Rows that are in memory at a time.
+const GROUP: usize = 65_536;
+
+/// A table that is being written.
+pub(super) struct Table {
+    writer: SerializedFileWriter<File>,
+    columns: Vec<(String, CellType)>,
+    waiting: Vec<Vec<Cell>>,
+    path: PathBuf,
 }
 
-fn written<'r>(
-    path: &Path,
-    columns: &[(String, CellType)],
-    rows: impl Iterator<Item = &'r Vec<Cell>> + Clone,
-) -> Result<(), ParquetError> {
-    let fields = columns.iter().map(|(name, of)| field(name, *of).map(Arc::new));
-    let fields = fields.collect::<Result<Vec<_>, _>>()?;
-    let schema = Type::group_type_builder("sweep").with_fields(fields).build()?;
-    let properties = WriterProperties::builder().set_created_by("gangwerk sweep".into()).build();
-    let file = std::fs::File::create(path)?;
-    let mut writer = SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties))?;
-    let mut group = writer.next_row_group()?;
-    let mut k = 0;
-    while let Some(mut column) = group.next_column()? {
-        let cells = rows.clone().map(|row| &row[k]);
-        fill(&mut column, columns[k].1, cells)?;
-        column.close()?;
-        k += 1;
+impl Table {
+    /// An empty table; one that was there stays until this one is whole.
+    ///
+    /// # Errors
+    /// It cannot be written there.
+    pub(super) fn create(path: &Path, columns: &[(String, CellType)]) -> Result<Self, String> {
+        let fields = columns.iter().map(|(name, of)| field(name, *of).map(Arc::new));
+        let begin = || {
+            let fields = fields.collect::<Result<Vec<_>, _>>()?;
+            let schema = Type::group_type_builder("sweep").with_fields(fields).build()?;
+            let properties = WriterProperties::builder().set_created_by("gangwerk sweep".into()).build();
+            SerializedFileWriter::new(File::create(beside(path))?, Arc::new(schema), Arc::new(properties))
+        };
+        let writer = begin().map_err(|e| problem(path, e))?;
+        Ok(Self { writer, columns: columns.into(), waiting: Vec::new(), path: path.into() })
     }
-    group.close()?;
-    writer.close()?;
-    Ok(())
+
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub(super) fn push(&mut self, row: Vec<Cell>) -> Result<(), String> {
+        self.waiting.push(row);
+        if self.waiting.len() < GROUP { Ok(()) } else { self.write().map_err(|e| problem(&self.path, e)) }
+    }
+
+    /// Puts the table in its place.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub(super) fn finish(mut self) -> Result<(), String> {
+        self.write().map_err(|e| problem(&self.path, e))?;
+        self.writer.close().map_err(|e| problem(&self.path, e))?;
+        std::fs::rename(beside(&self.path), &self.path).map_err(|e| problem(&self.path, e))
+    }
+
+    /// What waits as a group of rows, column by column.
+    fn write(&mut self) -> Result<(), ParquetError> {
+        let mut group = self.writer.next_row_group()?;
+        let mut k = 0;
+        while let Some(mut column) = group.next_column()? {
+            fill(&mut column, self.columns[k].1, self.waiting.iter().map(|row| &row[k]))?;
+            column.close()?;
+            k += 1;
+        }
+        group.close()?;
+        self.waiting.clear();
+        Ok(())
+    }
+}
+
+fn beside(path: &Path) -> PathBuf {
+    path.with_extension("parquet.part")
+}
+
+fn problem(path: &Path, e: impl Display) -> String {
+    format!("{}: {e}; the rows are there, so make room and start the sweep again", path.display())
 }
 
 /// A column of the schema.
