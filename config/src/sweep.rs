@@ -19,7 +19,7 @@
 //! [map] # optional
 //! across = "scene.push.0.time"
 //! up = "scene.push.0.force.1"
-//! cost = "inclination_error_max_rad.0"
+//! cost = "inclination_error_max_rad.1"
 //! ```
 
 use std::path::{Path, PathBuf};
