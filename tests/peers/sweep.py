@@ -70,7 +70,9 @@ def kill_workers(file, out, kills):
     dask = str(pathlib.Path(sys.executable).parent / "dask")
     log = open(out.with_suffix(".log"), "w")
     address = out.with_suffix(".json")
-    quiet = {"stdout": log, "stderr": log, "env": environment}
+    # Dask gives a piece up with its first lost worker: whoever asked has to ask again.
+    strict = dict(environment, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0")
+    quiet = {"stdout": log, "stderr": log, "env": strict}
     scheduler = subprocess.Popen(
         [dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", address], **quiet
     )
