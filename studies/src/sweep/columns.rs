@@ -61,21 +61,20 @@ pub(super) fn check(sweep: &Sweep) -> Result<(), String> {
     let names: Vec<&str> = FIGURES.iter().map(|(name, _)| *name).collect();
     let bounds = sweep.survived.iter().map(|(name, _)| ("survived", name));
     let cost = sweep.map.iter().filter_map(|map| map.cost.as_ref()).map(|name| ("map.cost", name));
-    for (key, name) in bounds.chain(cost).filter(|(_, name)| figure(name).is_none()) {
+    if let Some((key, name)) = bounds.chain(cost).find(|(_, name)| figure(name).is_none()) {
         let near =
             messages::nearest(name, &names).map_or(String::new(), |n| format!("; the nearest is `{n}`"));
         let (file, all) = (sweep.file.display(), names.join(", "));
         return Err(format!("{file}: {key}: there is no figure `{name}`{near}; there is {all}"));
     }
-    // Axes have to be numbers that take several values in turn.
-    let axes = sweep.map.iter().flat_map(|map| [("map.across", &map.across), ("map.up", &map.up)]);
-    for (key, name) in axes {
-        if !sweep.numbers.iter().any(|n| n.key == *name) {
-            let file = sweep.file.display();
-            return Err(format!("{file}: {key}: `{name}` is not the key of a [[number]]"));
+    // Axes have to be numbers that are varied.
+    let mut axes = sweep.map.iter().flat_map(|map| [("map.across", &map.across), ("map.up", &map.up)]);
+    match axes.find(|(_, name)| !sweep.numbers.iter().any(|n| n.key == **name)) {
+        None => Ok(()),
+        Some((key, name)) => {
+            Err(format!("{}: {key}: `{name}` is not the key of a [[number]]", sweep.file.display()))
         }
     }
-    Ok(())
 }
 
 /// Names and types of all columns.

@@ -91,6 +91,7 @@ impl Rows {
             }
             rows.end += length as u64;
         }
+        rows.file.set_len(rows.end).map_err(|e| format!("{}: {e}", rows.path.display()))?;
         while let Some(missing) = head.pop() {
             rows.write(&missing)?;
         }

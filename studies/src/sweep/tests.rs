@@ -72,6 +72,8 @@ fn who_walked_what_does_not_matter() {
         fs::write(dir.join(&name).join(rows::NAME), &whole[..end]).unwrap();
         run(&order, &dir.join(&name), 2, &given(&config)).unwrap();
         assert_eq!(table(&name), table("one"), "cut after {end} bytes");
+        let rows = fs::read_to_string(dir.join(&name).join(rows::NAME)).unwrap();
+        assert!(rows.ends_with('\n') && rows.lines().count() == 26, "cut after {end} bytes: {rows}");
     }
     assert_eq!(table("three"), table("one"));
     assert_eq!(table("told"), table("one"));
