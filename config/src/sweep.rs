@@ -47,7 +47,7 @@ pub struct Sweep {
     pub seeds: u64,
     /// First of their seeds; the others count on.
     pub first_seed: u64,
-    /// What is varied.
+    /// Numbers that are varied.
     pub numbers: Vec<SweptNumber>,
     /// Figures and the bounds within which they count as survived.
     pub survived: Vec<(String, [f64; 2])>,
@@ -106,7 +106,7 @@ impl Sweep {
             about: top.text("about"),
             scenes: top.texts("scenes"),
             seeds: if top.has("seeds") { top.integer("seeds", 1..=MOST_WALKS) } else { 1 },
-            first_seed: if top.has("first_seed") { top.integer("first_seed", 0..=u64::MAX / 2) } else { 1 },
+            first_seed: if top.has("first_seed") { top.integer("first_seed", 0..=1 << 53) } else { 1 },
             numbers: top.tables("number", SweptNumber::build),
             survived: bounds(top),
             map: top.has("map").then(|| top.table("map", SweepMap::build)).flatten(),
@@ -119,7 +119,7 @@ impl Sweep {
         sweep
     }
 
-    /// How many combinations of scenes and values there are; none: more than can be counted.
+    /// Number of combinations of scenes and values; none: more than can be counted.
     pub fn combinations(&self) -> Option<u64> {
         let counts = self.numbers.iter().map(|n| n.count() as u64);
         counts.chain([self.scenes.len() as u64]).try_fold(1, u64::checked_mul)
@@ -160,7 +160,7 @@ impl SweptNumber {
         Self { key, values }
     }
 
-    /// How many values every combination takes in turn.
+    /// Number of values that combinations take in turn.
     pub fn count(&self) -> usize {
         match &self.values {
             SweptValues::Each(values) => values.len(),

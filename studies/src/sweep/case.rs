@@ -43,7 +43,7 @@ impl<'a> Case<'a> {
         Self { walk, scene: &sweep.scenes[rest as usize], seed, values }
     }
 
-    /// What is varied in it, in words.
+    /// Its scene and numbers, in words.
     pub(super) fn told(&self, sweep: &Sweep) -> String {
         let numbers = sweep.numbers.iter().zip(&self.values).map(|(n, value)| format!("{} = {value}", n.key));
         [format!("scene {}", self.scene)].into_iter().chain(numbers).collect::<Vec<_>>().join(", ")

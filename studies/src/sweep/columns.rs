@@ -14,7 +14,7 @@ pub(super) enum CellType {
     Number,
 }
 
-/// What stands in a row at one column; `Number(None)`: there is no such figure.
+/// Value of a row at one column; `Number(None)`: there is no such figure.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Cell {
     Whole(u64),

@@ -67,7 +67,7 @@ struct Row<'a> {
     walks: u64,
     /// \[1\]
     rate: f64,
-    /// How many of the others ended in each way.
+    /// Number of the others that ended in each way.
     how: BTreeMap<String, u64>,
 }
 
@@ -117,7 +117,7 @@ impl<'a> SweepOrder<'a> {
         &self.identity
     }
 
-    /// How many walks the sweep asks for.
+    /// Number of walks that the sweep asks for.
     pub fn walks(&self) -> u64 {
         // Loading has multiplied them.
         self.sweep.combinations().unwrap_or(0) * self.sweep.seeds
@@ -244,6 +244,7 @@ fn finish(order: &SweepOrder<'_>, out: &Path, rows: &Rows) -> Result<Sheet, Erro
         )
         .into());
     }
+    // One pass over the rows, which may not fit into memory.
     let (sweep, columns) = (&order.sweep, columns::columns(&order.sweep));
     let path = out.join("table.parquet");
     let (mut table, mut maps) = (Table::create(&path, &columns)?, Maps::of(sweep, &columns));
@@ -283,7 +284,7 @@ impl Row<'_> {
     }
 }
 
-/// How a walk that was not survived ended: to the end of the scene it came where `[survived]` does not have it, or something was refused.
+/// Kind of end of a walk that was not survived; one that came to the end of its scene was refused something, or missed the bounds of `[survived]`.
 fn kind(end: &str) -> String {
     match end.split_once(": ") {
         Some(("refused", _)) => "refused".into(),

@@ -117,6 +117,7 @@ fn fill<'r>(
             let yes = |cell: &Cell| matches!(cell, Cell::YesNo(true));
             column.typed::<BoolType>().write_batch(&cells.map(yes).collect::<Vec<_>>(), None, None)?;
         }
+        // Nulls have a level and no value.
         CellType::Number => {
             let number = |cell: &Cell| if let Cell::Number(x) = cell { *x } else { None };
             let all: Vec<Option<f64>> = cells.map(number).collect();
