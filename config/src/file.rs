@@ -29,8 +29,8 @@ pub(crate) fn embedded() -> &'static [Embedded] {
 /// A file as it was read.
 pub(crate) type Read = (PathBuf, Vec<u8>);
 
-/// FNV-1a, 64 bits, over the bytes of all files that went into a configuration, in the order they were read; the files; and what
-/// is read instead of those that were edited.
+/// FNV-1a, 64 bits, over the bytes of all files that went into a configuration, in the order they were read; the files; and those
+/// that are read instead of what is on the disk.
 pub(crate) struct Hash(pub(crate) u64, pub(crate) Vec<Read>, Vec<Read>);
 
 impl Default for Hash {
@@ -47,14 +47,19 @@ impl Hash {
         hash.0
     }
 
-    /// The file has other numbers at these keys, when it is read.
+    /// One that reads these files instead of those on the disk.
+    pub(crate) fn of_files(files: Vec<Read>) -> Self {
+        Self(Self::default().0, Vec::new(), files)
+    }
+
+    /// One of those files has other numbers at these keys.
     pub(crate) fn edit(&mut self, path: &Path, numbers: &[(String, f64)]) -> Result<(), ConfigError> {
-        if !numbers.is_empty() {
-            let text = text(path, &mut Self::default())?;
-            let numbers = numbers.iter().map(|(key, number)| (key.as_str(), *number));
-            let edited = edit::with_numbers(&text, numbers).map_err(|e| ConfigError::of_file(path, e))?;
-            self.2.push((path.into(), edited.into_bytes()));
-        }
+        let Some((_, bytes)) = self.2.iter_mut().find(|(known, _)| known == path) else {
+            return Err(ConfigError::of_file(path, "was not read"));
+        };
+        let numbers = numbers.iter().map(|(key, number)| (key.as_str(), *number));
+        let edited = edit::with_numbers(&String::from_utf8_lossy(bytes), numbers);
+        *bytes = edited.map_err(|e| ConfigError::of_file(path, e))?.into_bytes();
         Ok(())
     }
 
@@ -76,7 +81,7 @@ pub(crate) fn text(path: &Path, hash: &mut Hash) -> Result<String, ConfigError> 
 
 /// The bytes of a file that another part makes sense of; they are added to the hash.
 pub(crate) fn include(path: &Path, hash: &mut Hash) -> Result<Vec<u8>, ConfigError> {
-    let bytes = match hash.2.iter().find(|(edited, _)| edited == path) {
+    let bytes = match hash.2.iter().find(|(known, _)| known == path) {
         Some((_, bytes)) => bytes.clone(),
         None => bytes(path).map_err(|e| unreadable(path, &e))?.into_owned(),
     };

@@ -38,70 +38,74 @@ pub struct SetupNumbers {
     pub gait: Vec<(String, f64)>,
 }
 
-/// A robot as its files say, and those files: reading them takes ten times as long as a scene and a gait.
+/// A scene's files as they were read, and its robot: whatever happens to them on the disk, each [`Setup`] from here is of these.
 #[derive(Clone, Debug)]
-pub struct KnownRobot {
-    name: String,
-    robot: Robot,
+pub struct SetupFiles {
+    root: PathBuf,
+    path: PathBuf,
+    /// All but the robot's.
     files: Vec<file::Read>,
+    robot: Robot,
+    robot_files: Vec<file::Read>,
 }
 
-impl KnownRobot {
-    /// Reads the robot of that name in the configuration directory `root`.
+impl SetupFiles {
+    /// Reads the scene of that name in the configuration directory `root`, or of that path, and all it names; see
+    /// [`crate::find`].
     ///
     /// # Errors
-    /// A file cannot be read, or is wrong.
-    pub fn load(root: &Path, name: &str) -> Result<Self, ConfigError> {
-        let mut hash = Hash::default();
-        let robot = Robot::load_hashed(&root.join("robots").join(name), &mut hash)?;
-        Ok(Self { name: name.into(), robot, files: hash.1 })
+    /// A file cannot be read, or is wrong by itself.
+    pub fn read(root: &Path, scene: &str) -> Result<Self, ConfigError> {
+        let path = scenes::locate(root, scene)?;
+        let (mut hash, mut robot_hash) = (Hash::default(), Hash::default());
+        let scene = Scene::load_hashed(&path, root, &mut hash)?;
+        let robot = Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut robot_hash)?;
+        Gait::load_hashed(&gait_path(root, &scene), &mut hash)?;
+        System::load_hashed(&root.join("system.toml"), &mut hash)?;
+        Ok(Self { root: root.into(), path, files: hash.1, robot, robot_files: robot_hash.1 })
     }
+
+    /// What they say with other numbers, each in the place of one that stands there.
+    ///
+    /// # Errors
+    /// A file has no such number, or is wrong with it, or does not fit the others.
+    pub fn setup(&self, numbers: &SetupNumbers) -> Result<Setup, ConfigError> {
+        let (root, path) = (&self.root, &self.path);
+        let mut hash = Hash::of_files(self.files.clone());
+        hash.edit(path, &numbers.scene)?;
+        let scene = Scene::load_hashed(path, root, &mut hash)?;
+        // The robot, and what the scene makes of it.
+        self.robot_files.iter().for_each(|(path, bytes)| hash.read(path, bytes));
+        let mut robot = self.robot.clone();
+        if let Some(control) = scene.joint_control {
+            robot.drives.iter_mut().for_each(|drive| drive.set_control(control));
+        }
+        if scene.plays_tables {
+            robot.play_tables().map_err(|text| ConfigError::of_file(path, format!("points: {text}")))?;
+        }
+        let gait = gait_path(root, &scene);
+        hash.edit(&gait, &numbers.gait)?;
+        let gait = Gait::load_hashed(&gait, &mut hash)?;
+        let system = System::load_hashed(&root.join("system.toml"), &mut hash)?;
+        // Names as in the configuration directory, from wherever the scene is.
+        let name = |file: &Path| match file.strip_prefix(root) {
+            Err(_) if file == path => format!("scenes/{}.toml", scene.name),
+            inside => inside.unwrap_or(file).display().to_string(),
+        };
+        let files = hash.1.into_iter().map(|(path, bytes)| (name(&path), bytes)).collect();
+        Setup { scene, robot, gait, system, hash: hash.0, files }.checked(path.clone())
+    }
+}
+
+fn gait_path(root: &Path, scene: &Scene) -> PathBuf {
+    root.join("gaits").join(&scene.gait).with_extension("toml")
 }
 
 impl Setup {
     /// Reads the scene of that name in the configuration directory `root`, or of that path, and all it names; see
     /// [`crate::find`].
     pub fn load(root: &Path, scene: &str) -> Result<Self, ConfigError> {
-        Self::load_with(root, scene, &SetupNumbers::default(), None)
-    }
-
-    /// The same with other numbers in its files; each of them has to stand there already. The robot is not read again if it is `known`.
-    ///
-    /// # Errors
-    /// A file cannot be read, has no such number, or is wrong with it.
-    pub fn load_with(
-        root: &Path,
-        scene: &str,
-        numbers: &SetupNumbers,
-        known: Option<&KnownRobot>,
-    ) -> Result<Self, ConfigError> {
-        let mut hash = Hash::default();
-        let path = scenes::locate(root, scene)?;
-        hash.edit(&path, &numbers.scene)?;
-        let scene = Scene::load_hashed(&path, root, &mut hash)?;
-        let mut robot = match known.filter(|known| known.name == scene.robot) {
-            Some(known) => {
-                known.files.iter().for_each(|(path, bytes)| hash.read(path, bytes));
-                known.robot.clone()
-            }
-            None => Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut hash)?,
-        };
-        if let Some(control) = scene.joint_control {
-            robot.drives.iter_mut().for_each(|drive| drive.set_control(control));
-        }
-        if scene.plays_tables {
-            robot.play_tables().map_err(|text| ConfigError::of_file(&path, format!("points: {text}")))?;
-        }
-        let gait = root.join("gaits").join(&scene.gait).with_extension("toml");
-        hash.edit(&gait, &numbers.gait)?;
-        let gait = Gait::load_hashed(&gait, &mut hash)?;
-        let system = System::load_hashed(&root.join("system.toml"), &mut hash)?;
-        let name = |file: &Path| match file.strip_prefix(root) {
-            Err(_) if file == path => format!("scenes/{}.toml", scene.name),
-            inside => inside.unwrap_or(file).display().to_string(),
-        };
-        let files = hash.1.into_iter().map(|(path, bytes)| (name(&path), bytes)).collect();
-        Self { scene, robot, gait, system, hash: hash.0, files }.checked(path)
+        SetupFiles::read(root, scene)?.setup(&SetupNumbers::default())
     }
 
     fn checked(self, file: PathBuf) -> Result<Self, ConfigError> {
@@ -296,21 +300,6 @@ impl Setup {
 mod tests {
     use super::*;
 
-    /// A robot that is not read again makes the same configuration, its files and their hash included, whatever a scene does to it.
-    #[test]
-    fn a_known_robot_changes_nothing() {
-        let root = crate::root(None);
-        for scene in ["push", "walk_link_motor", "archie_tables"] {
-            let Ok(read) = Setup::load(&root, scene) else { panic!("{scene}") };
-            for name in ["lola", "archie"] {
-                let known = KnownRobot::load(&root, name).unwrap();
-                let again = Setup::load_with(&root, scene, &SetupNumbers::default(), Some(&known)).unwrap();
-                assert_eq!((again.hash, &again.files), (read.hash, &read.files), "{scene}, {name}");
-                assert_eq!(format!("{:?}", again.robot), format!("{:?}", read.robot), "{scene}, {name}");
-            }
-        }
-    }
-
     #[test]
     fn edited_files_are_what_a_log_holds() {
         let root = crate::root(None);
@@ -318,7 +307,7 @@ mod tests {
             scene: vec![("push.0.force.1".into(), -35.5)],
             gait: vec![("control.height_p".into(), 9000.0)],
         };
-        let setup = Setup::load_with(&root, "push", &numbers, None).unwrap();
+        let setup = SetupFiles::read(&root, "push").unwrap().setup(&numbers).unwrap();
         assert_eq!((setup.scene.pushes[0].1.force[1], setup.gait.control.height_p), (-35.5, 9000.0));
         let copy = std::env::temp_dir().join(format!("gangwerk-edited-{}", std::process::id()));
         for (name, bytes) in setup.files.iter() {
@@ -326,7 +315,12 @@ mod tests {
             std::fs::create_dir_all(file.parent().unwrap()).unwrap();
             std::fs::write(file, bytes).unwrap();
         }
+        let read = SetupFiles::read(&copy, "push").unwrap();
         assert_eq!(Setup::load(&copy, "push").unwrap().hash, setup.hash);
+        // They are read once.
+        std::fs::remove_dir_all(&copy).unwrap();
+        let again = read.setup(&SetupNumbers::default()).unwrap();
+        assert_eq!((again.hash, again.files), (setup.hash, setup.files));
         assert_ne!(Setup::load(&root, "push").unwrap().hash, setup.hash);
     }
 }

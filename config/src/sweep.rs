@@ -125,7 +125,7 @@ impl Sweep {
         counts.chain([self.scenes.len() as u64]).try_fold(1, u64::checked_mul)
     }
 
-    /// Numbers for [`Setup::load_with`](crate::Setup::load_with) from one value for each of [`numbers`](Self::numbers).
+    /// Numbers for [`SetupFiles::setup`](crate::SetupFiles::setup) from one value for each of [`numbers`](Self::numbers).
     pub fn setup_numbers(&self, values: &[f64]) -> SetupNumbers {
         let mut numbers = SetupNumbers::default();
         for (number, value) in self.numbers.iter().zip(values) {

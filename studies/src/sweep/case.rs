@@ -1,12 +1,10 @@
 //! One walk of a sweep: its place in the sweep's order, and the row that it becomes.
 
-use std::path::Path;
-
 use chain::Chain;
 use chain::ending::{Ending, WalkEnd};
 use chain::figures::{Figures, Gatherer};
 use config::sweep::SweptValues;
-use config::{KnownRobot, Setup, Sweep};
+use config::{Setup, SetupFiles, Sweep};
 
 use super::columns::{self, Cell};
 use crate::random::Random;
@@ -17,6 +15,8 @@ pub(super) struct Case<'a> {
     /// Its number, from 0.
     pub(super) walk: u64,
     pub(super) scene: &'a str,
+    /// Its place among the sweep's scenes.
+    pub(super) of: usize,
     pub(super) seed: u64,
     /// One for each of the sweep's numbers.
     pub(super) values: Vec<f64>,
@@ -40,7 +40,7 @@ impl<'a> Case<'a> {
                 *value = random.within(range);
             }
         }
-        Self { walk, scene: &sweep.scenes[rest as usize], seed, values }
+        Self { walk, scene: &sweep.scenes[rest as usize], of: rest as usize, seed, values }
     }
 
     /// Its scene and numbers, in words.
@@ -49,17 +49,12 @@ impl<'a> Case<'a> {
         [format!("scene {}", self.scene)].into_iter().chain(numbers).collect::<Vec<_>>().join(", ")
     }
 
-    /// Its configuration.
+    /// Its configuration, from the files of its scene.
     ///
     /// # Errors
-    /// A file is missing, or says something wrong with these values.
-    pub(super) fn setup(
-        &self,
-        sweep: &Sweep,
-        (config, robot): (&Path, Option<&KnownRobot>),
-    ) -> Result<Setup, String> {
-        let numbers = sweep.setup_numbers(&self.values);
-        let mut setup = Setup::load_with(config, self.scene, &numbers, robot).map_err(|e| e.to_string())?;
+    /// A file says something wrong with these values.
+    pub(super) fn setup(&self, sweep: &Sweep, files: &SetupFiles) -> Result<Setup, String> {
+        let mut setup = files.setup(&sweep.setup_numbers(&self.values)).map_err(|e| e.to_string())?;
         setup.scene.seed = self.seed;
         setup.with_method(None)
     }
@@ -68,12 +63,8 @@ impl<'a> Case<'a> {
     ///
     /// # Errors
     /// The robot cannot be built.
-    pub(super) fn walk(
-        &self,
-        sweep: &Sweep,
-        (config, robot): (&Path, Option<&KnownRobot>),
-    ) -> Result<Vec<Cell>, String> {
-        match self.setup(sweep, (config, robot)) {
+    pub(super) fn walk(&self, sweep: &Sweep, files: &SetupFiles) -> Result<Vec<Cell>, String> {
+        match self.setup(sweep, files) {
             Err(why) => Ok(columns::refused(self, &why)),
             Ok(setup) => Ok(columns::walked(self, sweep, &walk(&setup)?)),
         }

@@ -28,7 +28,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 
 use config::sweep::SweptValues;
-use config::{KnownRobot, Sweep};
+use config::{SetupFiles, Sweep};
 use serde::Serialize;
 
 use crate::sheet::{Column, fixed, plain};
@@ -51,11 +51,10 @@ const COLUMNS: &[Column] = &[
 ];
 
 /// A sweep that can be walked: its file is right, and so are the files that it names.
-pub struct SweepOrder<'a> {
+pub struct SweepOrder {
     sweep: Sweep,
-    config: &'a Path,
-    /// Of each scene.
-    robots: Vec<KnownRobot>,
+    /// Files of each scene, read once: they may change while a sweep goes on.
+    scenes: Vec<SetupFiles>,
     identity: String,
 }
 
@@ -71,30 +70,29 @@ struct Row<'a> {
     how: BTreeMap<String, u64>,
 }
 
-impl<'a> SweepOrder<'a> {
+impl SweepOrder {
     /// Reads a sweep's file, and tries every value of every number once; `program` says which program this is.
     ///
     /// # Errors
     /// A file, key, value or name is wrong.
-    pub fn load(config: &'a Path, file: &Path, program: &str) -> Result<Self, Error> {
+    pub fn load(config: &Path, file: &Path, program: &str) -> Result<Self, Error> {
         let sweep = Sweep::load(file)?;
         columns::check(&sweep)?;
-        let (mut files, mut robots) = (DefaultHasher::new(), Vec::new());
-        for scene in &sweep.scenes {
+        let (mut hash, mut scenes) = (DefaultHasher::new(), Vec::new());
+        for (of, scene) in sweep.scenes.iter().enumerate() {
+            let files = SetupFiles::read(config, scene).map_err(|e| format!("{}: {e}", file.display()))?;
             // The first combination, and with it each value, or each end of a range, of every number.
-            let mut first = Case { scene, ..Case::of(&sweep, 0) };
+            let mut first = Case { scene, of, ..Case::of(&sweep, 0) };
             for (value, number) in first.values.iter_mut().zip(&sweep.numbers) {
                 if let SweptValues::Drawn([low, _]) = number.values {
                     *value = low;
                 }
             }
-            let setup = |case: &Case<'_>, robot| {
+            let setup = |case: &Case<'_>| {
                 let problem = |e| format!("{}: {}: {e}", file.display(), case.told(&sweep));
-                case.setup(&sweep, (config, robot)).map_err(problem)
+                case.setup(&sweep, &files).map_err(problem)
             };
-            let read = setup(&first, None)?;
-            files.write_u64(read.hash);
-            let robot = KnownRobot::load(config, &read.scene.robot)?;
+            hash.write_u64(setup(&first)?.hash);
             for (k, number) in sweep.numbers.iter().enumerate() {
                 let ends = match &number.values {
                     SweptValues::Each(values) => values.as_slice(),
@@ -103,13 +101,13 @@ impl<'a> SweepOrder<'a> {
                 for value in ends {
                     let mut case = first.clone();
                     case.values[k] = *value;
-                    setup(&case, Some(&robot))?;
+                    setup(&case)?;
                 }
             }
-            robots.push(robot);
+            scenes.push(files);
         }
-        let identity = format!("{program}, sweep {:016x}, configuration {:016x}", sweep.hash, files.finish());
-        Ok(Self { sweep, config, robots, identity })
+        let identity = format!("{program}, sweep {:016x}, configuration {:016x}", sweep.hash, hash.finish());
+        Ok(Self { sweep, scenes, identity })
     }
 
     /// Program, sweep and configuration: walks of the same identity are the same, bit for bit.
@@ -125,9 +123,7 @@ impl<'a> SweepOrder<'a> {
 
     fn line(&self, walk: u64) -> Result<String, String> {
         let case = Case::of(&self.sweep, walk);
-        let of = self.sweep.scenes.iter().position(|scene| scene == case.scene);
-        let robot = of.map(|k| &self.robots[k]);
-        let row = case.walk(&self.sweep, (self.config, robot)).map_err(|e| format!("walk {walk}: {e}"))?;
+        let row = case.walk(&self.sweep, &self.scenes[case.of]).map_err(|e| format!("walk {walk}: {e}"))?;
         Ok(columns::line(&row))
     }
 }
@@ -136,12 +132,7 @@ impl<'a> SweepOrder<'a> {
 ///
 /// # Errors
 /// The identity is not the one that is `expected`, there are no such walks, or nobody reads.
-pub fn piece(
-    order: &SweepOrder<'_>,
-    walks: Range<u64>,
-    expected: &str,
-    to: &mut dyn Write,
-) -> Result<(), Error> {
+pub fn piece(order: &SweepOrder, walks: Range<u64>, expected: &str, to: &mut dyn Write) -> Result<(), Error> {
     if order.identity() != expected {
         let is = order.identity();
         return Err(format!(
@@ -164,7 +155,7 @@ pub fn piece(
 ///
 /// # Errors
 /// The directory `out` belongs to another sweep, or cannot be written; a robot cannot be built.
-pub fn run(order: &SweepOrder<'_>, out: &Path, cores: usize, given: &Given<'_>) -> Result<Sheet, Error> {
+pub fn run(order: &SweepOrder, out: &Path, cores: usize, given: &Given<'_>) -> Result<Sheet, Error> {
     let mut rows = open(order, out)?;
     let left: Vec<u64> = rows.left().collect();
     let (next, stop, begun) = (AtomicUsize::new(0), AtomicBool::new(false), realtime::clock::now());
@@ -213,7 +204,7 @@ pub fn run(order: &SweepOrder<'_>, out: &Path, cores: usize, given: &Given<'_>) 
 /// # Errors
 /// As [`run`]; or rows are missing when nobody writes any more.
 pub fn collect(
-    order: &SweepOrder<'_>,
+    order: &SweepOrder,
     out: &Path,
     (from, to): (&mut dyn BufRead, &mut dyn Write),
     given: &Given<'_>,
@@ -230,12 +221,12 @@ pub fn collect(
     finish(order, out, &rows)
 }
 
-fn open(order: &SweepOrder<'_>, out: &Path) -> Result<Rows, String> {
+fn open(order: &SweepOrder, out: &Path) -> Result<Rows, String> {
     Rows::open(out, order.identity(), columns::columns(&order.sweep), order.walks())
 }
 
 /// Table, maps, and a sheet of them.
-fn finish(order: &SweepOrder<'_>, out: &Path, rows: &Rows) -> Result<Sheet, Error> {
+fn finish(order: &SweepOrder, out: &Path, rows: &Rows) -> Result<Sheet, Error> {
     let missing = rows.left().count();
     if missing > 0 {
         let (all, out) = (order.walks(), out.display());

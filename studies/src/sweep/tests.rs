@@ -79,6 +79,19 @@ fn who_walked_what_does_not_matter() {
     assert_eq!(table("told"), table("one"));
 }
 
+/// What a sweep has begun with holds to its end, and who edits a scene meanwhile changes nothing.
+#[test]
+fn files_that_go_away_meanwhile_are_not_missed() {
+    let (dir, config) = (dir("away"), config::root(None));
+    let order = SweepOrder::load(&config, &sweep(&dir, TEXT), "program").unwrap();
+    run(&order, &dir.join("before"), 1, &given(&config)).unwrap();
+    fs::remove_file(dir.join("a.toml")).unwrap();
+    fs::write(dir.join("b.toml"), SCENE.replace("60.0", "90.0")).unwrap();
+    run(&order, &dir.join("after"), 1, &given(&config)).unwrap();
+    let table = |name: &str| fs::read(dir.join(name).join("table.parquet")).unwrap();
+    assert_eq!(table("before"), table("after"));
+}
+
 #[test]
 fn rows_of_something_else_are_refused_and_stay() {
     let (dir, config) = (dir("else"), config::root(None));
@@ -86,7 +99,7 @@ fn rows_of_something_else_are_refused_and_stay() {
     let out = dir.join("out");
     run(&order, &out, 1, &given(&config)).unwrap();
     let rows = fs::read_to_string(out.join(rows::NAME)).unwrap();
-    let refused = |order: &SweepOrder<'_>| run(order, &out, 1, &given(&config)).unwrap_err().to_string();
+    let refused = |order: &SweepOrder| run(order, &out, 1, &given(&config)).unwrap_err().to_string();
 
     let other = SweepOrder::load(&config, &dir.join("sweep.toml"), "another program").unwrap();
     assert!(refused(&other).contains("holds rows of `# program, sweep"), "{}", refused(&other));
