@@ -1,4 +1,4 @@
-"""A sweep by Dask beside one on a single core: `sweep.py KILLS`, with GANGWERK in the environment; tests/peers/sweep.sh runs it.
+"""A sweep by Dask beside one on a single core: `sweep.py KILLS [SEED]`, with GANGWERK in the environment; tests/peers/sweep.sh runs it.
 
 Rows and table are read with Python's own parser and with PyArrow, neither of which knows who wrote them.
 """
@@ -17,9 +17,14 @@ import pyarrow.parquet
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 GANGWERK = os.environ["GANGWERK"]
-SWEEP = """about = "Pushes on the spot."
+KILLS = int(sys.argv[1])
+INSTANTS = random.Random(int(sys.argv[2]) if len(sys.argv) > 2 else 20261128)
+# Long enough for all kills.
+SEEDS = max(10, 2 * KILLS)
+WALKS = 4 * SEEDS
+SWEEP = f"""about = "Pushes on the spot."
 scenes = ["push"]
-seeds = 10
+seeds = {SEEDS}
 [[number]]
 key = "scene.push.0.force.1"
 values = [20, 200, 300, 400]
@@ -35,7 +40,6 @@ values = [5.9]
 [survived]
 "end_pose.1" = [-0.1, 0.1]
 """
-WALKS = 40
 environment = dict(os.environ, PYTHONPATH=str(ROOT / "python"))
 
 
@@ -87,12 +91,11 @@ def kill_workers(file, out, kills):
         workers = [worker(), worker()]
         begun = time.monotonic()
         driver = by_dask(file, out, "--scheduler-file", str(address), "--gangwerk", GANGWERK)
-        instants = random.Random(20261128)
         killed = 0
         while driver.poll() is None:
-            time.sleep(instants.uniform(0.2, 2.0))
+            time.sleep(INSTANTS.uniform(0.2, 2.0))
             if killed < kills and (out / "rows.tsv").exists():
-                victim = workers.pop(instants.randrange(2))
+                victim = workers.pop(INSTANTS.randrange(2))
                 victim.send_signal(signal.SIGKILL)
                 victim.wait()
                 killed += 1
@@ -109,11 +112,10 @@ def kill_workers(file, out, kills):
 
 def killed_again_and_again(file, out):
     """Killed at random instants and started again, on all cores, until it ends by itself. How often it was killed."""
-    instants = random.Random(20261129)
     for kills in range(1000):
         running = subprocess.Popen([GANGWERK, "sweep", file, "--out", out], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         try:
-            _, complaints = running.communicate(timeout=instants.uniform(0.5, 4.0))
+            _, complaints = running.communicate(timeout=INSTANTS.uniform(0.5, 4.0))
             assert running.returncode == 0, complaints
             return kills
         except subprocess.TimeoutExpired:
@@ -144,7 +146,6 @@ def full_disk(file, out):
 
 
 def main():
-    kills = int(sys.argv[1])
     with tempfile.TemporaryDirectory() as directory:
         directory = pathlib.Path(directory)
         file = directory / "sweep.toml"
@@ -156,9 +157,9 @@ def main():
         one = (directory / "one" / "table.parquet").read_bytes()
         print(f"{WALKS} walks on one core in {alone:.1f} s, {table_is_its_rows(directory / 'one')} survived")
 
-        took = kill_workers(file, directory / "dask", kills)
+        took = kill_workers(file, directory / "dask", KILLS)
         assert (directory / "dask" / "table.parquet").read_bytes() == one, "another table"
-        print(f"the same table from two workers, of which {kills} were killed, in {took:.1f} s")
+        print(f"the same table from two workers, of which {KILLS} were killed, in {took:.1f} s")
 
         kills = killed_again_and_again(file, directory / "killed")
         assert kills > 0 and (directory / "killed" / "table.parquet").read_bytes() == one, f"another table after {kills} kills"

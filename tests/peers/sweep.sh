@@ -1,6 +1,6 @@
 #!/bin/sh
 # A sweep on a Dask cluster whose workers are killed, beside the same sweep on one core: the same table, which PyArrow reads.
-# KILLS: how many workers are killed (default 5). GANGWERK: the executable; default: that of the release build.
+# KILLS: workers that are killed (default 5), SEED: of the instants. GANGWERK: the executable; default: that of the release build.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$here/../.."
@@ -10,4 +10,4 @@ if [ -z "${GANGWERK:-}" ]; then
     GANGWERK=$(cd "${CARGO_TARGET_DIR:-target}/release" && pwd)/gangwerk
 fi
 export GANGWERK
-exec "$python" tests/peers/sweep.py "${KILLS:-5}"
+exec "$python" tests/peers/sweep.py "${KILLS:-5}" "${SEED:-20261128}"
