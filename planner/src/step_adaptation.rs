@@ -80,6 +80,11 @@ struct Axis {
 }
 
 impl Axis {
+    /// The zero-moment point may be shifted as far again as another foot stands, `apart` \[m\] from the stance foot.
+    fn reach(&mut self, apart: f64) {
+        self.shift[usize::from(apart > 0.0)] += apart;
+    }
+
     /// \[m\] Distance of xi from where the plan wanted it at landing, if it grew by `growth`; the zero-moment point has done
     /// what it can.
     fn missed(&self, growth: f64) -> f64 {
@@ -102,7 +107,8 @@ impl Axis {
 /// the stance foot. None if the stabilizer alone can.
 ///
 /// As long as the swing foot carries, both soles hold the body to the sides better than a step that begins sooner: only an
-/// error ahead or back alone is answered then.
+/// error ahead or back alone is answered then, and only if the zero-moment point under the foot that is about to lift off would
+/// not bring it back.
 pub(crate) fn adapt(
     rules: &gait::Reaction,
     walk: &PlannedWalk,
@@ -119,9 +125,14 @@ pub(crate) fn adapt(
     let axes = |counted: [f64; 2]| axes(rules, walk, (k, t), body, foot.place, (sole, counted));
     let growth = (body.w * rest).exp();
     let stays = |a: &Axis, most: f64| a.error.abs() <= rules.error || a.missed(growth).abs() <= most;
-    let alone = axes(ALONE);
-    let held = [0, 1].map(|d| stays(&alone[d], rules.tolerance[d]));
+    let mut alone = axes(ALONE);
     let carries = foot.loaded > 0.0;
+    if carries {
+        // A shift until the lift-off alone counts less at landing than one that stays.
+        let counts = (growth - (body.w * (s.end - s.lift)).exp()) / (growth - 1.0);
+        alone[0].reach(counts * s.foothold.relative(&s.takeoff).x);
+    }
+    let held = [0, 1].map(|d| stays(&alone[d], rules.tolerance[d]));
     if held == [true; 2] || carries && held != [false, true] {
         return None;
     }

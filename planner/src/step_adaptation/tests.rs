@@ -17,6 +17,11 @@ const W: f64 = 3.57;
 
 /// Lola's first steps on the spot, the room of her reaction, and a stance sole.
 fn walk() -> (PlannedWalk, Reaction, Sole) {
+    steps_of(0.0)
+}
+
+/// The same with steps of `length` \[m\].
+fn steps_of(length: f64) -> (PlannedWalk, Reaction, Sole) {
     let gait = Gait::load(&root(None).join("gaits/lola.toml")).unwrap();
     let robot = Robot::load(&root(None).join("robots/lola")).unwrap();
     let soles = [0, 1].map(|i| Sole::new(robot.feet[i].support));
@@ -40,7 +45,7 @@ fn walk() -> (PlannedWalk, Reaction, Sole) {
     };
     // Out of standing, the left foot first.
     let mut walk = PlannedWalk::new();
-    let wish = StepParameters::on_the_spot(1.2);
+    let wish = StepParameters { length, ..StepParameters::on_the_spot(1.2) };
     let demand = StepDemand {
         from: &from,
         state: GaitState::Starting,
@@ -169,6 +174,42 @@ fn a_foot_that_carries_answers_pushes_along_the_way_only() {
             "{ahead}: {landing:?}"
         );
         assert_eq!((answer(0.2), answer(-0.2)), (None, None));
+    }
+}
+
+/// A body that lags behind while both feet carry is held by the one behind, as far as a pendulum is whose zero-moment point is
+/// that far back until the lift-off, and then within the sole in front; no farther.
+#[test]
+fn the_foot_behind_holds_a_body_that_lags() {
+    let (walk, rules, sole) = steps_of(0.3);
+    let (k, s) = (1, walk.strides[1]);
+    assert!(s.takeoff.x < s.foothold.x - 0.1, "{s:?}");
+    for before in [0.05, 0.1, 0.15] {
+        let t = s.lift - before;
+        let [x, y, ..] = walk.plan.feet[1 - s.stance].sample(t).position;
+        let foot = SwingFoot { place: [x, y], loaded: 0.06 };
+        let holds = |lag: f64| {
+            let body = Divergence { w: W, error: [-lag, 0.0] };
+            adapt(&rules, &walk, (k, t), &body, &foot, &sole).is_none()
+        };
+        let most = (1..100).map(|i| 0.005 * f64::from(i)).take_while(|&lag| holds(lag)).last().unwrap();
+        // The pendulum, with all that can be done.
+        let (now, end) = (planned(&walk, t)[0], planned(&walk, s.end)[0]);
+        let growth = (W * (s.end - t)).exp();
+        let planned_zmp = (end - now * growth) / (1.0 - growth);
+        let heel = s.foothold.x + sole.center[0] - 0.7 * sole.half[0];
+        let behind = s.takeoff.x - s.foothold.x;
+        let left = |lag: f64| {
+            let (mut xi, dt) = (now - lag, 1e-4);
+            for i in 0..((s.end - t) / dt).round() as usize {
+                let back = if (i as f64) * dt < before { behind } else { 0.0 };
+                xi += dt * W * (xi - heel.min(planned_zmp) - back);
+            }
+            xi - end
+        };
+        let tolerance = rules.tolerance[0];
+        assert!(left(most) > -tolerance - 0.01, "{before} s, {most} m: {}", left(most));
+        assert!(left(most + 0.01) < -tolerance, "{before} s, {most} m: {}", left(most + 0.01));
     }
 }
 
