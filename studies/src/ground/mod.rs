@@ -78,7 +78,7 @@ pub struct GroundStudy {
 }
 
 /// A number above zero.
-fn size(text: &str) -> Result<f64, String> {
+pub(crate) fn size(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
         _ => Err("it takes a number above 0".into()),
@@ -106,7 +106,7 @@ struct Row {
 
 /// A place that was not walked over.
 #[derive(Clone, Serialize)]
-struct Failed {
+pub(crate) struct Failed {
     seed: u64,
     how: String,
     time_s: f64,
@@ -114,8 +114,8 @@ struct Failed {
     x_m: f64,
 }
 
-/// The undisturbed walk of a type at a speed.
-struct Reference {
+/// The undisturbed walk of a type at a speed, on level ground.
+pub(crate) struct LevelWalk {
     setup: Setup,
     /// \[m/s\]
     speed: f64,
@@ -135,7 +135,7 @@ impl Study for GroundStudy {
         // Each type and speed walks on level ground once; every place is held against that.
         let scene = Setup::load(given.config, &self.scene)?;
         let references =
-            parallel::map(walks.len(), |k| Reference::of(scene.clone(), walks[k]).map_err(|e| e.to_string()));
+            parallel::map(walks.len(), |k| LevelWalk::of(scene.clone(), walks[k]).map_err(|e| e.to_string()));
         let references = references.into_iter().collect::<Result<Vec<_>, _>>()?;
         let (each, done) = (self.places as usize, AtomicUsize::new(0));
         let rows = ground.iter().flat_map(|of| walks.iter().zip(&references).map(move |walk| (of, walk)));
@@ -194,7 +194,7 @@ pub(crate) fn not_walked(
     seeds: std::ops::Range<u64>,
 ) -> Result<Vec<String>, String> {
     let walk = (setup.scene.depth, kmh);
-    let reference = Reference::of(setup.clone(), walk).map_err(|e| e.to_string())?;
+    let reference = LevelWalk::of(setup.clone(), walk).map_err(|e| e.to_string())?;
     let mut failed = Vec::new();
     for seed in seeds {
         let of = reference.over(kind, size, seed)?;
@@ -203,8 +203,12 @@ pub(crate) fn not_walked(
     Ok(failed)
 }
 
-impl Reference {
-    fn of(mut setup: Setup, (depth, kmh): (u8, f64)) -> Result<Self, Error> {
+impl LevelWalk {
+    /// That of a robot and gait, of a simulation type at a speed \[km/h\].
+    ///
+    /// # Errors
+    /// The robot cannot be built, or does not walk.
+    pub(crate) fn of(mut setup: Setup, (depth, kmh): (u8, f64)) -> Result<Self, Error> {
         on_type(&mut setup, depth, STEP);
         walk_at(&mut setup, kmh);
         let speed = kmh / 3.6;
@@ -213,7 +217,10 @@ impl Reference {
     }
 
     /// Over the place of a seed; none if it was walked.
-    fn over(&self, kind: GroundKind, size: f64, seed: u64) -> Result<Option<Failed>, String> {
+    ///
+    /// # Errors
+    /// The robot cannot be built.
+    pub(crate) fn over(&self, kind: GroundKind, size: f64, seed: u64) -> Result<Option<Failed>, String> {
         let place = Place::draw(kind, kind.in_si(size), &self.steps, seed);
         let (terrain, mut setup) = (Terrain::of(&place), self.setup.clone());
         terrain.put(&place, &mut setup);

@@ -98,7 +98,7 @@ pub(crate) fn survived(most: f64, resolution: f64, survives: impl Fn(f64) -> boo
 }
 
 /// Whether the robot walks on, or stands, as before after a push now, `above` \[m\] the torso's own centre of gravity.
-fn survives(start: &Instant, direction: [f64; 2], above: f64, impulse: f64) -> bool {
+pub(crate) fn survives(start: &Instant, direction: [f64; 2], above: f64, impulse: f64) -> bool {
     let mut chain = start.chain.clone();
     let [x, y] = direction.map(|d| d * impulse / DURATION);
     chain.push_above(&PushCommand { force: [x, y, 0.0], duration: DURATION }, above);

@@ -18,7 +18,7 @@ use chain::parallel;
 use serde::Serialize;
 
 pub use cases::SensorChoice;
-pub(crate) use instants::{DURATION, Instant, at_instants, at_random, at_rest, largest};
+pub(crate) use instants::{DURATION, Instant, at_instants, at_random, at_rest, largest, survives};
 
 use crate::sheet::{Column, fixed, plain};
 use crate::{Error, Given, Sheet, Study};

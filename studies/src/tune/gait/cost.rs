@@ -7,6 +7,7 @@ use config::Setup;
 use serde::Serialize;
 
 use super::parameters::forward;
+use super::robustness::Trials;
 use crate::Error;
 use crate::undisturbed::{ended, walk_on};
 use crate::way::Way;
@@ -21,12 +22,18 @@ const AS_TOLD: f64 = 0.05;
 pub(super) const NO_WALK: f64 = 1e6;
 
 /// A term: name, unit, meaning.
-pub(super) const TERMS: [(&str, &str, &str); 4] = [
+pub(super) const TERMS: [(&str, &str, &str); 6] = [
     ("inclination", "rad^2 s", "inclination errors of the upper body, squared (5.54)"),
     ("zmp", "m^2 s", "zero-moment point, measured less planned, squared"),
     ("landing", "1", "largest force on a foot over the weight"),
     ("joint_speed", "1", "largest speed of a joint over its limit"),
+    ("ground", "1", "share of random places of unknown ground that are not walked over"),
+    ("pushes", "1", "share of random pushes that are not survived"),
 ];
+/// Places in [`TERMS`] of those that take walks of their own.
+pub(super) const GROUND: usize = 4;
+/// The same.
+pub(super) const PUSHES: usize = 5;
 
 /// A term and its weight.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,7 +58,7 @@ impl FromStr for WeightedTerm {
 /// Terms and cost of one walk.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct WalkCost {
-    /// Each term of [`TERMS`]; NaN of a walk that was none.
+    /// Each term of [`TERMS`]; NaN of a walk that was none, and of one that takes walks of its own and was not asked for.
     pub(super) terms: [f64; TERMS.len()],
     /// Weighted sum.
     pub(super) cost: f64,
@@ -68,12 +75,12 @@ impl WalkCost {
     }
 }
 
-/// Walks a scene to the end of the span.
+/// Walks a scene to the end of the span and, where the sum has terms of theirs, over the ground and under the pushes of `trials`.
 ///
 /// # Errors
 /// The robot cannot be built.
-pub(super) fn walk(setup: &Setup, sum: &[WeightedTerm]) -> Result<WalkCost, Error> {
-    let mut setup = setup.clone();
+pub(super) fn walk(given: &Setup, sum: &[WeightedTerm], trials: &Trials) -> Result<WalkCost, Error> {
+    let mut setup = given.clone();
     walk_on(&mut setup, SETTLED + SPAN);
     let mut chain = Chain::new(&setup)?;
     let dt = chain.cycle();
@@ -96,6 +103,13 @@ pub(super) fn walk(setup: &Setup, sum: &[WeightedTerm]) -> Result<WalkCost, Erro
     if (way.gone[0] - told).abs() > AS_TOLD * told.abs() + 0.02 {
         return Ok(WalkCost::none(SETTLED + SPAN));
     }
+    // What takes walks of its own. Who does not walk at one of their speeds on level ground does not walk, either.
+    let asked = |term: usize| sum.iter().any(|t| t.term == term);
+    let share = |term: usize| if asked(term) { trials.share(term, given) } else { Ok(f64::NAN) };
+    let (Ok(ground), Ok(pushes)) = (share(GROUND), share(PUSHES)) else {
+        return Ok(WalkCost::none(SETTLED + SPAN));
+    };
+    (terms[GROUND], terms[PUSHES]) = (ground, pushes);
     Ok(WalkCost { terms, cost: sum.iter().map(|t| t.weight * terms[t.term]).sum() })
 }
 

@@ -5,11 +5,13 @@
 //! |---|---|
 //! | `parameters` | which numbers are free, and the gait's file with others |
 //! | `cost` | the walk, and its cost as named terms |
+//! | `robustness` | two of the terms: unknown ground and pushes |
 //! | `picture` | cost over evaluations, and its slices through the optimum |
 
 mod cost;
 mod parameters;
 mod picture;
+mod robustness;
 #[cfg(test)]
 mod tests;
 
@@ -23,8 +25,9 @@ use serde::Serialize;
 use crate::optimize::{Ending, Evaluation, Evaluations, Optimizer};
 use crate::sheet::{Column, fixed, make, plain, six};
 use crate::{Error, Given, Sheet, Study};
-use cost::{SETTLED, SPAN, TERMS, WalkCost, WeightedTerm};
-use parameters::{FixedNumber, FreeNumber, Parameters};
+use cost::{GROUND, PUSHES, SETTLED, SPAN, TERMS, WalkCost, WeightedTerm};
+use parameters::{FixedNumber, FreeNumber, Parameters, forward};
+use robustness::Trials;
 
 const SEARCHES: &[Column] = &[
     plain("/method", "method"),
@@ -62,7 +65,7 @@ pub struct TuneGait {
     /// Another number of the gait's file, as in limits.duration.0=0.5.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<FixedNumber>,
-    /// Terms of the cost with their weights: inclination, zmp, landing, joint_speed.
+    /// Terms of the cost with their weights: inclination, zmp, landing, joint_speed; ground and pushes, which take many walks each.
     #[arg(long, value_name = "TERM[=WEIGHT]", value_delimiter = ',', default_value = "inclination")]
     pub cost: Vec<WeightedTerm>,
     /// Methods, each from the start with as many evaluations.
@@ -71,9 +74,19 @@ pub struct TuneGait {
     /// Walks that a method may try; one of 20 s takes a core about a second.
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub evaluations: u32,
-    /// Seed of the methods that draw numbers.
+    /// Seed of the methods that draw numbers, and of the places and pushes.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Random places of each kind of unknown ground (boards of 2 cm, steps up and down of 4 cm, slopes of 5 deg, height fields of
+    /// 3 cm) at each speed, of the term `ground`.
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub places: u64,
+    /// Random pushes at each speed, of the term `pushes`.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub pushes: u64,
+    /// Speeds (km/h) of the terms `ground` and `pushes`; default: the scene's.
+    #[arg(long, value_delimiter = ',', value_parser = crate::ground::size)]
+    pub speeds: Vec<f64>,
     /// Points of each slice of the cost through the best point; 0: none.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub slices: u32,
@@ -127,9 +140,10 @@ impl Study for TuneGait {
         let start = parameters.start()?;
         let done = AtomicUsize::new(0);
         let most = self.evaluations as usize;
+        let trials = self.trials(&parameters.setup_at(&start)?)?;
         let walks = self.methods.len() * most + self.slices as usize * self.free.len();
         let at = |point: &DVector<f64>| -> Result<WalkCost, Error> {
-            cost::walk(&parameters.setup_at(point)?, &self.cost)
+            cost::walk(&parameters.setup_at(point)?, &self.cost, &trials)
         };
         let told = |what: &str, point: &DVector<f64>| {
             (given.progress)(done.fetch_add(1, Ordering::Relaxed), walks, what);
@@ -153,7 +167,9 @@ impl Study for TuneGait {
         }
         let slices = self.slices(&parameters, &best, &|point| told("slices", point));
         let walks = [at(&start)?, at(&best.point)?];
-        self.sheet(&parameters, (&start, &best), &walks, (&searches, &slices))
+        let setups = [parameters.setup_at(&start)?, parameters.setup_at(&best.point)?];
+        let others = self.held_against(&trials.others(), &setups);
+        self.sheet(&parameters, (&start, &best), (&walks, &others), (&searches, &slices))
     }
 }
 
@@ -182,6 +198,35 @@ impl Search {
 }
 
 impl TuneGait {
+    /// Places and pushes of the search.
+    fn trials(&self, setup: &Setup) -> Result<Trials, Error> {
+        let told = forward(setup).map(|speed| 3.6 * speed);
+        let speeds = if self.speeds.is_empty() { told.into_iter().collect() } else { self.speeds.clone() };
+        if told.is_none() && self.robust().next().is_some() {
+            return Err(format!(
+                "scene {}: without walk/velocity it has neither ground nor pushes",
+                self.scene
+            )
+            .into());
+        }
+        Ok(Trials { speeds, places: self.places, pushes: self.pushes, seed: self.seed })
+    }
+
+    /// Terms of the cost that take walks of their own.
+    fn robust(&self) -> impl Iterator<Item = usize> {
+        [GROUND, PUSHES].into_iter().filter(|&term| self.cost.iter().any(|t| t.term == term))
+    }
+
+    /// Ground and pushes on which nothing was tuned, for rows of the table of terms; none where the robot does not walk.
+    fn held_against(&self, trials: &Trials, setups: &[Setup; 2]) -> Vec<serde_json::Value> {
+        let row = |term: usize| {
+            let (name, unit, about) = TERMS[term];
+            let [start, best] = setups.each_ref().map(|setup| trials.share(term, setup).ok());
+            serde_json::json!({ "name": format!("{name}, others"), "unit": unit, "about": about, "weight": 0.0, "start": start, "best": best })
+        };
+        self.robust().map(row).collect()
+    }
+
     /// The cost along each number through the best point.
     fn slices(
         &self,
@@ -211,7 +256,7 @@ impl TuneGait {
         &self,
         parameters: &Parameters<'_>,
         (start, best): (&DVector<f64>, &Evaluation),
-        walks: &[WalkCost; 2],
+        (walks, others): (&[WalkCost; 2], &[serde_json::Value]),
         (searches, slices): (&[Search], &[Slice]),
     ) -> Result<Sheet, Error> {
         let mut sheet = Sheet::titled(format!(
@@ -238,6 +283,7 @@ impl TuneGait {
                 let [start, best] = walks.map(|walk| walk.terms[i]);
                 serde_json::json!({ "name": name, "unit": unit, "about": about, "weight": weight(i), "start": start, "best": best })
             })
+            .chain(others.iter().cloned())
             .collect();
         sheet.rows("terms", TERM_COLUMNS, &terms);
         // The result: a gait's file, if the robot walks with it.
@@ -248,7 +294,7 @@ impl TuneGait {
             return Ok(sheet);
         }
         let path = self.out.join(format!("{}_tuned.toml", self.scene));
-        let text = self.evidence(&values, best.cost, searches) + &parameters.text_at(&best.point)?;
+        let text = self.evidence(&values, best.cost, searches, others) + &parameters.text_at(&best.point)?;
         let lost = parameters.written(&best.point);
         std::fs::write(&path, text)
             .map_err(|e| format!("{}: {e}; the best gait has {lost}", path.display()))?;
@@ -260,7 +306,13 @@ impl TuneGait {
     }
 
     /// Comment above the gait: cost, bounds, evaluations and seed of the search.
-    fn evidence(&self, values: &[Value], cost: f64, searches: &[Search]) -> String {
+    fn evidence(
+        &self,
+        values: &[Value],
+        cost: f64,
+        searches: &[Search],
+        others: &[serde_json::Value],
+    ) -> String {
         let mut text = format!(
             "# Tuned by `gangwerk tune gait` {} in scene {}: cost {cost:.6e}",
             env!("CARGO_PKG_VERSION"),
@@ -283,6 +335,16 @@ impl TuneGait {
                 s.cost,
                 self.seed
             );
+        }
+        if !others.is_empty() {
+            text += &format!(
+                "\n# {} places of each ground and {} pushes at each speed",
+                self.places, self.pushes
+            );
+        }
+        for row in others {
+            let [name, start, best] = ["name", "start", "best"].map(|key| &row[key]);
+            text += &format!("\n# {}: {start} at the start, {best} now", name.as_str().unwrap_or_default());
         }
         text + "\n\n"
     }

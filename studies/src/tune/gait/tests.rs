@@ -16,6 +16,9 @@ fn study(free: &[&str], out: &str) -> TuneGait {
         methods: vec![Optimizer::ImplicitFiltering],
         evaluations: 12,
         seed: 1,
+        places: 1,
+        pushes: 4,
+        speeds: Vec::new(),
         slices: 0,
         out: std::env::temp_dir().join(format!("gangwerk-tune-{out}-{}", std::process::id())),
     }
@@ -38,7 +41,7 @@ fn johnnie_walks_with_less_sway() {
     assert!(text.starts_with("# Tuned by `gangwerk tune gait`") && text.contains("# How Johnnie walks."));
     let setup = Setup::load(&root, "johnnie_25kmh").unwrap().with_gait(&text).unwrap();
     assert_eq!(setup.gait.model.leg_mass, sheet["values"][0]["best"].as_f64().unwrap());
-    assert_eq!(cost::walk(&setup, &study.cost).unwrap().terms[0], best);
+    assert_eq!(cost::walk(&setup, &study.cost, &study.trials(&setup).unwrap()).unwrap().terms[0], best);
     std::fs::remove_dir_all(&study.out).unwrap();
 }
 
@@ -55,6 +58,37 @@ fn a_step_is_as_long_as_its_speed_says() {
     assert!((duration - 0.48 / 0.6945).abs() < 1e-15);
 }
 
+/// Ground and pushes cost what is not survived, and are held against others in the table and in the file; a scene that walks nowhere
+/// has none.
+#[test]
+fn ground_and_pushes_cost_what_is_not_survived() {
+    let root = config::root(None);
+    let mut study = TuneGait {
+        scene: "walk_2kmh".into(),
+        cost: ["ground=2", "pushes"].map(|text| text.parse().unwrap()).to_vec(),
+        evaluations: 1,
+        methods: vec![Optimizer::Random],
+        ..study(&["step.swing_height=0.05:0.08"], "robust")
+    };
+    let sheet = study.run(&given(&root)).unwrap().json();
+    let share = |name: &str| {
+        let mut rows = sheet["terms"].as_array().unwrap().iter();
+        rows.find(|row| row["name"] == name).unwrap()["best"].as_f64().unwrap()
+    };
+    let (ground, pushes) = (share("ground"), share("pushes"));
+    assert!((sheet["searches"][0]["cost"].as_f64().unwrap() - 2.0 * ground - pushes).abs() < 1e-12);
+    // One place of five kinds, and four pushes.
+    assert!((5.0 * ground).fract() < 1e-9 && (4.0 * pushes).fract() < 1e-9, "{ground} {pushes}");
+    let text = std::fs::read_to_string(sheet["gait"].as_str().unwrap()).unwrap();
+    for name in ["ground, others", "pushes, others"] {
+        assert!((0.0..=1.0).contains(&share(name)) && text.contains(&format!("# {name}: ")), "{text}");
+    }
+    std::fs::remove_dir_all(&study.out).unwrap();
+    study.scene = "stand".into();
+    let told = study.run(&given(&root)).unwrap_err().to_string();
+    assert_eq!(told, "scene stand: without walk/velocity it has neither ground nor pushes");
+}
+
 /// A walk that falls costs more than any walk, and the more the sooner.
 #[test]
 fn a_fall_is_no_walk() {
@@ -63,7 +97,8 @@ fn a_fall_is_no_walk() {
     let mut setup = Setup::load(&config::root(None), "johnnie_25kmh").unwrap();
     setup.gait.control.inclination_p = [0.0; 2];
     setup.gait.control.inclination_d = [0.0; 2];
-    let walk = cost::walk(&setup, &["inclination".parse().unwrap()]).unwrap();
+    let none = Trials { speeds: Vec::new(), places: 1, pushes: 1, seed: 1 };
+    let walk = cost::walk(&setup, &["inclination".parse().unwrap()], &none).unwrap();
     assert!(!walk.walked() && walk.terms[0].is_nan() && walk.cost > cost::NO_WALK, "{walk:?}");
 }
 
