@@ -128,8 +128,8 @@ fn masses_are_those_of_the_seed() {
     assert!(of(GroundKind::TorsoCog, 0.03).torso_cog_shift.iter().all(|x| x.abs() <= 0.03));
 }
 
-fn reference() -> Reference {
-    Reference::of(Setup::load(&config::root(None), "walk_2kmh").unwrap(), (1, 2.0)).unwrap()
+fn reference() -> LevelWalk {
+    LevelWalk::of(Setup::load(&config::root(None), "walk_2kmh").unwrap(), (1, 2.0)).unwrap()
 }
 
 /// Ground that is as told is walked; a wall is not, and one place is the same twice.
@@ -156,7 +156,7 @@ fn a_robot_that_stands_still_has_not_walked() {
 
 /// Of twelve random places of a kind and size at 1 km/h on type 3, how many are walked.
 fn walked(setup: &Setup, kind: GroundKind, size: f64) -> usize {
-    let reference = Reference::of(setup.clone(), (3, 1.0)).unwrap();
+    let reference = LevelWalk::of(setup.clone(), (3, 1.0)).unwrap();
     let failed = parallel::map(12, |k| reference.over(kind, size, 70_001 + k as u64).unwrap());
     failed.iter().filter(|failed| failed.is_none()).count()
 }
