@@ -207,9 +207,10 @@ fn a_log_that_is_cut_grows_shrinks_or_is_gone() {
                 shown += 1;
                 let about = film.about();
                 assert_eq!(about["complete"], length as usize == bytes.len());
-                let last = (about["last"].as_f64().unwrap() * 1000.0).round() as u64;
+                let [first, last] =
+                    ["first", "last"].map(|end| (about[end].as_f64().unwrap() * 1000.0).round() as u64);
                 for _ in 0..5 {
-                    let tick = random.below(last.max(1));
+                    let tick = first + random.below(last - first + 1);
                     let seen = film.frame(tick).unwrap().unwrap();
                     // A cycle whose other records are beyond the cut has the ones before.
                     if tick + 100 < last {
