@@ -169,7 +169,7 @@ impl Study for TuneGait {
         let walks = [at(&start)?, at(&best.point)?];
         let setups = [parameters.setup_at(&start)?, parameters.setup_at(&best.point)?];
         let others = self.held_against(&trials.others(), &setups);
-        self.sheet(&parameters, (&start, &best), (&walks, &others), (&searches, &slices))
+        self.sheet(&parameters, (&start, &best), (&walks, &trials.speeds, &others), (&searches, &slices))
     }
 }
 
@@ -256,7 +256,7 @@ impl TuneGait {
         &self,
         parameters: &Parameters<'_>,
         (start, best): (&DVector<f64>, &Evaluation),
-        (walks, others): (&[WalkCost; 2], &[serde_json::Value]),
+        (walks, speeds, others): (&[WalkCost; 2], &[f64], &[serde_json::Value]),
         (searches, slices): (&[Search], &[Slice]),
     ) -> Result<Sheet, Error> {
         let mut sheet = Sheet::titled(format!(
@@ -294,7 +294,8 @@ impl TuneGait {
             return Ok(sheet);
         }
         let path = self.out.join(format!("{}_tuned.toml", self.scene));
-        let text = self.evidence(&values, best.cost, searches, others) + &parameters.text_at(&best.point)?;
+        let text = self.evidence(&values, best.cost, searches, (speeds, others))
+            + &parameters.text_at(&best.point)?;
         let lost = parameters.written(&best.point);
         std::fs::write(&path, text)
             .map_err(|e| format!("{}: {e}; the best gait has {lost}", path.display()))?;
@@ -311,7 +312,7 @@ impl TuneGait {
         values: &[Value],
         cost: f64,
         searches: &[Search],
-        others: &[serde_json::Value],
+        (speeds, others): (&[f64], &[serde_json::Value]),
     ) -> String {
         let mut text = format!(
             "# Tuned by `gangwerk tune gait` {} in scene {}: cost {cost:.6e}",
@@ -338,8 +339,8 @@ impl TuneGait {
         }
         if !others.is_empty() {
             text += &format!(
-                "\n# {} places of each ground and {} pushes at each speed",
-                self.places, self.pushes
+                "\n# {} places of each ground and {} pushes at each of {speeds:?} km/h, seed {}",
+                self.places, self.pushes, self.seed
             );
         }
         for row in others {
