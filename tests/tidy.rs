@@ -16,7 +16,7 @@ const LAYERS: [&[&str]; 8] = [
     &["messages", "codec"],
     &["ipc", "realtime", "config", "recording", "daemon", "fieldbus", "sercos", "latency"],
     &["planner", "controller", "lowlevel", "sim-backend", "broker", "watchdog", "logger"],
-    &["chain", "dashboard", "joystick", "gateway"],
+    &["chain", "dashboard", "joystick", "gateway", "vision"],
     &["studies", "harness", "fuzzing"],
     &["cli"],
     &["python"],
@@ -279,7 +279,7 @@ fn quoted(document: &str) -> Vec<String> {
 
 /// Whether a quotation claims that a file or folder of the tree exists.
 fn is_path(word: &str) -> bool {
-    const FOLDERS: [&str; 21] = [
+    const FOLDERS: [&str; 22] = [
         "planner",
         "controller",
         "lowlevel",
@@ -290,6 +290,7 @@ fn is_path(word: &str) -> bool {
         "dashboard",
         "joystick",
         "gateway",
+        "vision",
         "cli",
         "config",
         "crates",
@@ -307,7 +308,7 @@ fn is_path(word: &str) -> bool {
     let ending = [".rs", ".toml", ".md", ".urdf", ".sh", ".py"].iter().any(|e| word.ends_with(e));
     let pattern = word.split(['/', '.']).any(|part| part == "NAME" || part == "PROCESS" || part == "SCENE");
     let first = word.split('/').next().unwrap_or("");
-    let in_folder = FOLDERS[..18].contains(&first) && word.contains('/');
+    let in_folder = FOLDERS[..19].contains(&first) && word.contains('/');
     plain && !pattern && (in_folder || ending && word.contains('/'))
 }
 

@@ -8,6 +8,7 @@ mod config_command;
 mod console_command;
 mod dashboard_command;
 mod desk;
+mod explore_command;
 mod fault_table;
 mod gateway_command;
 mod joystick_command;
@@ -98,6 +99,9 @@ enum GangwerkTask {
     /// Vision interface over UDP: where the robot is goes out, velocities and boxes come in; waits for a robot if none runs.
     #[command(after_help = gateway_command::HELP)]
     Gateway(gateway_command::GatewayArguments),
+    /// Vision system that walks a simulated robot about a room, at its gateway.
+    #[command(after_help = explore_command::HELP)]
+    Explore(explore_command::ExploreArguments),
     /// Interactive Python shell with a client `robot` of the running robot; needs the Python package: docs/python.md.
     Console(console_command::ConsoleArguments),
     /// The configuration that is taken, or a copy of the built-in one.
@@ -268,8 +272,8 @@ impl GangwerkTask {
     /// Whether it only tells something. What moves a robot or guards it does not end because nobody reads any more.
     fn only_tells(&self) -> bool {
         use GangwerkTask::{
-            Broker, Console, Controller, Dashboard, Faults, Gateway, Joystick, Latency, Logger, Lowlevel,
-            Planner, Run, SimBackend, Watchdog,
+            Broker, Console, Controller, Dashboard, Explore, Faults, Gateway, Joystick, Latency, Logger,
+            Lowlevel, Planner, Run, SimBackend, Watchdog,
         };
         let moves = matches!(
             self,
@@ -279,6 +283,7 @@ impl GangwerkTask {
                 | Console(_)
                 | Dashboard(_)
                 | Gateway(_)
+                | Explore(_)
                 | Joystick(_)
                 | Latency { .. }
                 | Self::LatencyEnd { .. }
@@ -334,6 +339,7 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         GangwerkTask::Dashboard(arguments) => done(dashboard_command::run(arguments, asked)),
         GangwerkTask::Joystick(arguments) => done(joystick_command::run(arguments, &config()?)),
         GangwerkTask::Gateway(arguments) => done(gateway_command::run(arguments)),
+        GangwerkTask::Explore(arguments) => done(explore_command::run(arguments)),
         GangwerkTask::Param { what, dir } => done(param_command::run(&dir, what)),
         GangwerkTask::Console(arguments) => done(console_command::run(&arguments)),
         GangwerkTask::Config { what } => done(config_command::run(asked, what)),

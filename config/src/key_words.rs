@@ -17,6 +17,10 @@ pub(crate) const KEY_WORDS: &[(&str, &str)] = &[
     ("object[].scale", "Length of one unit of the mesh's file."),
     ("object[].friction", "Coefficient of friction; without it that of the robot's soles."),
     ("object[].appears", "Time at which it appears."),
+    (
+        "object[].keeps_clear",
+        "Distance from the robot's feet below which it waits rather than move on towards them, as people do.",
+    ),
     ("object[].vanishes", "Time at which it vanishes."),
     ("pose[].time", "Time at which it has this pose."),
     ("bits", "Resolution of the encoders at the joints, for all or by joint."),

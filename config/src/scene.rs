@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use drives::JointControl;
-use messages::Command;
 use messages::command::{Domain, PushCommand};
 use messages::command_text::{COMMANDS, CommandInfo};
+use messages::{Command, MAX_MOVING};
 
 use crate::bus_fault::BusFault;
 use crate::components::{ComponentChanges, Components, JointModel};
@@ -156,6 +156,13 @@ impl Scene {
             top.problem(
                 "friction_ramp",
                 "it is for \"euler\", \"rk4\" and \"bdf\" on types 2 to 5; others see dry friction as it is, or none",
+            );
+        }
+        let moving = scene.objects.iter().filter(|o| o.moves()).count();
+        if moving > MAX_MOVING {
+            top.problem(
+                "object",
+                format!("{moving} of them move, appear or vanish; at most {MAX_MOVING} can"),
             );
         }
         // Rows stand in the order of time, as everything that plays them expects.

@@ -27,6 +27,8 @@ pub struct TerrainObject {
     pub vanishes: f64,
     /// The planner knows of it: an obstacle to step over.
     pub known: bool,
+    /// \[m\] Nearer to the robot's feet it does not move, unless that takes it away from them.
+    pub keeps_clear: f64,
     /// Later poses, by time \[s\], ascending; it moves straight from one pose to the next.
     pub poses: Vec<(f64, TerrainPose)>,
 }
@@ -54,6 +56,13 @@ pub struct TerrainPose {
     pub position: [f64; 3],
     /// \[rad\] Roll, pitch and yaw: turned about x, then y, then z of the world.
     pub rotation: [f64; 3],
+}
+
+impl TerrainObject {
+    /// It is not always there, or not always at the same place.
+    pub fn moves(&self) -> bool {
+        !self.poses.is_empty() || self.appears > 0.0 || self.vanishes.is_finite()
+    }
 }
 
 impl ObjectShape {
@@ -84,14 +93,15 @@ pub(crate) fn object(row: &Section<'_, '_>) -> TerrainObject {
         appears: optional("appears", "s", NOT_NEGATIVE, 0.0),
         vanishes: optional("vanishes", "s", POSITIVE, f64::INFINITY),
         known: row.flag("known"),
+        keeps_clear: optional("keeps_clear", "m", 0.0..=10.0, 0.0),
         poses: row.tables("pose", |row| (row.number("time", "s", POSITIVE), pose(row))),
     };
     if object.vanishes <= object.appears {
         row.problem("vanishes", format!("must be later than it appears, {} s", object.appears));
     }
-    // Moving objects are for contact only: there is no vision that would follow them.
-    let changes = !object.poses.is_empty() || object.appears > 0.0 || object.vanishes.is_finite();
-    if object.known && changes {
+    // Moving objects are for contact and cameras only: the planner does not follow them.
+    let moves = object.moves();
+    if object.known && moves {
         row.problem("known", "the planner knows only what stays where it is from the beginning to the end");
     }
     for pair in object.poses.windows(2) {

@@ -133,7 +133,10 @@ fn sole(belief: &Belief, &[x, y, z, heading]: &[f64; 4], i: usize) -> f64 {
 
 /// Presence and pose of an object at the time of the simulation.
 fn object(moment: &Moment<'_>, object: usize, i: usize) -> Option<f64> {
-    let (schedule, time) = (&moment.objects[object], moment.sim?.time);
+    let (schedule, sim) = (&moment.objects[object], moment.sim?);
+    let moving = moment.objects[..object].iter().filter(|s| s.changes()).count();
+    let late = if schedule.changes() { *sim.object_delay.get(moving)? } else { 0.0 };
+    let time = sim.time - late;
     let Pose { position, rotation } = schedule.pose(time);
     let [x, y, z, w] = <[f64; 4]>::from(UnitQuaternion::into_inner(rotation).coords);
     Some(match i {
@@ -157,7 +160,9 @@ mod tests {
         let mut sim = SimState { time: 2.0, fallen: 1, ..SimState::default() };
         (sim.position, sim.orientation) = ([1.0, 2.0, 3.0], [0.1, 0.2, 0.3, 0.9]);
         let there = Pose::new([4.0, 5.0, 6.0], [0.0; 3]);
-        let objects = [Schedule::fixed(Pose::identity()), Schedule::new(0.0, 1.0, there, &[])];
+        let gone = || Schedule::new(0.0, 1.0, there, &[]);
+        let objects = [Schedule::fixed(Pose::identity()), gone(), gone()];
+        sim.object_delay[1] = 1.5;
         let layout = layout(24, objects.len());
         let moment = Moment {
             cycle: 0.001,
@@ -185,6 +190,7 @@ mod tests {
         assert_eq!((at("joint_angle")[23], at("wrench")[11], at("start_up")[0]), (23.0, 17.0, 6.0));
         assert_eq!(at("objects")[..8], [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
         assert_eq!(at("objects")[8..12], [0.0, 4.0, 5.0, 6.0]);
+        assert_eq!(at("objects")[16], 1.0, "later than planned, so still there");
         assert!(at("torso").iter().chain(at("zmp")).chain(at("supply")).all(|x| x.is_nan()));
     }
 

@@ -10,7 +10,8 @@
 //! | `owner` | which user of this machine it comes from |
 //! | `gate` | whose, how old, in order, how many |
 //! | `link` | client of the broker: commands out, answers and lease back |
-//! | `observer` | pose and odometry from the topics |
+//! | `sight` | pose and odometry from sensors and stabilizer |
+//! | `observer` | these of a running robot |
 //! | `trigger` | what a vision system is told |
 
 mod cause;
@@ -18,6 +19,7 @@ pub mod gate;
 mod link;
 mod observer;
 mod owner;
+pub mod sight;
 pub mod trigger;
 pub mod wire;
 
@@ -36,6 +38,7 @@ use realtime::clock::{SECOND, now};
 pub use cause::Cause;
 use gate::Gate;
 use link::Link;
+pub use link::SILENCE;
 use observer::Observer;
 use trigger::{Frames, Odometry, Trigger, flag};
 

@@ -16,7 +16,7 @@ use realtime::clock::SECOND;
 /// Name at the broker.
 const NAME: &str = "gangwerk gateway";
 /// Silence of the vision system after which she comes to a stand \[ns\].
-const SILENCE: u64 = SECOND / 2;
+pub const SILENCE: u64 = SECOND / 2;
 /// Between two signs of life while she walks, and while she does not: those keep the connection open \[ns\].
 const PING: u64 = SECOND / 10;
 const IDLE: u64 = 20 * SECOND;

@@ -93,3 +93,17 @@ impl Trigger {
         all
     }
 }
+
+/// What a trigger's numbers say, the inverse of [`Trigger::numbers`].
+pub(crate) fn parts(numbers: &[f64; NUMBERS]) -> (Odometry, Frames) {
+    let mut rest = numbers.iter().copied();
+    let mut next = || rest.next().unwrap_or(f64::NAN);
+    let place = std::array::from_fn(|_| next());
+    let odometry = Odometry { place, place_error: next(), heading_error: next(), way: next() };
+    let mut pose = || {
+        let position = std::array::from_fn(|_| next());
+        RecordedPose { position, orientation: std::array::from_fn(|_| next()) }
+    };
+    let (camera, torso) = (pose(), pose());
+    (odometry, Frames { camera, torso, soles: [pose(), pose()] })
+}

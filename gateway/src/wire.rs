@@ -16,7 +16,7 @@ use messages::Command;
 use messages::command_text::CommandInfo;
 
 use crate::Cause;
-use crate::trigger::{NUMBERS, Trigger};
+use crate::trigger::{self, NUMBERS, Trigger};
 
 /// Version of this layout.
 pub const VERSION: u16 = 1;
@@ -94,6 +94,26 @@ impl Datagram {
 }
 
 impl Trigger {
+    /// The trigger of these bytes: the other end's part.
+    ///
+    /// # Errors
+    /// It is none of this version.
+    pub fn decode(mut bytes: &[u8]) -> Result<Self, Cause> {
+        if bytes.len() != TRIGGER || bytes[..4] != MAGIC || bytes[6..8] != [0; 2] {
+            return Err(Cause::Malformed);
+        }
+        if bytes[4..6] != VERSION.to_le_bytes() {
+            return Err(Cause::Version);
+        }
+        bytes = &bytes[8..];
+        let mut word = || take(&mut bytes).map_or(0, u64::from_le_bytes);
+        let [sender, sequence, stamp, cycle, flags, gait] = std::array::from_fn(|_| word());
+        let (odometry, frames) = trigger::parts(&std::array::from_fn(|_| f64::from_bits(word())));
+        let accepted = word();
+        let refused = std::array::from_fn(|_| word());
+        Ok(Self { sender, sequence, stamp, cycle, flags, gait, odometry, frames, accepted, refused })
+    }
+
     /// Its bytes.
     pub fn encode(&self) -> Vec<u8> {
         let mut bytes = head(0, self.sender, self.sequence, self.stamp);
@@ -210,8 +230,22 @@ mod tests {
 
     proptest! {
         #[test]
-        fn random_bytes_are_refused(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        fn random_bytes_are_refused(bytes in prop::collection::vec(any::<u8>(), 0..500)) {
             prop_assert!(Datagram::decode(&bytes).is_err());
+            prop_assert!(Trigger::decode(&bytes).is_err());
+        }
+
+        /// Whatever follows a sound head is a trigger, and the same bytes again.
+        #[test]
+        fn a_trigger_is_read_as_it_was_written(rest in prop::collection::vec(any::<u8>(), TRIGGER - 8), cut in 0..TRIGGER) {
+            let bytes = [&head(0, 0, 0, 0)[..8], &rest].concat();
+            prop_assert_eq!(Trigger::decode(&bytes).unwrap().encode(), bytes.clone());
+            prop_assert!(Trigger::decode(&bytes[..cut]).is_err());
+            for (at, wrong, cause) in [(0, b'x', Cause::Malformed), (4, 2, Cause::Version), (6, 1, Cause::Malformed)] {
+                let mut other = bytes.clone();
+                other[at] = wrong;
+                prop_assert_eq!(Trigger::decode(&other).err(), Some(cause));
+            }
         }
 
         /// Behind a sound head: never a panic, and what is taken is in its ranges and the same bytes again.

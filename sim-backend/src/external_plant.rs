@@ -361,6 +361,7 @@ fn object(object: &TerrainObject) -> Value {
         "friction": object.friction,
         "appears": object.appears,
         "vanishes": object.vanishes, // null: never
+        "keeps_clear": object.keeps_clear,
         "poses": object.poses.iter().map(|(time, at)| json!({ "time": time, "pose": pose(at) })).collect::<Vec<_>>(),
     });
     match &object.shape {

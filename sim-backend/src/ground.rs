@@ -74,6 +74,11 @@ impl GroundContact {
         self.seen.fill(f64::NAN);
     }
 
+    /// Ground and objects.
+    pub(crate) const fn environment(&self) -> &Environment {
+        &self.environment
+    }
+
     /// Moves the objects of the environment to `time` \[s\], as far as nothing touches them; returns what happened.
     pub(crate) fn advance(&mut self, time: f64) -> &[environment::ObjectEvent] {
         if !self.environment.objects().is_empty() {

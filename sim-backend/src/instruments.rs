@@ -184,6 +184,7 @@ impl Instruments {
         truth.contact[..carrying.len()].copy_from_slice(carrying);
         truth.contact[carrying.len()..before.max(carrying.len())].fill(ContactPoint::default());
         truth.push = inputs.forces.push;
+        truth.object_delay.iter_mut().zip(plant.object_delays()).for_each(|(to, delay)| *to = delay);
         truth.rope = inputs.forces.rope.map_or(0.0, |rope| rope.tension(x, speed));
     }
 

@@ -22,6 +22,7 @@
 //! | their contact, and what they stand on | `ground.rs`, [`feet`], [`terrain`] |
 //! | time steps; the adaptive ones; the longest stable ones | [`integrate`], [`stiff`] with `sparse_lu.rs`, [`step_limit`] |
 //! | steps that are too long; fall | `chatter.rs`, `fall.rs` |
+//! | a depth camera in its head, for programs beside it | [`eye`] |
 //! | readings and truth | `instruments.rs`, [`sensors`] |
 
 mod body;
@@ -35,6 +36,7 @@ pub mod drive;
 mod drive_electronics;
 pub mod external_forces;
 pub mod external_plant;
+pub mod eye;
 mod fall;
 mod far_end;
 pub mod feet;

@@ -310,6 +310,11 @@ impl Plant {
         self.ground.advance(time)
     }
 
+    /// \[s\] By how much each object of the environment that moves is late.
+    pub(crate) fn object_delays(&self) -> impl Iterator<Item = f64> {
+        self.ground.environment().delays()
+    }
+
     /// Worst end of the solver of the pads since the last call.
     pub(crate) fn take_contact_report(&mut self) -> contact::SolverReport {
         self.ground.feet.take_worst()

@@ -19,7 +19,7 @@ pub fn environment(scene: &Scene) -> Result<Environment, Box<dyn Error>> {
 fn object(o: &TerrainObject) -> Result<Object, Box<dyn Error>> {
     let later: Vec<(f64, Pose)> = o.poses.iter().map(|(time, p)| (*time, pose(p))).collect();
     let schedule = Schedule::new(o.appears, o.vanishes, pose(&o.pose), &later);
-    Ok(Object::new(o.name.clone(), o.shape.mesh()?, o.friction, schedule))
+    Ok(Object::new(o.name.clone(), o.shape.mesh()?, o.friction, schedule).keeping_clear(o.keeps_clear))
 }
 
 fn pose(p: &TerrainPose) -> Pose {

@@ -14,6 +14,7 @@ pub mod bus_faults;
 pub mod commands;
 pub mod components;
 pub mod cycles;
+pub mod exploration;
 pub mod figures_of_thesis;
 pub mod ground;
 pub mod hours;
@@ -89,6 +90,8 @@ studies! {
     Hours: hours::Hours,
     /// How often the robot walks over ground that it was not told of, and as a robot that differs from what it was told.
     Ground: ground::GroundStudy,
+    /// How the robot gets about in rooms that she sees, and nobody has told her of.
+    Exploration: exploration::Exploration,
     /// How many random timelines of commands the robot walks to their ends.
     Commands: commands::RandomCommands,
     /// Which disturbances and errors a gait survives: pushes, wrong sensors, wrong ground, delay.

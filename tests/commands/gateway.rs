@@ -170,6 +170,38 @@ fn the_python_client_walks_her_and_she_stops_before_a_box() {
     assert_eq!((sim.fallen, sim.power), (0, 1));
 }
 
+/// Four walls of which the planner knows nothing: she walks, turns away from each, and stands when the program that sees is stopped.
+#[test]
+fn explore_keeps_her_off_walls_and_she_stands_without_it() {
+    let _turn = turn();
+    let site = Site::patient(super::EXE);
+    let walls = [([0.1, 4.0], [1.8, 0.0]), ([0.1, 4.0], [-1.6, 0.0]), ([4.0, 0.1], [0.0, 1.7]), ([4.0, 0.1], [0.0, -1.7])];
+    let object = |([length, width], [x, y]): ([f64; 2], [f64; 2])| {
+        format!("\n[[object]]\nname = \"wall\"\nbox = [{length}, {width}, 1.0]\nposition = [{x}, {y}, 0.5]\n")
+    };
+    let mut robot = Robot::standing_with(&site, &walls.map(object).concat(), &PACED);
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let to = socket.local_addr().unwrap();
+    drop(socket);
+    let mut running = gateway(&site, to);
+    says(&mut running, "connected", 1);
+    let explore = site.start(&["explore", "--dir", &site.run_dir().display().to_string(), "--listen", &to.to_string()]);
+    robot.walks();
+    // Her middle stays as far from each wall as half of her is wide, wherever she goes.
+    let (end, mut turned, mut went) = (clock::now() + 25 * clock::SECOND, 0.0_f64, 0.0_f64);
+    while clock::now() < end {
+        let sim = until(&mut robot.run, &mut robot.sim, |_| true);
+        let [x, y, _] = sim.position;
+        assert!((-1.2..1.4).contains(&x) && y.abs() < 1.3, "{x} {y}");
+        let [_, _, z, w] = sim.orientation;
+        (turned, went) = (turned.max(2.0 * z.abs().atan2(w.abs())), went.max(x.hypot(y)));
+        doze(0.02);
+    }
+    assert!(turned > 0.5 && went > 0.3, "{turned} rad, {went} m: {}", running.out());
+    explore.signal_supervisor(Signal::STOP);
+    robot.stands();
+}
+
 /// Nearly a third of the datagrams lost, others late, doubled, replayed, or full of what is no number.
 #[test]
 fn a_bad_network_neither_throws_her_nor_makes_her_jump() {

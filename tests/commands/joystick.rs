@@ -121,7 +121,12 @@ impl Robot {
 
     /// The same, of a run with these options.
     pub(super) fn standing_in(site: &Site, options: &[&str]) -> Self {
-        site.scene("wait", 100_000.0, WAIT);
+        Self::standing_with(site, "", options)
+    }
+
+    /// The same among these objects.
+    pub(super) fn standing_with(site: &Site, objects: &str, options: &[&str]) -> Self {
+        site.scene("wait", 100_000.0, &format!("{objects}{WAIT}"));
         let mut run = site.run("wait", options);
         let space = run.space();
         let (state, sim) = (space.reader(&CONTROLLER_STATE).unwrap(), space.reader(&SIM_STATE).unwrap());

@@ -7,6 +7,21 @@
 use crate::query::{Environment, ObjectEvent};
 
 impl Environment {
+    /// \[s\] By how much each object that moves is late, in their order.
+    pub fn delays(&self) -> impl Iterator<Item = f64> {
+        self.objects.iter().filter(|o| o.moves()).map(|o| self.time - o.clock)
+    }
+
+    /// Puts every object to where it is at `time` \[s\], those that move as late as `delays` \[s\] says of them in their order.
+    pub fn place_at(&mut self, time: f64, delays: &[f64]) {
+        self.time = time;
+        for (object, delay) in self.objects.iter_mut().filter(|o| o.moves()).zip(delays) {
+            object.clock = time - delay;
+            object.present = object.schedule.is_present(object.clock);
+            object.place(object.schedule.pose(object.clock));
+        }
+    }
+
     /// Moves every object to where its schedule has it at `time` \[s\], except those that `touched` says something
     /// touches, and those that would enclose one of the `nodes` \[m\] @world there. Returns what happened. An object
     /// that has to wait loses the whole step, so steps should be short: a bus cycle.

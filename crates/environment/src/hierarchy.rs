@@ -11,16 +11,16 @@ use crate::point_triangle::{self, Feature};
 use crate::triangle::Triangle;
 
 /// Marks a child that is a triangle, not a node.
-const TRIANGLE: u32 = 1 << 31;
+pub(crate) const TRIANGLE: u32 = 1 << 31;
 /// Children waiting at most: three at each of the 16 levels of a tree over 2^31 triangles, and the one on top.
-const WAITING: usize = 3 * 16 + 1;
+pub(crate) const WAITING: usize = 3 * 16 + 1;
 
 /// A node: its children and the boxes around them. The box around nothing is at no finite distance.
-type TreeNode = [(Bounds, u32); 4];
+pub(crate) type TreeNode = [(Bounds, u32); 4];
 
 /// The tree over the triangles of one mesh; its root is the first node.
 #[derive(Clone, Debug)]
-pub(crate) struct Hierarchy(Vec<TreeNode>);
+pub(crate) struct Hierarchy(pub(crate) Vec<TreeNode>);
 
 impl Hierarchy {
     pub(crate) fn new(triangles: &[Triangle]) -> Self {

@@ -1,7 +1,8 @@
 //! Environment of a robot: a plane, z = 0 unless it is lower or tilted, and rigid objects on it (thesis 2.3.2), and the distance
 //! of a point to them.
 //!
-//! - [`Environment`]: ground and objects; [`Environment::query`] answers with gap, normal and what was hit.
+//! - [`Environment`]: ground and objects; [`Environment::query`] answers with gap, normal and what was hit, [`Environment::ray`]
+//!   with the way to what is met first.
 //! - [`Object`]: a [`Mesh`] with a pose; it may appear, move and vanish while nothing touches it.
 //! - [`Mesh`]: the surface of a solid, from triangles, from a file ([`Mesh::read`]: STL, OBJ, glTF, VRML 97) or a box.
 //!
@@ -17,6 +18,7 @@ mod object;
 mod point_triangle;
 mod pose;
 mod query;
+mod ray;
 mod read;
 mod reference;
 mod schedule;

@@ -24,7 +24,7 @@ use crate::triangle::{Nearest, Triangle};
 #[derive(Clone, Debug)]
 pub struct Mesh {
     pub(crate) triangles: Vec<Triangle>,
-    hierarchy: Hierarchy,
+    pub(crate) hierarchy: Hierarchy,
     bounds: Bounds,
     repairs: MeshRepairs,
 }

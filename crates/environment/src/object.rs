@@ -20,6 +20,8 @@ pub struct Object {
     pub(crate) clock: f64,
     /// Its next change is waiting.
     pub(crate) refused: bool,
+    /// \[m\] Nearer to a robot it does not move, unless that takes it away from it.
+    clearance: f64,
     /// \[m\] @world Height of the ground it lies on.
     ground: f64,
     pose: Pose,
@@ -51,6 +53,7 @@ impl Object {
             present: schedule.is_present(0.0),
             clock: 0.0,
             refused: false,
+            clearance: 0.0,
             buried: vec![false; mesh.len()],
             floor: vec![false; mesh.len()],
             any_buried: false,
@@ -64,6 +67,17 @@ impl Object {
         };
         object.place(pose);
         object
+    }
+
+    /// The same, but it waits rather than come nearer than `clearance` \[m\] to a robot, as people do.
+    pub fn keeping_clear(mut self, clearance: f64) -> Self {
+        self.clearance = clearance;
+        self
+    }
+
+    /// It is not always there, or not always at the same place.
+    pub fn moves(&self) -> bool {
+        self.schedule.changes()
     }
 
     /// Name in messages.
@@ -111,19 +125,30 @@ impl Object {
         }
     }
 
-    /// Places it at `pose` unless it would enclose one of the `nodes` \[m\] @world there; says whether it did.
+    /// Places it at `pose` unless it would enclose one of the `nodes` \[m\] @world there, or come too near to one; says whether it did.
     pub(crate) fn moved_clear_of(&mut self, nodes: &[[f64; 3]], pose: Pose) -> bool {
-        let before = self.pose;
+        let (before, was) = (self.pose, self.nearest(nodes));
         self.place(pose);
         let inside = |p: &[f64; 3]| {
             let p = Vector3::from(*p);
             self.bounds.distance_squared(&p) == 0.0 && self.query(&p, 0.0).is_some_and(|(gap, _)| gap < 0.0)
         };
-        let clear = !nodes.iter().any(inside);
+        let clear = !nodes.iter().any(inside) && self.nearest(nodes) >= was;
         if !clear {
             self.place(before);
         }
         clear
+    }
+
+    /// \[m\] Least distance of the `nodes` \[m\] @world that is below its clearance; the clearance if there is none, or it is not there.
+    fn nearest(&self, nodes: &[[f64; 3]]) -> f64 {
+        let mut nearest = self.clearance;
+        for p in nodes.iter().map(|p| Vector3::from(*p)).filter(|_| self.present) {
+            if self.bounds.distance_squared(&p) < nearest * nearest {
+                nearest = self.query(&p, nearest).map_or(nearest, |(gap, _)| gap.min(nearest));
+            }
+        }
+        nearest
     }
 
     /// Gap \[m\] and normal @world at `p` \[m\] @world: exact outside, and inside the face the point came through.

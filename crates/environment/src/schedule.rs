@@ -27,6 +27,11 @@ impl Schedule {
         Self { appears, vanishes, poses }
     }
 
+    /// It is not always there, or not always at the same place.
+    pub fn changes(&self) -> bool {
+        self.poses.len() > 1 || self.appears > 0.0 || self.vanishes.is_finite()
+    }
+
     /// Presence at `time` \[s\].
     pub fn is_present(&self, time: f64) -> bool {
         self.appears <= time && time < self.vanishes

@@ -90,3 +90,42 @@ fn time_that_is_no_number_or_runs_back_changes_nothing() {
         assert!(environment.objects()[0].is_present());
     }
 }
+
+/// A foot stands in its way: it waits at its distance, a foot that comes nearer does not move it, and it goes on when that is gone.
+#[test]
+fn who_keeps_clear_waits_for_feet_and_goes_on() {
+    let mesh = Mesh::cuboid([0.1; 3]).unwrap();
+    let person = Object::new("person", mesh, None, Schedule::new(0.0, 100.0, at(0.0), &[(2.0, at(2.0))]));
+    let mut environment = Environment::new(vec![person.keeping_clear(0.5)]);
+    let mut seen = Vec::new();
+    for i in 0..=400 {
+        let foot = match i {
+            0..200 => [1.2, 0.0, 0.05],
+            200..300 => [0.9, 0.0, 0.05],
+            _ => [9.0, 0.0, 0.05],
+        };
+        environment.advance(0.01 * f64::from(i), &[false], &[foot]);
+        seen.push(environment.objects()[0].pose().position.x);
+        let delays: Vec<f64> = environment.delays().collect();
+        assert!((0.01 * f64::from(i) - delays[0] - seen[i as usize]).abs() < 1e-9);
+    }
+    // Its face is 0.05 m ahead of its middle.
+    assert!((seen[199] - 0.65).abs() < 0.02 && seen[299] == seen[199], "{} {}", seen[199], seen[299]);
+    assert!((seen[400] - (seen[299] + 1.0)).abs() < 0.03, "{}", seen[400]);
+    // The same place by what is told of it.
+    let mut other = environment.clone();
+    other.place_at(4.0, &environment.delays().collect::<Vec<_>>());
+    assert_eq!(other.objects()[0].pose(), environment.objects()[0].pose());
+}
+
+/// One who is nearer already may go away, and not nearer.
+#[test]
+fn who_keeps_clear_may_go_away() {
+    for (way, moves) in [(1.0, true), (-1.0, false)] {
+        let mesh = Mesh::cuboid([0.1; 3]).unwrap();
+        let person = Object::new("person", mesh, None, Schedule::new(0.0, 9.0, at(0.0), &[(1.0, at(way))]));
+        let mut environment = Environment::new(vec![person.keeping_clear(0.5)]);
+        environment.advance(0.5, &[false], &[[-0.3, 0.0, 0.05]]);
+        assert_eq!(environment.objects()[0].pose().position.x != 0.0, moves, "{way}");
+    }
+}

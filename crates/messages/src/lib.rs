@@ -53,7 +53,7 @@ pub use plan::{BodyPoint, GaitState, Phase, Plan, Step};
 pub use power::{Power, WatchdogReset};
 pub use record::{Field, Header, Read, Record, Visit, Wrench};
 pub use sensors::{Imu, Sensors};
-pub use sim_state::{ContactPoint, MAX_CONTACTS, SimState};
+pub use sim_state::{ContactPoint, MAX_CONTACTS, MAX_MOVING, SimState};
 pub use start_up::StartUp;
 pub use topics::{Process, TOPICS, Topic};
 pub use unknown::{nearest, unknown};

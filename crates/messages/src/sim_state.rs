@@ -5,6 +5,9 @@ use crate::{Header, Joints, Wrench, record};
 /// Contact points of a record: the 16 of Lola's soles, or the corners of her eight pads.
 pub const MAX_CONTACTS: usize = 32;
 
+/// Objects of a scene that may move.
+pub const MAX_MOVING: usize = 8;
+
 record! {
     /// A place where the ground carries the robot.
     part ContactPoint {
@@ -52,6 +55,8 @@ record! {
         power: u64,
         /// \[1\] 1 once the robot has fallen: torso tilted by more than 45 degrees or below half its height.
         fallen: u64,
+        /// \[s\] By how much the scene's objects that move are late, in its order: they wait while a robot is in their way.
+        object_delay: [f64; MAX_MOVING],
     }
 }
 

@@ -77,7 +77,12 @@ fn keep<T: Copy>(waiting: &mut VecDeque<T>, new: &T) {
 /// odom_from_planning
 pub fn planning_frame(state: &ControllerState, height: f64) -> RecordedPose {
     let [x, y, heading] = state.origin;
-    RecordedPose { position: [x, y, height], orientation: about_z(heading) }
+    frame([x, y, height, heading])
+}
+
+/// Frame with this origin \[m\] and heading \[rad\], upright.
+pub fn frame([x, y, z, heading]: [f64; 4]) -> RecordedPose {
+    RecordedPose { position: [x, y, z], orientation: about_z(heading) }
 }
 
 /// odom_from_torso: the inclination is the inertial measurement unit's, heading and place are those that the stabilizer

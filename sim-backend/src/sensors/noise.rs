@@ -37,7 +37,7 @@ impl Noise {
     }
 
     /// Uniform in [-1, 1), a multiple of 2^-52.
-    fn symmetric(&mut self) -> f64 {
+    pub(crate) fn symmetric(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 

@@ -156,6 +156,7 @@ fn raised([along, across]: [[f64; 2]; 2], height: f64, appears: f64) -> TerrainO
         friction: None,
         appears,
         vanishes: f64::INFINITY,
+        keeps_clear: 0.0,
         known: false,
         poses: Vec::new(),
     }

@@ -161,6 +161,7 @@ fn object(name: &str, shape: ObjectShape, pose: TerrainPose) -> TerrainObject {
         friction: None,
         appears: 0.0,
         vanishes: f64::INFINITY,
+        keeps_clear: 0.0,
         known: false,
         poses: Vec::new(),
     }

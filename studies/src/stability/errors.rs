@@ -99,6 +99,7 @@ fn board(height: f64) -> TerrainObject {
         friction: None,
         appears: 0.0,
         vanishes: f64::INFINITY,
+        keeps_clear: 0.0,
         known: false,
         poses: Vec::new(),
     }
