@@ -236,6 +236,13 @@ fn passing_box() {
     assert!(number(&f, "steps") > 5.0 && number(&f, "distance_m") < 0.02, "stays where it is: {f:#}");
 }
 
+/// Nobody walks her: she stands in it. How she gets about: `studies/src/exploration`.
+#[test]
+fn room() {
+    let f = figures("room", 20.0);
+    assert_eq!(f["steps"], 0);
+}
+
 /// Stays where it is, with motors and elastic gears.
 #[test]
 fn walk_in_place() {

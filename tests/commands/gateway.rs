@@ -175,7 +175,12 @@ fn the_python_client_walks_her_and_she_stops_before_a_box() {
 fn explore_keeps_her_off_walls_and_she_stands_without_it() {
     let _turn = turn();
     let site = Site::patient(super::EXE);
-    let walls = [([0.1, 4.0], [1.8, 0.0]), ([0.1, 4.0], [-1.6, 0.0]), ([4.0, 0.1], [0.0, 1.7]), ([4.0, 0.1], [0.0, -1.7])];
+    let walls = [
+        ([0.1, 4.0], [1.8, 0.0]),
+        ([0.1, 4.0], [-1.6, 0.0]),
+        ([4.0, 0.1], [0.0, 1.7]),
+        ([4.0, 0.1], [0.0, -1.7]),
+    ];
     let object = |([length, width], [x, y]): ([f64; 2], [f64; 2])| {
         format!("\n[[object]]\nname = \"wall\"\nbox = [{length}, {width}, 1.0]\nposition = [{x}, {y}, 0.5]\n")
     };
@@ -185,7 +190,8 @@ fn explore_keeps_her_off_walls_and_she_stands_without_it() {
     drop(socket);
     let mut running = gateway(&site, to);
     says(&mut running, "connected", 1);
-    let explore = site.start(&["explore", "--dir", &site.run_dir().display().to_string(), "--listen", &to.to_string()]);
+    let explore =
+        site.start(&["explore", "--dir", &site.run_dir().display().to_string(), "--listen", &to.to_string()]);
     robot.walks();
     // Her middle stays as far from each wall as half of her is wide, wherever she goes.
     let (end, mut turned, mut went) = (clock::now() + 25 * clock::SECOND, 0.0_f64, 0.0_f64);

@@ -94,8 +94,11 @@ impl Bounds {
                 }
                 continue;
             }
-            let [a, b] = [self.lo, self.hi].map(|end| (end[i] - from[i]) / along[i]);
-            (enters, leaves) = (enters.max(a.min(b)), leaves.min(a.max(b)));
+            // The nearer face first; around nothing, whose faces are in the wrong order, no ray is inside.
+            let [near, far] =
+                if along[i] > 0.0 { [self.lo[i], self.hi[i]] } else { [self.hi[i], self.lo[i]] };
+            enters = enters.max((near - from[i]) / along[i]);
+            leaves = leaves.min((far - from[i]) / along[i]);
         }
         (enters <= leaves && enters < within).then_some(enters)
     }

@@ -79,8 +79,8 @@ fn rays_along_faces_and_axes_and_from_inside() {
     assert_eq!(ray([0.0, 0.0, 0.5], [1.0, 0.0, 0.0]), Some(1.5));
     assert_eq!(ray([2.0, 0.0, 0.5], [1.0, 0.0, 0.0]), Some(0.5), "from inside");
     assert_eq!(ray([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]), Some(1.0), "the ground");
-    assert_eq!(ray([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]), None, "along the upper face");
-    assert_eq!(ray([0.0, 0.0, 1.1], [1.0, 0.0, 0.0]), None, "above it");
+    assert_eq!(ray([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]), Some(1.5), "along the upper face: its edge");
+    assert_eq!(ray([0.0, 0.0, 1.0 + 1e-9], [1.0, 0.0, 0.0]), None, "above it");
     assert_eq!(ray([0.0, 0.5, 0.5], [1.0, 0.0, 0.0]), Some(1.5), "through an edge");
     assert_eq!(ray([4.0, 0.0, 0.5], [1.0, 0.0, 0.0]), None, "behind");
     assert_eq!(ray([0.0, 0.0, 0.5], [f64::NAN; 3]), None);
