@@ -4,6 +4,7 @@
 //! and no goal: what draws it is floor on which it has not been for some minutes.
 
 use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use gateway::trigger::{Frames, Odometry, Trigger};
 use messages::command::{FixateCommand, VelocityCommand};
@@ -30,9 +31,14 @@ const FORGOTTEN: f64 = 150.0;
 const VISIT: f64 = 0.5;
 /// \[m\] How far ahead the robot looks at the floor; \[m\] a change of that point that is worth a command; \[rad\] how far to the side
 /// it looks before it turns there.
-const AHEAD: f64 = 1.8;
+const AHEAD: f64 = 2.2;
 const MOVED: f64 = 0.15;
 const ASIDE: f64 = 0.6;
+/// \[rad\] Nearer to the camera's axis than this an arc begins that is walked: what is not seen is not free.
+const VIEW: f64 = 0.6;
+/// \[1\] Share of what the camera looks beside a point that is made good for with each trigger, and \[m\] the most of it.
+const LEARNED: f64 = 0.1;
+const MOST_BESIDE: f64 = 20.0;
 
 /// Limits of the velocities.
 #[derive(Clone, Copy, Debug)]
@@ -69,14 +75,27 @@ pub struct Pilot {
     /// \[s\] When the robot was last on a cell of the floor.
     visits: BTreeMap<[i32; 2], f64>,
     course: Course,
-    looked: Option<[f64; 2]>,
+    /// \[m\] @I_0 Point that is to be looked at, and the one that was told.
+    wanted: Option<[f64; 2]>,
+    told: Option<[f64; 2]>,
+    /// \[m\] @I_0 From the one to the other. The head reckons where it is by gyroscopes, triggers by footholds: after some minutes
+    /// they are metres apart.
+    beside: [f64; 2],
 }
 
 impl Pilot {
     /// One that has seen nothing.
     pub fn new(speeds: Speeds) -> Self {
         let map = LocalMap::default();
-        Self { speeds, map, visits: BTreeMap::new(), course: Course::Arc(0.0), looked: None }
+        Self {
+            speeds,
+            map,
+            visits: BTreeMap::new(),
+            course: Course::Arc(0.0),
+            wanted: None,
+            told: None,
+            beside: [0.0; 2],
+        }
     }
 
     /// Answer to `trigger`, at which the cameras saw these points \[m\] @camera. None if it does not say where the robot is.
@@ -95,16 +114,38 @@ impl Pilot {
         });
         let taken: Vec<[f64; 2]> = taken.collect();
         let place = |[dx, dy]: [f64; 2]| [x + cos * dx - sin * dy, y + sin * dx + cos * dy];
-        let arcs = tentacles::curvatures().map(|k| (k, tentacles::free(k, CLEARANCE, &taken)));
+        let aside = camera.heading() - torso.heading();
+        let is_seen = |k: f64| {
+            let [ahead, left] = tentacles::place(k, 1.0);
+            wrapped(left.atan2(ahead) - aside).abs() < VIEW
+        };
+        let arcs = tentacles::curvatures()
+            .map(|k| (k, if is_seen(k) { tentacles::free(k, CLEARANCE, &taken) } else { 0.0 }));
         let velocity = self.choose(time, &arcs, place);
-        let look = place(match self.course {
-            Course::Arc(k) => tentacles::place(k, AHEAD.min(std::f64::consts::FRAC_PI_2 / k.abs())),
+        self.learn(&camera);
+        let wanted = place(match self.course {
+            Course::Arc(k) => tentacles::place(k, AHEAD.min(FRAC_PI_2 / k.abs())),
             Course::Turn(side, _) => [AHEAD * ASIDE.cos(), side * AHEAD * ASIDE.sin()],
         });
-        let moved = self.looked.is_none_or(|at| (at[0] - look[0]).hypot(at[1] - look[1]) > MOVED);
-        self.looked = if moved { Some(look) } else { self.looked };
+        self.wanted = Some(wanted);
+        let look = [wanted[0] + self.beside[0], wanted[1] + self.beside[1]];
+        let moved = self.told.is_none_or(|at| (at[0] - look[0]).hypot(at[1] - look[1]) > MOVED);
+        self.told = if moved { Some(look) } else { self.told };
         let look = moved.then_some(FixateCommand { point: [look[0], look[1], 0.0] });
         Some(Answer { velocity, look })
+    }
+
+    /// Learns from where the camera's axis meets the floor how far beside the wanted point it is.
+    fn learn(&mut self, camera: &RecordedPose) {
+        let [x, y, z] = camera.position;
+        let end = camera.place([1.0, 0.0, 0.0]);
+        let (Some(wanted), true) = (self.wanted, end[2] < z) else { return };
+        let way = z / (z - end[2]);
+        let met = [x + way * (end[0] - x), y + way * (end[1] - y)];
+        for i in 0..2 {
+            let missed = (wanted[i] - met[i]).clamp(-AHEAD, AHEAD);
+            self.beside[i] = (self.beside[i] + LEARNED * missed).clamp(-MOST_BESIDE, MOST_BESIDE);
+        }
     }
 
     /// The next course, and its velocity.
@@ -152,6 +193,10 @@ impl Pilot {
 
 fn visit(at: [f64; 2]) -> [i32; 2] {
     at.map(|x| (x / VISIT).floor() as i32)
+}
+
+fn wrapped(angle: f64) -> f64 {
+    angle - TAU * (angle / TAU).round()
 }
 
 /// Torso and camera @I_0, if the trigger knows them.

@@ -162,8 +162,9 @@ impl Session {
         if time * RATE >= self.sequence as f64 {
             self.trigger(stamp, time);
         }
+        let triggers = self.triggers.arrived(time);
         if sees && time > STANDS {
-            self.see(time);
+            self.see(time, &triggers);
         }
         // The gateway's part, as `gateway::link` has it between processes.
         for datagram in self.answers.arrived(time) {
@@ -204,8 +205,8 @@ impl Session {
     }
 
     /// The vision system's part: what has come in is seen now, and answered when it is understood.
-    fn see(&mut self, time: f64) {
-        for trigger in self.triggers.arrived(time).iter().filter_map(|bytes| Trigger::decode(bytes).ok()) {
+    fn see(&mut self, time: f64, triggers: &[Vec<u8>]) {
+        for trigger in triggers.iter().filter_map(|bytes| Trigger::decode(bytes).ok()) {
             let points = self.eye.look(&self.chain.last().sim_state);
             self.seen.push_back((time + self.random.within(self.delay), trigger, points));
         }
