@@ -21,7 +21,7 @@ const LOWEST_PER_WAY: f64 = 0.03;
 /// \[m\] Higher than the robot: of no concern.
 const HIGHEST: f64 = 2.0;
 /// \[s\] How long a cell is believed that nobody sees any more.
-const MEMORY: f64 = 20.0;
+const MEMORY: f64 = 40.0;
 
 /// Cell of the floor.
 #[derive(Clone, Copy, Debug)]

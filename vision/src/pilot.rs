@@ -14,7 +14,7 @@ use crate::local_map::LocalMap;
 use crate::tentacles::{self, ARCS, LENGTH, SHARPEST};
 
 /// \[m\] Radius of the disc that has to go through: half of the shoulders with arms, and what odometry, cells and swaying need.
-const CLEARANCE: f64 = 0.48;
+const CLEARANCE: f64 = 0.52;
 /// \[m\] Free way below which nobody walks, that which full speed takes beyond it, and the least one after a turn on the spot.
 const STOP: f64 = 0.3;
 const BRAKE: f64 = 0.9;
@@ -29,16 +29,20 @@ const KNOWN: f64 = 0.8;
 /// \[s\] In which a visit is forgotten to a third, and \[m\] the cells of floor that are visited.
 const FORGOTTEN: f64 = 150.0;
 const VISIT: f64 = 0.5;
-/// \[m\] How far ahead the robot looks at the floor; \[m\] a change of that point that is worth a command; \[rad\] how far to the side
-/// it looks before it turns there.
-const AHEAD: f64 = 2.2;
-const MOVED: f64 = 0.15;
+/// \[rad\] How far down it looks: the floor 2.2 m ahead in the middle of its picture; how far to the side before it turns there.
+const DOWN: f64 = 0.65;
 const ASIDE: f64 = 0.6;
+/// \[m\] How far ahead of it a point lies to whose side it looks at the least, and how far away the point that is told: so far that
+/// it does not matter where the head takes itself to be.
+const AHEAD: f64 = 2.0;
+const FAR: f64 = 100.0;
+/// \[rad\] Change of the direction that is worth a command.
+const CHANGED: f64 = 0.07;
 /// \[rad\] Nearer to the camera's axis than this an arc begins that is walked: what is not seen is not free.
 const VIEW: f64 = 0.6;
-/// \[1\] Share of what the camera looks beside a point that is made good for with each trigger, and \[m\] the most of it.
-const LEARNED: f64 = 0.1;
-const MOST_BESIDE: f64 = 20.0;
+/// \[1\] Share of what the camera looks aside that is made good for with each trigger, and \[rad\] the most of it.
+const LEARNED: f64 = 0.03;
+const MOST_ASIDE: f64 = 1.0;
 
 /// Limits of the velocities.
 #[derive(Clone, Copy, Debug)]
@@ -75,12 +79,13 @@ pub struct Pilot {
     /// \[s\] When the robot was last on a cell of the floor.
     visits: BTreeMap<[i32; 2], f64>,
     course: Course,
-    /// \[m\] @I_0 Point that is to be looked at, and the one that was told.
-    wanted: Option<[f64; 2]>,
-    told: Option<[f64; 2]>,
-    /// \[m\] @I_0 From the one to the other. The head reckons where it is by gyroscopes, triggers by footholds: after some minutes
-    /// they are metres apart.
-    beside: [f64; 2],
+    /// \[rad\] Direction from the torso's that is to be looked in.
+    wanted: f64,
+    /// \[rad\] @I_0 Direction that was told.
+    told: Option<f64>,
+    /// \[rad\] What has to be told besides: the head knows its heading by gyroscopes, triggers theirs by footholds that turn on
+    /// the ground.
+    besides: f64,
 }
 
 impl Pilot {
@@ -92,9 +97,9 @@ impl Pilot {
             map,
             visits: BTreeMap::new(),
             course: Course::Arc(0.0),
-            wanted: None,
+            wanted: 0.0,
             told: None,
-            beside: [0.0; 2],
+            besides: 0.0,
         }
     }
 
@@ -106,7 +111,7 @@ impl Pilot {
         let points: Vec<[f64; 3]> = points.iter().map(|p| camera.place(*p)).collect();
         self.map.add(time, [camera.position[0], camera.position[1]], &points);
         self.visits.insert(visit([x, y]), time);
-        // What stands around the robot, seen from it.
+        // What stands around the robot, seen from it; and the arcs between, of which none is free that is not seen.
         let (sin, cos) = torso.heading().sin_cos();
         let taken = self.map.taken([x, y], LENGTH + CLEARANCE).map(|[px, py]| {
             let [dx, dy] = [px - x, py - y];
@@ -114,7 +119,7 @@ impl Pilot {
         });
         let taken: Vec<[f64; 2]> = taken.collect();
         let place = |[dx, dy]: [f64; 2]| [x + cos * dx - sin * dy, y + sin * dx + cos * dy];
-        let aside = camera.heading() - torso.heading();
+        let aside = wrapped(camera.heading() - torso.heading());
         let is_seen = |k: f64| {
             let [ahead, left] = tentacles::place(k, 1.0);
             wrapped(left.atan2(ahead) - aside).abs() < VIEW
@@ -122,30 +127,31 @@ impl Pilot {
         let arcs = tentacles::curvatures()
             .map(|k| (k, if is_seen(k) { tentacles::free(k, CLEARANCE, &taken) } else { 0.0 }));
         let velocity = self.choose(time, &arcs, place);
-        self.learn(&camera);
-        let wanted = place(match self.course {
-            Course::Arc(k) => tentacles::place(k, AHEAD.min(FRAC_PI_2 / k.abs())),
-            Course::Turn(side, _) => [AHEAD * ASIDE.cos(), side * AHEAD * ASIDE.sin()],
+        let look = self.look(aside, torso.heading()).map(|heading| {
+            let ahead = FAR * DOWN.cos();
+            let [cx, cy, cz] = camera.position;
+            FixateCommand {
+                point: [cx + ahead * heading.cos(), cy + ahead * heading.sin(), cz - FAR * DOWN.sin()],
+            }
         });
-        self.wanted = Some(wanted);
-        let look = [wanted[0] + self.beside[0], wanted[1] + self.beside[1]];
-        let moved = self.told.is_none_or(|at| (at[0] - look[0]).hypot(at[1] - look[1]) > MOVED);
-        self.told = if moved { Some(look) } else { self.told };
-        let look = moved.then_some(FixateCommand { point: [look[0], look[1], 0.0] });
         Some(Answer { velocity, look })
     }
 
-    /// Learns from where the camera's axis meets the floor how far beside the wanted point it is.
-    fn learn(&mut self, camera: &RecordedPose) {
-        let [x, y, z] = camera.position;
-        let end = camera.place([1.0, 0.0, 0.0]);
-        let (Some(wanted), true) = (self.wanted, end[2] < z) else { return };
-        let way = z / (z - end[2]);
-        let met = [x + way * (end[0] - x), y + way * (end[1] - y)];
-        for i in 0..2 {
-            let missed = (wanted[i] - met[i]).clamp(-AHEAD, AHEAD);
-            self.beside[i] = (self.beside[i] + LEARNED * missed).clamp(-MOST_BESIDE, MOST_BESIDE);
-        }
+    /// Direction \[rad\] @I_0 to tell the head, if that is news; it looks `aside` \[rad\] of a torso with this heading now.
+    fn look(&mut self, aside: f64, heading: f64) -> Option<f64> {
+        self.besides += LEARNED * wrapped(self.wanted - aside);
+        self.besides = self.besides.clamp(-MOST_ASIDE, MOST_ASIDE);
+        self.wanted = match self.course {
+            Course::Arc(k) => {
+                let [ahead, left] = tentacles::place(k, AHEAD.min(FRAC_PI_2 / k.abs()));
+                left.atan2(ahead)
+            }
+            Course::Turn(side, _) => side * ASIDE,
+        };
+        let told = heading + self.wanted + self.besides;
+        let is_news = self.told.is_none_or(|before| wrapped(told - before).abs() > CHANGED);
+        self.told = if is_news { Some(told) } else { self.told };
+        self.told.filter(|_| is_news)
     }
 
     /// The next course, and its velocity.
@@ -169,20 +175,22 @@ impl Pilot {
         };
         let passable = arcs.iter().filter(|(_, free)| *free > least);
         let best = passable.min_by(|a, b| cost(a).total_cmp(&cost(b)));
-        let Some(&(curvature, free)) = best else {
-            // To the side on which more is free, and on to that side until a way is found.
-            if let Course::Arc(_) = self.course {
-                let sum = |left: bool| {
-                    arcs.iter().filter(|(k, _)| (*k > 0.0) == left).map(|(_, free)| free).sum::<f64>()
-                };
-                self.course = Course::Turn(if sum(true) >= sum(false) { 1.0 } else { -1.0 }, time);
-            }
-            let Course::Turn(side, _) = self.course else { unreachable!("set above") };
-            return VelocityCommand { forward: 0.0, left: 0.0, turn: side * self.speeds.turn };
-        };
+        let Some(&(curvature, free)) = best else { return self.turn(time, arcs) };
         self.course = Course::Arc(curvature);
         let forward = self.speeds.forward * ((free - STOP) / BRAKE).min(1.0);
         VelocityCommand { forward, left: 0.0, turn: curvature * forward }
+    }
+
+    /// On the spot: to the side on which more is free, and on to that side until a way is found.
+    fn turn(&mut self, time: f64, arcs: &[(f64, f64); ARCS]) -> VelocityCommand {
+        let side = match self.course {
+            Course::Turn(side, _) => side,
+            Course::Arc(_) => arcs.iter().map(|(k, free)| k.signum() * free).sum::<f64>().signum(),
+        };
+        if let Course::Arc(_) = self.course {
+            self.course = Course::Turn(side, time);
+        }
+        VelocityCommand { forward: 0.0, left: 0.0, turn: side * self.speeds.turn }
     }
 
     /// \[1\] How well a place of the floor is known: 1 where the robot was just now, 0 where it never was.
@@ -205,4 +213,101 @@ fn poses(odometry: &Odometry, frames: &Frames) -> Option<(RecordedPose, Recorded
     let [torso, camera] = [&frames.torso, &frames.camera].map(|frame| planning.then(frame));
     let known = |pose: &RecordedPose| pose.position.iter().chain(&pose.orientation).all(|x| x.is_finite());
     (known(&torso) && known(&camera)).then_some((torso, camera))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gateway::Cause;
+
+    const SPEEDS: Speeds = Speeds { forward: 0.3, turn: 0.2 };
+
+    /// A trigger of a robot at the origin of I_0 that looks 0.6 rad down, `aside` \[rad\] to the left.
+    fn trigger(number: u64, aside: f64) -> Trigger {
+        let down =
+            RecordedPose { position: [0.1, 0.0, 1.7], orientation: [0.0, 0.3_f64.sin(), 0.0, 0.3_f64.cos()] };
+        let camera = odometry::frame([0.0, 0.0, 0.0, aside]).then(&down);
+        let torso = RecordedPose::moved([0.0, 0.0, 1.0]);
+        let place = [0.0; 4];
+        Trigger {
+            sender: 1,
+            sequence: number,
+            stamp: 100_000_000 * number,
+            cycle: 100 * number,
+            flags: 1,
+            gait: 1,
+            odometry: Odometry { place, place_error: 0.0, heading_error: 0.0, way: 0.0 },
+            frames: Frames { camera, torso, soles: [RecordedPose::IDENTITY; 2] },
+            accepted: 0,
+            refused: [0; Cause::ALL.len()],
+        }
+    }
+
+    /// Points of upright walls from one place on the floor to another \[m\] @I_0, as that trigger's camera sees them.
+    fn walls(trigger: &Trigger, ends: &[[[f64; 2]; 2]]) -> Vec<[f64; 3]> {
+        let points = ends.iter().flat_map(|[a, b]| {
+            (0..400).map(move |k| {
+                let share = f64::from(k / 4) / 100.0;
+                let [x, y] = [0, 1].map(|i| a[i] + share * (b[i] - a[i]));
+                RecordedPose::moved([x, y, 0.2 * f64::from(k % 4 + 1)])
+            })
+        });
+        points.map(|p| p.seen_from(&trigger.frames.camera).position).collect()
+    }
+
+    fn velocity(ends: &[[[f64; 2]; 2]], aside: f64) -> VelocityCommand {
+        let trigger = trigger(1, aside);
+        Pilot::new(SPEEDS).answer(&trigger, &walls(&trigger, ends)).unwrap().velocity
+    }
+
+    #[test]
+    fn walks_where_it_is_free_slower_before_walls_and_turns_at_them() {
+        let free = velocity(&[], 0.0);
+        assert_eq!((free.forward, free.turn), (0.3, 0.0));
+        // Across the way, 1.2 m ahead, all around: 0.7 m are free.
+        let around = |ahead: f64| {
+            [[[ahead, -3.0], [ahead, 3.0]], [[-1.0, 0.7], [3.0, 0.7]], [[-1.0, -0.7], [3.0, -0.7]]]
+        };
+        let slow = velocity(&around(1.2), 0.0);
+        assert!((0.05..0.2).contains(&slow.forward), "{slow:?}");
+        let turns = velocity(&around(0.8), 0.0);
+        assert!(turns.forward == 0.0 && turns.turn.abs() == 0.2, "{turns:?}");
+    }
+
+    #[test]
+    fn goes_around_a_box_on_the_side_that_is_free() {
+        for side in [-1.0, 1.0] {
+            let past = velocity(&[[[1.2, 0.1 * side], [1.2, 0.6 * side]]], 0.0);
+            assert!(past.forward > 0.1 && past.turn * side < 0.0, "{side}: {past:?}");
+        }
+    }
+
+    #[test]
+    fn does_not_walk_where_it_does_not_look() {
+        let away = velocity(&[], 1.5);
+        assert_eq!(away.forward, 0.0);
+    }
+
+    #[test]
+    fn a_robot_that_does_not_know_where_it_is_gets_no_answer() {
+        let mut lost = trigger(1, 0.0);
+        lost.frames = Frames::UNKNOWN;
+        assert_eq!(Pilot::new(SPEEDS).answer(&lost, &[]), None);
+    }
+
+    /// A head that is wrong about its heading looks beside every point by the same.
+    #[test]
+    fn a_gaze_that_is_aside_is_made_good_for() {
+        for wrong in [-0.4, 0.1, 0.5] {
+            let (mut pilot, mut looks) = (Pilot::new(SPEEDS), wrong);
+            for number in 1..200 {
+                let answer = pilot.answer(&trigger(number, looks), &[]).unwrap();
+                if let Some(FixateCommand { point: [x, y, z] }) = answer.look {
+                    looks = y.atan2(x) + wrong;
+                    assert!((-100.0..0.0).contains(&z), "{z} m is a height that may be told");
+                }
+            }
+            assert!(looks.abs() < 0.1, "{looks} rad");
+        }
+    }
 }
