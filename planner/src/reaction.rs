@@ -16,6 +16,9 @@ use multibody::GRAVITY_ACCELERATION as GRAVITY;
 
 /// \[s\] Time for which another step must be needed before it is made: a bent frame on the bus jolts the body for 20 ms.
 const PERSISTS: f64 = 0.03;
+/// \[s\] The same as long as the foot behind can bring the body back: what the impact of a foot that met the ground too soon
+/// has left is smaller by then, what a push has left is larger.
+const PERSISTS_HELD: f64 = 0.1;
 /// \[rad\] Lean of a robot that no step catches.
 const LOST: f64 = 0.35;
 /// \[m\] Distance of the divergent component to the edge of the soles, at which a standing robot steps out.
@@ -30,6 +33,8 @@ struct Catch {
     from: PlanOrigin,
     /// Its first landing is enough.
     enough: bool,
+    /// \[s\] Time for which it must be needed before it is made.
+    persists: f64,
 }
 
 impl Planner {
@@ -43,12 +48,12 @@ impl Planner {
             GaitState::Standing => self.step_out(start, state),
             GaitState::Idle | GaitState::Fallen | GaitState::Halted => None,
         };
-        let Some(Catch { from, enough }) = catch else {
+        let Some(Catch { from, enough, persists }) = catch else {
             self.calm = tick;
             return false;
         };
         // A jolt is over before another step is needed for so long.
-        if tick.saturating_sub(self.calm) as f64 * self.builder.model.cycle_s < PERSISTS {
+        if tick.saturating_sub(self.calm) as f64 * self.builder.model.cycle_s < persists {
             return false;
         }
         self.calm = tick;
@@ -96,7 +101,7 @@ impl Planner {
             let landing = step_adaptation::adapt(rules, walk, (k, t), &body, &foot, sole)?;
             let cycles = (model.cycles(landing.rest), model.cycle_s);
             let from = PlanOrigin::inside(walk, (k, t), (state, zmp, ahead), &landing.pose, cycles);
-            return Some(Catch { from, enough: landing.catches });
+            return Some(Catch { from, enough: landing.catches, persists: PERSISTS });
         }
 
         // Both feet carry: the one that is about to swing hands its load over sooner.
@@ -117,7 +122,8 @@ impl Planner {
             ..s.seen(&frame, z)
         };
         let from = PlanOrigin::on_both_feet(walk, t, (state, zmp, ahead), &step, sole);
-        Some(Catch { from, enough: landing.catches })
+        let persists = if landing.held { PERSISTS_HELD } else { PERSISTS };
+        Some(Catch { from, enough: landing.catches, persists })
     }
 
     /// Out of standing, if her divergent component leaves the soles: neither ankles nor hips could bring it back.
@@ -179,7 +185,7 @@ impl Planner {
         let ahead = (start - state.header.tick) as f64 * model.cycle_s;
         let measured = (state, zmp_within(state, at, &both), ahead);
         let from = PlanOrigin::on_both_feet(walk, t, measured, &step, sole);
-        Some(Catch { from, enough: landing.catches })
+        Some(Catch { from, enough: landing.catches, persists: PERSISTS })
     }
 
     /// The plan from there: as commanded or, if that leaves the support or one step is not enough, with steps on the spot.

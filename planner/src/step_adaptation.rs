@@ -61,6 +61,8 @@ pub(crate) struct Landing {
     pub(crate) rest: f64,
     /// The next support can make good for what is left.
     pub(crate) catches: bool,
+    /// Both feet carry, and the one behind may yet bring the body back: such a step can wait.
+    pub(crate) held: bool,
 }
 
 /// One axis of the problem.
@@ -107,8 +109,8 @@ impl Axis {
 /// the stance foot. None if the stabilizer alone can.
 ///
 /// As long as the swing foot carries, both soles hold the body to the sides better than a step that begins sooner: only an
-/// error ahead or back alone is answered then, and only if the zero-moment point under the foot that is about to lift off would
-/// not bring it back.
+/// error ahead or back alone is answered then. If the zero-moment point under the foot that is about to lift off, until it does,
+/// would bring the body back, the landing is `held`.
 pub(crate) fn adapt(
     rules: &gait::Reaction,
     walk: &PlannedWalk,
@@ -125,17 +127,19 @@ pub(crate) fn adapt(
     let axes = |counted: [f64; 2]| axes(rules, walk, (k, t), body, foot.place, (sole, counted));
     let growth = (body.w * rest).exp();
     let stays = |a: &Axis, most: f64| a.error.abs() <= rules.error || a.missed(growth).abs() <= most;
-    let mut alone = axes(ALONE);
+    let alone = axes(ALONE);
     let carries = foot.loaded > 0.0;
-    if carries {
-        // A shift until the lift-off alone counts less at landing than one that stays.
-        let counts = (growth - (body.w * (s.end - s.lift)).exp()) / (growth - 1.0);
-        alone[0].reach(counts * s.foothold.relative(&s.takeoff).x);
-    }
-    let held = [0, 1].map(|d| stays(&alone[d], rules.tolerance[d]));
-    if held == [true; 2] || carries && held != [false, true] {
+    let stay = [0, 1].map(|d| stays(&alone[d], rules.tolerance[d]));
+    if stay == [true; 2] || carries && stay != [false, true] {
         return None;
     }
+    let held = carries && {
+        // A shift until the lift-off alone counts less at landing than one that stays.
+        let counts = (growth - (body.w * (s.end - s.lift)).exp()) / (growth - 1.0);
+        let [mut along, _] = alone;
+        along.reach(counts * s.foothold.relative(&s.takeoff).x);
+        stays(&along, rules.tolerance[0])
+    };
     let problem = Problem { rules, w: body.w, axes: axes(COUNTED), planned: rest, loaded: foot.loaded };
     let swung = (t - s.lift).max(0.0);
     let shortest = rules.rest.max(foot.loaded + rules.swing - swung).min(rest);
@@ -146,7 +150,7 @@ pub(crate) fn adapt(
         let late = problem.best(rest, rest + rules.wait);
         r = if problem.caught(late) == [true; 2] { late } else { r };
     }
-    Some(problem.landing(r, &s.foothold, &s.landing))
+    Some(Landing { held, ..problem.landing(r, &s.foothold, &s.landing) })
 }
 
 /// A body that is about to leave a stand.
@@ -230,7 +234,7 @@ impl Problem<'_> {
         let [x, y] = self.split(r).map(|[moved, _]| moved);
         let local = foothold.relative(landing);
         let pose = foothold.compose(&PlanarPose { x: local.x + x, y: local.y + y, ..local });
-        Landing { pose, rest: r, catches: self.caught(r) == [true; 2] }
+        Landing { pose, rest: r, catches: self.caught(r) == [true; 2], held: false }
     }
 }
 

@@ -40,6 +40,8 @@ const FAR: f64 = 100.0;
 const CHANGED: f64 = 0.07;
 /// \[rad\] Nearer to the camera's axis than this an arc begins that is walked: what is not seen is not free.
 const VIEW: f64 = 0.6;
+/// \[rad\] Least inclination of the camera with which it sees the floor before the robot.
+const SEES_FLOOR: f64 = 0.5;
 /// \[1\] Share of what the camera looks aside that is made good for with each trigger, and \[rad\] the most of it.
 const LEARNED: f64 = 0.03;
 const MOST_ASIDE: f64 = 1.0;
@@ -120,9 +122,10 @@ impl Pilot {
         let taken: Vec<[f64; 2]> = taken.collect();
         let place = |[dx, dy]: [f64; 2]| [x + cos * dx - sin * dy, y + sin * dx + cos * dy];
         let aside = wrapped(camera.heading() - torso.heading());
+        let looks_down = camera.place([1.0, 0.0, 0.0])[2] - camera.position[2] < -SEES_FLOOR.sin();
         let is_seen = |k: f64| {
             let [ahead, left] = tentacles::place(k, 1.0);
-            wrapped(left.atan2(ahead) - aside).abs() < VIEW
+            looks_down && wrapped(left.atan2(ahead) - aside).abs() < VIEW
         };
         let arcs = tentacles::curvatures()
             .map(|k| (k, if is_seen(k) { tentacles::free(k, CLEARANCE, &taken) } else { 0.0 }));
@@ -284,8 +287,10 @@ mod tests {
 
     #[test]
     fn does_not_walk_where_it_does_not_look() {
-        let away = velocity(&[], 1.5);
-        assert_eq!(away.forward, 0.0);
+        assert_eq!(velocity(&[], 1.5).forward, 0.0);
+        let mut up = trigger(1, 0.0);
+        up.frames.camera.orientation = RecordedPose::IDENTITY.orientation;
+        assert_eq!(Pilot::new(SPEEDS).answer(&up, &[]).unwrap().velocity.forward, 0.0);
     }
 
     #[test]
