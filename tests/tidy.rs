@@ -29,7 +29,7 @@ const ONLY: [(&str, &[&str]); 17] = [
     ("toml", &["config"]),
     ("bincode", &["messages"]),
     ("mcap", &["recording"]),
-    ("urdf-rs", &["multibody"]),
+    ("urdf-rs", &["multibody", "studies"]),
     ("tiny-skia", &["drawing"]),
     ("tokio", &["broker", "dashboard", "fuzzing"]),
     ("axum", &["dashboard"]),
