@@ -21,16 +21,16 @@ pub(crate) struct ExploreArguments {
     /// Address to which the gateway sends triggers.
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:47201")]
     listen: SocketAddr,
-    /// Speed ahead [m/s], 0.05 to 0.5.
+    /// Speed ahead (m/s), 0.05 to 0.5.
     #[arg(long, value_name = "M/S", default_value_t = 0.3, value_parser = |text: &str| within(text, [0.05, 0.5]))]
     forward: f64,
-    /// Speed of turns on the spot [rad/s], 0.05 to 0.4.
+    /// Speed of turns on the spot (rad/s), 0.05 to 0.4.
     #[arg(long, value_name = "RAD/S", default_value_t = 0.25, value_parser = |text: &str| within(text, [0.05, 0.4]))]
     turn: f64,
-    /// Time from a picture to what is done about it [ms], 0 to 400.
+    /// Time from a picture to what is done about it (ms), 0 to 400.
     #[arg(long, value_name = "MS", default_value_t = 200.0, value_parser = |text: &str| within(text, [0.0, 400.0]))]
     delay: f64,
-    /// Time after which it stops her and ends [s]; without it: Ctrl-C.
+    /// Time after which it stops her and ends (s); without it: Ctrl-C.
     #[arg(long, value_name = "S", value_parser = |text: &str| within(text, [0.1, 1e6]))]
     seconds: Option<f64>,
     /// Seed of the camera's errors.

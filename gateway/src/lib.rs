@@ -18,7 +18,7 @@ mod cause;
 pub mod gate;
 mod link;
 mod observer;
-mod owner;
+pub mod owner;
 pub mod sight;
 pub mod trigger;
 pub mod wire;

@@ -12,7 +12,7 @@ const USER: usize = 7;
 /// True if what came from there is root's, or his whose socket `own` is. Of another machine's address nothing is known: true.
 ///
 /// An address is somebody's while his socket is open; of several sockets with one address each has to be trusted.
-pub(crate) fn is_trusted(from: SocketAddr, own: SocketAddr) -> bool {
+pub fn is_trusted(from: SocketAddr, own: SocketAddr) -> bool {
     if !from.ip().to_canonical().is_loopback() {
         return true;
     }

@@ -170,7 +170,8 @@ fn the_python_client_walks_her_and_she_stops_before_a_box() {
     assert_eq!((sim.fallen, sim.power), (0, 1));
 }
 
-/// Four walls of which the planner knows nothing: she walks, turns away from each, and stands when the program that sees is stopped.
+/// Four walls of which the planner knows nothing: she walks, turns away from each, and stands when the program that sees is stopped, or
+/// somebody else stops her.
 #[test]
 fn explore_keeps_her_off_walls_and_she_stands_without_it() {
     let _turn = turn();
@@ -190,7 +191,7 @@ fn explore_keeps_her_off_walls_and_she_stands_without_it() {
     drop(socket);
     let mut running = gateway(&site, to);
     says(&mut running, "connected", 1);
-    let explore =
+    let mut explore =
         site.start(&["explore", "--dir", &site.run_dir().display().to_string(), "--listen", &to.to_string()]);
     robot.walks();
     // Her middle stays as far from each wall as half of her is wide, wherever she goes.
@@ -206,6 +207,21 @@ fn explore_keeps_her_off_walls_and_she_stands_without_it() {
     assert!(turned > 0.5 && went > 0.3, "{turned} rad, {went} m: {}", running.out());
     explore.signal_supervisor(Signal::STOP);
     robot.stands();
+
+    // It goes on when it may, but not after somebody else's stop.
+    explore.signal_supervisor(Signal::CONT);
+    robot.walks();
+    site.topic(&["pub", "walk/stop"]).well();
+    robot.stands();
+    let begun = clock::now();
+    while explore.is_alive() && clock::now() - begun < 10 * clock::SECOND {
+        doze(0.01);
+    }
+    assert!(
+        !explore.is_alive() && explore.out().contains("somebody else has stopped her"),
+        "{}",
+        explore.out()
+    );
 }
 
 /// Nearly a third of the datagrams lost, others late, doubled, replayed, or full of what is no number.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use config::Setup;
+use gateway::owner;
 use gateway::trigger::{Trigger, flag};
 use ipc::{Reader, Run, Space};
 use messages::topics::SIM_STATE;
@@ -20,6 +21,8 @@ use crate::pilot::{Pilot, Speeds};
 /// Longest wait for a trigger \[ns\], and the silence of a gateway that is worth a line.
 const LOOK: u64 = SECOND / 100;
 const SILENCE: u64 = 2 * SECOND;
+/// Age of a trigger from which on the cameras, which look when it is read, no longer see what it tells of \[ns\].
+const STALE: u64 = SECOND / 10;
 /// Longest datagram that is read.
 const LONGEST: usize = 512;
 
@@ -85,22 +88,29 @@ pub fn run(options: &Options, stop: &Stop, say: fn(&str)) -> Result<End, String>
     let refused =
         |e| format!("cannot listen on {listen}: {e}; another address: --listen, and --to of the gateway");
     let socket = UdpSocket::bind(listen).map_err(refused)?;
+    let here = socket.local_addr().map_err(refused)?;
     socket.set_read_timeout(Some(Duration::from_nanos(LOOK))).map_err(refused)?;
     let mut cameras = Cameras::open(&options.dir, options.seed)?;
     let (mut pilot, mut line) = (Pilot::new(options.speeds), Line::new(std::process::id().into()));
     let (begin, mut heard, mut told) = (now(), now(), false);
-    let mut seen: VecDeque<Sight> = VecDeque::new();
+    let (mut seen, mut last, mut may) = (VecDeque::<Sight>::new(), None, false);
     let mut bytes = [0; LONGEST];
-    let mut last = None;
+    // A trigger is when the cameras look; its answer goes back some time later.
     while !stop.asked() && options.time.is_none_or(|time| now() - begin < time) {
         if let Ok((length, from)) = socket.recv_from(&mut bytes)
+            && owner::is_trusted(from, here)
             && let Ok(trigger) = Trigger::decode(&bytes[..length])
         {
             (heard, told) = (now(), false);
-            if trigger.flags & flag::HELD != 0 {
-                return Ok(End::Held);
+            // Who starts this program ends an earlier stop with it, and none that comes later.
+            match trigger.flags & flag::HELD != 0 {
+                true if may => return Ok(End::Held),
+                true => drop(socket.send_to(&line.stop(&trigger), from)),
+                false => may = true,
             }
+            let fresh = now().saturating_sub(trigger.stamp) < STALE;
             if trigger.flags & flag::ROBOT != 0
+                && fresh
                 && let Some(points) = cameras.look()
             {
                 seen.push_back((trigger, points));
@@ -111,7 +121,6 @@ pub fn run(options: &Options, stop: &Stop, say: fn(&str)) -> Result<End, String>
             say(&format!("no trigger on {listen}: gangwerk gateway --to {listen} sends them"));
             told = true;
         }
-        // What was seen is understood some time later.
         while let Some((trigger, _)) = seen.front()
             && let Some((_, to)) = last
             && now() - trigger.stamp >= options.delay

@@ -103,6 +103,7 @@ pub(super) fn explore(case: &Case<'_>) -> Result<Explored, Error> {
         if ending.end().0 != WalkEnd::Done {
             break;
         }
+        // Seldom, for it costs as much as many cycles: what does she touch, and where has she been?
         if time - looked > TOUCH {
             looked = time;
             let truth: &SimState = &c.sim_state;
