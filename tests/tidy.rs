@@ -11,12 +11,13 @@ use std::path::{Path, PathBuf};
 
 /// Layers from the bottom to the top. A crate depends only on crates of layers below its own, or of its own layer if
 /// that is not the processes'.
-const LAYERS: [&[&str]; 8] = [
+const LAYERS: [&[&str]; 9] = [
     &["contact", "curves", "drawing", "drives", "environment", "multibody", "terminal"],
     &["messages", "codec"],
     &["ipc", "realtime", "config", "recording", "daemon", "fieldbus", "sercos", "latency"],
     &["planner", "controller", "lowlevel", "sim-backend", "broker", "watchdog", "logger"],
-    &["chain", "dashboard", "joystick", "gateway", "vision"],
+    &["chain", "dashboard", "joystick", "gateway"],
+    &["vision"],
     &["studies", "harness", "fuzzing"],
     &["cli"],
     &["python"],
@@ -279,7 +280,7 @@ fn quoted(document: &str) -> Vec<String> {
 
 /// Whether a quotation claims that a file or folder of the tree exists.
 fn is_path(word: &str) -> bool {
-    const FOLDERS: [&str; 22] = [
+    const FOLDERS: [&str; 21] = [
         "planner",
         "controller",
         "lowlevel",
@@ -290,7 +291,6 @@ fn is_path(word: &str) -> bool {
         "dashboard",
         "joystick",
         "gateway",
-        "vision",
         "cli",
         "config",
         "crates",
@@ -308,7 +308,7 @@ fn is_path(word: &str) -> bool {
     let ending = [".rs", ".toml", ".md", ".urdf", ".sh", ".py"].iter().any(|e| word.ends_with(e));
     let pattern = word.split(['/', '.']).any(|part| part == "NAME" || part == "PROCESS" || part == "SCENE");
     let first = word.split('/').next().unwrap_or("");
-    let in_folder = FOLDERS[..19].contains(&first) && word.contains('/');
+    let in_folder = FOLDERS[..18].contains(&first) && word.contains('/');
     plain && !pattern && (in_folder || ending && word.contains('/'))
 }
 

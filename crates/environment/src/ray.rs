@@ -39,7 +39,9 @@ impl Mesh {
     /// \[m\] Way from `from` \[m\] in the direction of the unit vector `along` to the first triangle nearer than `within`, seen from
     /// either side.
     pub fn ray(&self, from: &Vector3<f64>, along: &Vector3<f64>, within: f64) -> Option<f64> {
-        self.hierarchy.ray(self.triangles(), from, along, within)
+        // NaN would be inside of every box.
+        let is_number = from.iter().chain(along).all(|x| x.is_finite());
+        if is_number { self.hierarchy.ray(self.triangles(), from, along, within) } else { None }
     }
 }
 
