@@ -8,7 +8,7 @@
 //! | [`local_map`] | points of the last seconds → where something stands |
 //! | [`tentacles`] | arcs ahead, and how far each of them is free |
 //! | [`pilot`] | trigger and points → velocity, and where to look |
-//! | [`line`] | both as datagrams |
+//! | [`mod@line`] | both as datagrams |
 //! | [`program`] | these at work on a socket; the camera is [`sim_backend::eye`] |
 
 pub mod line;
