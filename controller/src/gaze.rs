@@ -90,9 +90,10 @@ pub(crate) struct Gaze {
     acceleration: [f64; AXES],
     /// \[rad\] Heading in I_0 less the one that the IMU says, over a longer time.
     turn: Option<f64>,
-    /// \[m\] @I_0 Torso by odometry; and the offset at which the head believes it beside that.
+    /// \[m\] @I_0 Torso by odometry.
     odometry: Option<Vector3<f64>>,
-    beside: Vector3<f64>,
+    /// \[m, m, rad\] @I_0 Place and heading of the torso as the head believes them, less odometry's.
+    offset: [f64; 3],
     /// Obstacle to looking at the point, as in [`EventCode::GazeHeld`].
     held: Option<usize>,
     /// News of the point and of the way there.
@@ -124,7 +125,7 @@ impl Gaze {
             acceleration: [0.0; AXES],
             turn: None,
             odometry: None,
-            beside: Vector3::zeros(),
+            offset: [0.0; 3],
             held: None,
             events: EventQueue::default(),
         }))
@@ -133,6 +134,11 @@ impl Gaze {
     /// Events that were not taken yet.
     pub(crate) fn events(&mut self) -> &mut EventQueue {
         &mut self.events
+    }
+
+    /// \[m, m, rad\] @I_0 Place and heading of the torso as the head believes them, less odometry's.
+    pub(crate) fn offset(&self) -> [f64; 3] {
+        self.offset
     }
 
     /// Takes a command to the head; `false` if it cannot be done and nothing changes.
@@ -237,15 +243,17 @@ impl Gaze {
         let turn = before + wrapped(now - before) * (dt / self.head.heading_time).min(1.0);
         self.turn = Some(turn);
         let about_z = |angle: f64| Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
-        let more = about_z(wrapped(turn - now));
+        let turned = wrapped(turn - now);
+        let more = about_z(turned);
         let mut odometry = about_z(heading) * torso.position + Vector3::new(x, y, 0.0);
         odometry.z = 0.0;
         let way = self.odometry.replace(odometry).map_or(Vector3::zeros(), |last| odometry - last);
         let aside = more * way - way;
-        if aside.iter().all(|a| a.is_finite()) {
-            self.beside += aside;
+        let offset = [self.offset[0] + aside.x, self.offset[1] + aside.y, turned];
+        if offset.iter().all(|a| a.is_finite()) {
+            self.offset = offset;
         }
-        let origin = [x + self.beside.x, y + self.beside.y, heading];
+        let origin = [x + self.offset[0], y + self.offset[1], heading];
         TorsoMotion { origin, rotation: more * torso.rotation, ..*torso }
     }
 

@@ -22,6 +22,7 @@ use std::f64::consts::FRAC_PI_2;
 use crate::contact_force::FootWrench;
 use crate::estimate::TaskEstimate;
 use crate::force_control::{Modification, modify};
+use crate::gaze::Gaze;
 use crate::ground_slope::GroundSlope;
 use crate::inclination_trim::InclinationTrim;
 use crate::open_loop::{OpenLoop, encoders_only};
@@ -203,6 +204,7 @@ impl Controller {
             estimate: &estimate,
             trim: self.trim.angles(),
             slope: self.ground_slope().into(),
+            head_offset: self.speeds.gaze.as_ref().map_or([0.0; 3], Gaze::offset),
         };
         self.telemetry.report(sensors, &self.clock, &outcome);
         (&self.telemetry.targets, &self.telemetry.state)

@@ -40,6 +40,7 @@ use gate::Gate;
 use link::Link;
 pub use link::SILENCE;
 use observer::Observer;
+use sight::Sight;
 use trigger::{Frames, Odometry, Trigger, flag};
 
 /// Between two looks for a robot, and between two lines about refusals \[ns\].
@@ -72,6 +73,8 @@ pub struct Options {
 struct Robot {
     supervisor: u32,
     observer: Observer,
+    /// As the newest trigger told of it.
+    sight: Option<Sight>,
     /// None: the broker is not there.
     link: Option<Link>,
 }
@@ -161,8 +164,11 @@ impl Gateway<'_> {
 
     /// Passes a command on to the robot, if there is one.
     fn give(&mut self, command: &Command) {
-        let link = self.robot.as_mut().and_then(|robot| robot.link.as_mut());
-        match link.map(|link| link.give(command, now())) {
+        let given = self.robot.as_mut().and_then(|Robot { link, sight, .. }| {
+            let command = sight.map_or(*command, |sight| sight.command(command));
+            link.as_mut().map(|link| link.give(&command, now()))
+        });
+        match given {
             None => self.gate.count(Cause::Robot),
             Some(Ok(true)) => {}
             Some(Ok(false)) => self.gate.count(Cause::Held),
@@ -218,7 +224,7 @@ impl Gateway<'_> {
             }
             (Some(supervisor), None) => match self.open() {
                 Ok(observer) => {
-                    self.robot = Some(Robot { supervisor, observer, link: None });
+                    self.robot = Some(Robot { supervisor, observer, sight: None, link: None });
                     return self.search();
                 }
                 Err(why) => format!("the robot in {dir} cannot be observed: {why}"),
@@ -263,7 +269,10 @@ impl Gateway<'_> {
         let link = self.robot.as_ref().and_then(|robot| robot.link.as_ref());
         let lease = if link.is_some_and(Link::has_lease) { flag::LEASE } else { 0 };
         let held = if link.is_some_and(Link::is_held) { flag::HELD } else { 0 };
-        let sight = self.robot.as_mut().and_then(|robot| robot.observer.look());
+        let sight = self.robot.as_mut().and_then(|robot| {
+            robot.sight = robot.observer.look();
+            robot.sight
+        });
         let robot = if sight.is_some() { flag::ROBOT } else { 0 };
         let trigger = Trigger {
             sender: std::process::id().into(),

@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use config::Setup;
+use messages::command::{Command, FixateCommand};
 use messages::{ControllerState, Sensors};
 use multibody::{Data, Frame, Model};
 use nalgebra::UnitQuaternion;
@@ -28,6 +29,24 @@ pub struct Sight {
     pub odometry: Odometry,
     /// Poses of the robot.
     pub frames: Frames,
+    /// \[m, m, rad\] @I_0 Place and heading of the torso as the camera head reckons them, less those of the odometry.
+    head_offset: [f64; 3],
+}
+
+impl Sight {
+    /// Command for a robot seen so: a point to look at, told where the odometry has I_0, is put where the head has it.
+    pub fn command(&self, command: &Command) -> Command {
+        let Command::Fixate(FixateCommand { point }) = command else { return *command };
+        let [dx, dy, turn] = self.head_offset;
+        let torso = odometry::frame(self.odometry.place).then(&self.frames.torso).position;
+        if torso.iter().any(|x| x.is_nan()) {
+            return *command;
+        }
+        let (sin, cos) = turn.sin_cos();
+        let [x, y] = [0, 1].map(|i| point[i] - torso[i]);
+        let around = [torso[0] + dx + cos * x - sin * y, torso[1] + dy + sin * x + cos * y];
+        Command::Fixate(FixateCommand { point: [around[0], around[1], point[2]] })
+    }
 }
 
 /// Who sees a robot, and remembers the way that it has gone.
@@ -53,6 +72,7 @@ impl Witness {
             gait: state.gait,
             odometry: self.way.to(state.origin, planning.position[2]),
             frames: self.kinematics.frames(sensors, state, &planning),
+            head_offset: state.head_offset,
         }
     }
 }
@@ -166,6 +186,33 @@ mod tests {
         let turned = way.to([0.0, 0.1, -0.5], 0.0);
         assert!(turned.heading_error > before.heading_error + 0.04);
         assert_eq!(Way::default().to([3.0, 4.0, 0.0], 0.0).way, 5.0, "began to look late");
+    }
+
+    /// The head has I_0 turned and moved beside odometry's: what is seen to the left and ahead of the torso stays there.
+    #[test]
+    fn a_point_is_told_where_the_head_has_it() {
+        let frames = Frames { torso: RecordedPose::moved([0.2, -0.1, 0.9]), ..Frames::UNKNOWN };
+        let odometry = Odometry { place: [3.0, -2.0, 0.1, 0.4], ..Odometry::UNKNOWN };
+        for head_offset in [[0.0; 3], [0.7, -0.3, 0.0], [0.0, 0.0, -0.5], [-1.2, 0.4, 3.0]] {
+            let sight = Sight { cycle: 1, gait: 3, odometry, frames, head_offset };
+            // Both have the torso somewhere, and the point as far ahead and to the left of it.
+            let believed = |[dx, dy, turn]: [f64; 3]| {
+                let torso = odometry::frame(odometry.place).then(&frames.torso);
+                let [x, y, z] = torso.position;
+                odometry::frame([x + dx, y + dy, z, torso.heading() + turn])
+            };
+            let seen = [1.5, 0.6, -0.9];
+            let point = believed([0.0; 3]).place(seen);
+            let told = sight.command(&Command::Fixate(FixateCommand { point }));
+            let Command::Fixate(FixateCommand { point: told }) = told else { panic!("{told:?}") };
+            let expected = believed(head_offset).place(seen);
+            let off = told.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-12, "{head_offset:?}: {told:?}, not {expected:?}");
+        }
+        let unknown = Sight { cycle: 0, gait: 0, odometry, frames: Frames::UNKNOWN, head_offset: [0.0; 3] };
+        let far = Command::Fixate(FixateCommand { point: [9.0, 0.0, 1.0] });
+        assert_eq!(unknown.command(&far), far);
+        assert_eq!(unknown.command(&Command::Stop), Command::Stop);
     }
 
     /// Standing, soles are level under the torso, and the cameras over it look ahead.

@@ -33,7 +33,7 @@ const VISIT: f64 = 0.5;
 const DOWN: f64 = 0.65;
 const ASIDE: f64 = 0.6;
 /// \[m\] How far ahead of it a point lies to whose side it looks at the least, and how far away the point that is told: so far that
-/// it does not matter where the head takes itself to be.
+/// steps do not move it.
 const AHEAD: f64 = 2.0;
 const FAR: f64 = 100.0;
 /// \[rad\] Change of the direction that is worth a command.
@@ -42,9 +42,6 @@ const CHANGED: f64 = 0.07;
 const VIEW: f64 = 0.6;
 /// \[rad\] Least inclination of the camera with which it sees the floor before the robot.
 const SEES_FLOOR: f64 = 0.5;
-/// \[1\] Share of what the camera looks aside that is made good for with each trigger, and \[rad\] the most of it.
-const LEARNED: f64 = 0.03;
-const MOST_ASIDE: f64 = 1.0;
 
 /// Limits of the velocities.
 #[derive(Clone, Copy, Debug)]
@@ -81,28 +78,15 @@ pub struct Pilot {
     /// \[s\] When the robot was last on a cell of the floor.
     visits: BTreeMap<[i32; 2], f64>,
     course: Course,
-    /// \[rad\] Direction from the torso's that is to be looked in.
-    wanted: f64,
     /// \[rad\] @I_0 Direction that was told.
     told: Option<f64>,
-    /// \[rad\] What has to be told besides: the head knows its heading by gyroscopes, triggers theirs by footholds that turn on
-    /// the ground.
-    besides: f64,
 }
 
 impl Pilot {
     /// One that has seen nothing.
     pub fn new(speeds: Speeds) -> Self {
         let map = LocalMap::default();
-        Self {
-            speeds,
-            map,
-            visits: BTreeMap::new(),
-            course: Course::Arc(0.0),
-            wanted: 0.0,
-            told: None,
-            besides: 0.0,
-        }
+        Self { speeds, map, visits: BTreeMap::new(), course: Course::Arc(0.0), told: None }
     }
 
     /// Answer to `trigger`, at which the cameras saw these points \[m\] @camera. None if it does not say where the robot is.
@@ -130,7 +114,7 @@ impl Pilot {
         let arcs = tentacles::curvatures()
             .map(|k| (k, if is_seen(k) { tentacles::free(k, CLEARANCE, &taken) } else { 0.0 }));
         let velocity = self.choose(time, &arcs, place);
-        let look = self.look(aside, torso.heading()).map(|heading| {
+        let look = self.look(torso.heading()).map(|heading| {
             let ahead = FAR * DOWN.cos();
             let [cx, cy, cz] = camera.position;
             FixateCommand {
@@ -140,18 +124,16 @@ impl Pilot {
         Some(Answer { velocity, look })
     }
 
-    /// Direction \[rad\] @I_0 to tell the head, if that is news; it looks `aside` \[rad\] of a torso with this heading now.
-    fn look(&mut self, aside: f64, heading: f64) -> Option<f64> {
-        self.besides += LEARNED * wrapped(self.wanted - aside);
-        self.besides = self.besides.clamp(-MOST_ASIDE, MOST_ASIDE);
-        self.wanted = match self.course {
+    /// Direction \[rad\] @I_0 to tell the head of a torso with this heading, if that is news.
+    fn look(&mut self, heading: f64) -> Option<f64> {
+        let aside = match self.course {
             Course::Arc(k) => {
                 let [ahead, left] = tentacles::place(k, AHEAD.min(FRAC_PI_2 / k.abs()));
                 left.atan2(ahead)
             }
             Course::Turn(side, _) => side * ASIDE,
         };
-        let told = heading + self.wanted + self.besides;
+        let told = heading + aside;
         let is_news = self.told.is_none_or(|before| wrapped(told - before).abs() > CHANGED);
         self.told = if is_news { Some(told) } else { self.told };
         self.told.filter(|_| is_news)
@@ -298,21 +280,5 @@ mod tests {
         let mut lost = trigger(1, 0.0);
         lost.frames = Frames::UNKNOWN;
         assert_eq!(Pilot::new(SPEEDS).answer(&lost, &[]), None);
-    }
-
-    /// A head that is wrong about its heading looks beside every point by the same.
-    #[test]
-    fn a_gaze_that_is_aside_is_made_good_for() {
-        for wrong in [-0.4, 0.1, 0.5] {
-            let (mut pilot, mut looks) = (Pilot::new(SPEEDS), wrong);
-            for number in 1..200 {
-                let answer = pilot.answer(&trigger(number, looks), &[]).unwrap();
-                if let Some(FixateCommand { point: [x, y, z] }) = answer.look {
-                    looks = y.atan2(x) + wrong;
-                    assert!((-100.0..0.0).contains(&z), "{z} m is a height that may be told");
-                }
-            }
-            assert!(looks.abs() < 0.1, "{looks} rad");
-        }
     }
 }

@@ -122,6 +122,7 @@ fn the_way_is_reckoned_with_the_heading_that_is_believed() {
     let (mut real, mut believed) = (Vector3::<f64>::zeros(), Vector3::<f64>::zeros());
     let about_z = |angle| Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
     let mut seen = Vector3::zeros();
+    let mut torso = still();
     let point = Vector3::new(4.0, 1.0, 0.9);
     for k in 1..=steps {
         let heading = 0.4 * f64::from(k) / f64::from(steps);
@@ -132,13 +133,18 @@ fn the_way_is_reckoned_with_the_heading_that_is_believed() {
         let origin = [0.7 * frame, 0.02 * frame, 0.1 * frame];
         let rotation = *about_z(heading - origin[2]).matrix();
         let position = about_z(-origin[2]) * (believed - Vector3::new(origin[0], origin[1], 0.0));
-        let torso = TorsoMotion { origin, turn: -origin[2] - slip, rotation, position, ..still() };
-        let torso = gaze.stabilized(&torso, DT);
+        let measured = TorsoMotion { origin, turn: -origin[2] - slip, rotation, position, ..still() };
+        torso = gaze.stabilized(&measured, DT);
         seen = gaze.seen(&torso, &point).0 + gaze.centre;
     }
     let expected = about_z(-0.4 - slip) * (point - real);
     assert!((real - believed).norm() > 0.14);
     assert!((seen - expected).norm() < 1e-4, "{seen} {expected}");
+    // A point that was seen where odometry has her is found again by who is told by how much that is beside.
+    let [dx, dy, turn] = gaze.offset();
+    let told = believed + Vector3::new(dx, dy, 0.0) + about_z(turn) * (point - believed);
+    let found = gaze.seen(&torso, &told).0 + gaze.centre;
+    assert!((found - about_z(-0.4) * (point - believed)).norm() < 1e-9, "{found}");
 }
 
 #[test]

@@ -62,6 +62,8 @@ pub(super) struct CycleOutcome<'a> {
     pub(super) trim: [f64; 2],
     /// \[1\] @I_0 Rise of the ground per metre.
     pub(super) slope: [f64; 2],
+    /// \[m, m, rad\] @I_0 Torso as the camera head believes it, less odometry's.
+    pub(super) head_offset: [f64; 3],
 }
 
 impl Telemetry {
@@ -119,6 +121,7 @@ impl Telemetry {
         estimate.report(outcome.reference, s);
         s.inclination_trim = outcome.trim;
         s.ground_slope = outcome.slope;
+        s.head_offset = outcome.head_offset;
         if plan.id() == 0 || plan.plan().leads != BodyPoint::CentreOfGravity as u64 {
             s.dcm_error = [f64::NAN; 2];
         }

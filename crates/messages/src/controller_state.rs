@@ -50,6 +50,9 @@ record! {
         /// \[1\] @I_0 Rise of the ground per metre along x and y, as the last two stance soles lay on it; 0 on level ground, and
         /// of a gait without `[reaction]`.
         ground_slope: [f64; 2],
+        /// \[m, m, rad\] @I_0 Place and heading of the torso as the camera head reckons them, with the heading of the gyroscopes,
+        /// less those that footholds say; zeros of a robot without a camera head.
+        head_offset: [f64; 3],
         /// \[m\] Planned zero-moment point.
         zmp_desired: [f64; 2],
         /// \[m\] Zero-moment point of the measured foot wrenches. @invalid NaN while no foot carries load

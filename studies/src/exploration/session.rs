@@ -7,7 +7,7 @@ use chain::Chain;
 use chain::ending::{Ending, WalkEnd};
 use config::Setup;
 use gateway::gate::Gate;
-use gateway::sight::Witness;
+use gateway::sight::{Sight, Witness};
 use gateway::trigger::{Trigger, flag};
 use messages::command::{Command, VelocityCommand};
 use messages::{GaitState, SimState};
@@ -67,6 +67,8 @@ pub(super) struct Explored {
 struct Session {
     chain: Chain,
     witness: Witness,
+    /// As the newest trigger told.
+    sight: Option<Sight>,
     gate: Gate,
     eye: Eye,
     pilot: Pilot,
@@ -136,6 +138,7 @@ impl Session {
         Ok(Self {
             chain: Chain::new(setup)?,
             witness: Witness::new(setup)?,
+            sight: None,
             gate: Gate::default(),
             eye: Eye::new(&setup.robot, &setup.scene, Lens::default(), seed)?,
             pilot: Pilot::new(case.speeds),
@@ -174,7 +177,9 @@ impl Session {
                     self.walks = ([forward, left, turn] != [0.0; 3]).then_some(time);
                     self.chain.command(&command);
                 }
-                Ok(command) => self.chain.command(&command),
+                Ok(command) => {
+                    self.chain.command(&self.sight.map_or(command, |sight| sight.command(&command)))
+                }
                 Err(_) => {}
             }
         }
@@ -189,6 +194,7 @@ impl Session {
         self.sequence += 1;
         let (c, height) = (self.chain.last(), self.chain.plan().height);
         let sight = self.witness.see(&c.sensors, &c.controller_state, height);
+        self.sight = Some(sight);
         let trigger = Trigger {
             sender: 2,
             sequence: self.sequence,
