@@ -178,7 +178,7 @@ impl Session {
                     self.chain.command(&command);
                 }
                 Ok(command) => {
-                    self.chain.command(&self.sight.map_or(command, |sight| sight.command(&command)))
+                    self.chain.command(&self.sight.map_or(command, |sight| sight.command(&command)));
                 }
                 Err(_) => {}
             }
