@@ -30,7 +30,7 @@ fail() {
 }
 
 [ $# -gt 0 ] || fail "no command; usage: boot.sh [-t SECONDS] [-k DIR] [-r] [-i] COMMAND..."
-for tool in ${flavour:+qemu-system-x86_64:qemu-system-x86} busybox:busybox-static cpio:cpio; do
+for tool in ${flavour:+qemu-system-x86_64:qemu-system-x86} cc:build-essential busybox:busybox-static cpio:cpio; do
     command -v "${tool%%:*}" >/dev/null || fail "${tool%%:*} is missing: apt-get install ${tool##*:}"
 done
 [ -z "$kept" ] || mkdir -p "$kept" || fail "no folder $kept"
@@ -71,7 +71,8 @@ signal=off
 
 # A process that is a kernel; those that it runs are processes, too. It has one core.
 machine_of_a_process() {
-    timeout --foreground "$limit" "$kernel/linux" mem=2G initrd="$work/initramfs" quiet panic=-1 ${kept:+kept="$kept"} \
+    cc -O2 -shared -fPIC -o "$work/xstate.so" "$here/xstate.c" -ldl || fail "xstate.c does not compile"
+    LD_PRELOAD="$work/xstate.so" timeout --foreground "$limit" "$kernel/linux" mem=2G initrd="$work/initramfs" quiet panic=-1 ${kept:+kept="$kept"} \
         con=null con0=null,fd:7 ssl=null ssl1=fd:0,fd:1 ssl2=null,fd:8 7>"$work/console" 8>"$work/code" 2>&7
 }
 
