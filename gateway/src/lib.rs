@@ -269,6 +269,7 @@ impl Gateway<'_> {
         let link = self.robot.as_ref().and_then(|robot| robot.link.as_ref());
         let lease = if link.is_some_and(Link::has_lease) { flag::LEASE } else { 0 };
         let held = if link.is_some_and(Link::is_held) { flag::HELD } else { 0 };
+        // What is answered is meant as it was seen now.
         let sight = self.robot.as_mut().and_then(|robot| {
             robot.sight = robot.observer.look();
             robot.sight

@@ -72,8 +72,8 @@ signal=off
 # A process that is a kernel; those that it runs are processes, too. It has one core.
 machine_of_a_process() {
     cc -O2 -shared -fPIC -o "$work/xstate.so" "$here/xstate.c" -ldl || fail "xstate.c does not compile"
-    LD_PRELOAD="$work/xstate.so" timeout --foreground "$limit" "$kernel/linux" mem=2G initrd="$work/initramfs" quiet panic=-1 ${kept:+kept="$kept"} \
-        con=null con0=null,fd:7 ssl=null ssl1=fd:0,fd:1 ssl2=null,fd:8 7>"$work/console" 8>"$work/code" 2>&7
+    LD_PRELOAD="$work/xstate.so" timeout --foreground "$limit" "$kernel/linux" mem=2G initrd="$work/initramfs" quiet panic=-1 \
+        ${kept:+kept="$kept"} con=null con0=null,fd:7 ssl=null ssl1=fd:0,fd:1 ssl2=null,fd:8 7>"$work/console" 8>"$work/code" 2>&7
 }
 
 # All files of the host at their places: one tree, whatever is mounted in it.

@@ -36,8 +36,9 @@ const ASIDE: f64 = 0.6;
 /// steps do not move it.
 const AHEAD: f64 = 2.0;
 const FAR: f64 = 100.0;
-/// \[rad\] Change of the direction that is worth a command.
+/// \[rad\] Change of the direction that is worth a command, and \[s\] after which it is told again: a datagram may have been lost.
 const CHANGED: f64 = 0.07;
+const AGAIN: f64 = 1.0;
 /// \[rad\] Nearer to the camera's axis than this an arc begins that is walked: what is not seen is not free.
 const VIEW: f64 = 0.6;
 /// \[rad\] Least inclination of the camera with which it sees the floor before the robot.
@@ -78,8 +79,8 @@ pub struct Pilot {
     /// \[s\] When the robot was last on a cell of the floor.
     visits: BTreeMap<[i32; 2], f64>,
     course: Course,
-    /// \[rad\] @I_0 Direction that was told.
-    told: Option<f64>,
+    /// \[rad\] @I_0, \[s\] Direction that was told, and when.
+    told: Option<(f64, f64)>,
 }
 
 impl Pilot {
@@ -114,7 +115,7 @@ impl Pilot {
         let arcs = tentacles::curvatures()
             .map(|k| (k, if is_seen(k) { tentacles::free(k, CLEARANCE, &taken) } else { 0.0 }));
         let velocity = self.choose(time, &arcs, place);
-        let look = self.look(torso.heading()).map(|heading| {
+        let look = self.look(time, torso.heading()).map(|heading| {
             let ahead = FAR * DOWN.cos();
             let [cx, cy, cz] = camera.position;
             FixateCommand {
@@ -125,7 +126,7 @@ impl Pilot {
     }
 
     /// Direction \[rad\] @I_0 to tell the head of a torso with this heading, if that is news.
-    fn look(&mut self, heading: f64) -> Option<f64> {
+    fn look(&mut self, time: f64, heading: f64) -> Option<f64> {
         let aside = match self.course {
             Course::Arc(k) => {
                 let [ahead, left] = tentacles::place(k, AHEAD.min(FRAC_PI_2 / k.abs()));
@@ -134,9 +135,13 @@ impl Pilot {
             Course::Turn(side, _) => side * ASIDE,
         };
         let told = heading + aside;
-        let is_news = self.told.is_none_or(|before| wrapped(told - before).abs() > CHANGED);
-        self.told = if is_news { Some(told) } else { self.told };
-        self.told.filter(|_| is_news)
+        let is_old =
+            |(before, then): (f64, f64)| wrapped(told - before).abs() > CHANGED || time - then > AGAIN;
+        let is_news = self.told.is_none_or(is_old);
+        is_news.then(|| {
+            self.told = Some((told, time));
+            told
+        })
     }
 
     /// The next course, and its velocity.
@@ -280,5 +285,16 @@ mod tests {
         let mut lost = trigger(1, 0.0);
         lost.frames = Frames::UNKNOWN;
         assert_eq!(Pilot::new(SPEEDS).answer(&lost, &[]), None);
+    }
+
+    /// Of ten answers a second some get lost: the head is told until it looks there, at a height that may be told.
+    #[test]
+    fn a_direction_is_told_again() {
+        let (mut pilot, mut told) = (Pilot::new(SPEEDS), Vec::new());
+        for number in 1..=50 {
+            told.extend(pilot.answer(&trigger(number, 0.0), &[]).unwrap().look);
+        }
+        assert!((4..=6).contains(&told.len()), "{} times in 5 s", told.len());
+        assert!(told.iter().all(|look| (-100.0..0.0).contains(&look.point[2])), "{told:?}");
     }
 }

@@ -3,7 +3,12 @@ use super::network::{Faults, Network};
 use super::outline::Outline;
 use super::room::Room;
 use super::*;
+use crate::random::Random;
+use chain::Chain;
+use gateway::sight::Witness;
 use messages::SimState;
+use messages::command::{Command, FixateCommand, VelocityCommand};
+use recording::RecordedPose;
 use sim_backend::terrain::environment;
 
 fn setup() -> Setup {
@@ -60,6 +65,52 @@ fn an_outline_touches_what_it_is_in() {
     assert!(at([0.0, 0.0, 1.2]).is_some());
     assert!(at([0.0, 0.3, 1.0]).is_some_and(|link| link.contains("arm") || link.contains("left")));
     assert_eq!(at([0.0, 0.75, 1.0]), None);
+}
+
+/// She walks curves for two minutes, odometry and head come apart, and twenty random points, told where the trigger has I_0, come
+/// into the middle of its camera's picture, as near as pursuit promises (`chain/tests/gaze.rs`).
+#[test]
+fn points_are_looked_at_where_the_trigger_has_them() {
+    let mut setup = setup();
+    setup.scene.objects.clear();
+    setup.scene.commands.retain(|(time, _)| *time < 3.0);
+    let mut chain = Chain::new(&setup).unwrap();
+    let mut witness = Witness::new(&setup).unwrap();
+    let mut random = Random(530_301);
+    let mut run = |chain: &mut Chain, seconds: f64| {
+        let cycles = (seconds / chain.cycle()) as usize;
+        (0..cycles).for_each(|_| {
+            chain.step();
+        });
+        let (c, height) = (chain.last(), chain.plan().height);
+        witness.see(&c.sensors, &c.controller_state, height)
+    };
+    run(&mut chain, 4.0);
+    let (mut apart, mut worst) = (0.0_f64, 0.0_f64);
+    for number in 0..20 {
+        let turn = random.within([0.0, 0.25]);
+        chain.command(&Command::Velocity(VelocityCommand { forward: 0.3, left: 0.0, turn }));
+        let seen = run(&mut chain, 4.0);
+        let place = recording::odometry::frame(seen.odometry.place).then(&seen.frames.torso);
+        let (distance, bearing) = (random.within([2.0, 4.0]), place.heading() + random.within([-0.8, 0.8]));
+        let point = [
+            place.position[0] + distance * bearing.cos(),
+            place.position[1] + distance * bearing.sin(),
+            random.within([0.0, 1.5]),
+        ];
+        let told = Command::Fixate(FixateCommand { point });
+        let Command::Fixate(FixateCommand { point: given }) = seen.command(&told) else { unreachable!() };
+        apart = apart.max((given[0] - point[0]).hypot(given[1] - point[1]));
+        chain.command(&seen.command(&told));
+        let now = run(&mut chain, 2.0); // the longest jump of the head takes 1.5 s
+        let camera = recording::odometry::frame(now.odometry.place).then(&now.frames.camera);
+        let RecordedPose { position: [x, y, z], .. } = RecordedPose::moved(point).seen_from(&camera);
+        let error = y.hypot(z).atan2(x);
+        worst = worst.max(error);
+        assert!(error < 0.008, "point {number}, {point:?}: {error} rad beside");
+    }
+    assert!(apart > 0.03, "{apart} m: nothing to be put right");
+    println!("at most {:.0} mrad beside, points moved by up to {apart:.2} m", 1e3 * worst);
 }
 
 #[test]
