@@ -86,7 +86,7 @@ fn points_are_looked_at_where_the_trigger_has_them() {
         witness.see(&c.sensors, &c.controller_state, height)
     };
     run(&mut chain, 4.0);
-    let (mut apart, mut worst) = (0.0_f64, 0.0_f64);
+    let mut apart = 0.0_f64;
     for number in 0..20 {
         let turn = random.within([0.0, 0.25]);
         chain.command(&Command::Velocity(VelocityCommand { forward: 0.3, left: 0.0, turn }));
@@ -106,11 +106,9 @@ fn points_are_looked_at_where_the_trigger_has_them() {
         let camera = recording::odometry::frame(now.odometry.place).then(&now.frames.camera);
         let RecordedPose { position: [x, y, z], .. } = RecordedPose::moved(point).seen_from(&camera);
         let error = y.hypot(z).atan2(x);
-        worst = worst.max(error);
         assert!(error < 0.008, "point {number}, {point:?}: {error} rad beside");
     }
     assert!(apart > 0.03, "{apart} m: nothing to be put right");
-    println!("at most {:.0} mrad beside, points moved by up to {apart:.2} m", 1e3 * worst);
 }
 
 #[test]
