@@ -40,15 +40,15 @@ pub fn contact_stiffness(
 }
 
 /// \[m/s\] Speed at which a foot is lowered that finds no ground at its time ...
-const SEARCH_SPEED: f64 = 0.4;
+const SEARCH_SPEED: f64 = 0.7;
 /// \[m\] ... and how far.
-const SEARCH_DEPTH: f64 = 0.06;
+const SEARCH_DEPTH: f64 = 0.1;
 /// \[m\] A residue below this one is none.
 const NOTHING: f64 = 1e-6;
 /// \[m/s^2\] Acceleration of a foot that searches the ground, up to this speed \[m/s\], and beyond it: what it misses is mostly
 /// just below it.
 const GENTLE: (f64, f64) = (3.0, 0.15);
-const HASTE: f64 = 12.0;
+const HASTE: f64 = 20.0;
 
 /// Compliance of a foot's contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -369,6 +369,23 @@ mod tests {
             m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
             assert!(m.rate[3] >= -GENTLE.1 - 1e-12, "{}", m.rate[3]);
         }
+    }
+
+    /// Lola's feet: 9 cm lower before the double support of 0.16 s and the time in which a foot is noticed to be late are over.
+    #[test]
+    fn a_late_foot_is_down_before_the_other_one_lifts() {
+        let control = StabilizerGains {
+            modification_limit: [0.1, 0.4, 0.4],
+            modification_rate: [0.8, 2.0, 2.0],
+            ..crate::test_gains()
+        };
+        let feet = [foot(ContactPhase::Late, 0.0), foot(ContactPhase::Stance, 1.0)];
+        let mut m = Modification::default();
+        for _ in 0..200 {
+            m = modify(&control, &Matrix6::identity(), &feet, &no_forces(), &m, 1e-3);
+            assert!(!m.limited && m.rate[0] >= -0.7 - 1e-12, "{}", m.rate[0]);
+        }
+        assert!(m.value[0] < -0.09, "{}", m.value[0]);
     }
 
     #[test]
