@@ -9,8 +9,8 @@
 //! | 16..24 | sequence, u64 |
 //! | 24..32 | stamp \[ns\], u64: of a trigger its own, otherwise that of the trigger that is answered |
 //!
-//! There is no checksum: that of UDP and that of Ethernet look after the way, and what a wrong program writes they and
-//! another one would call sound; length, version and ranges do not.
+//! There is no checksum of our own: those of UDP and Ethernet find what the network bends, and what a faulty program writes
+//! would pass any; length, version and ranges catch that.
 
 use messages::Command;
 use messages::command_text::CommandInfo;

@@ -3,10 +3,12 @@
 //!
 //! ```text
 //!  Off ──supply on──► NotHomed ──joint/home──► Homing ──► Enabling ──► Hanging ──joint/zero_force──► Zeroed
-//!   ▲                     (only if a joint does not know its angle)      │                             │ the feet
-//!   │                                                                    ▼ the feet carried already    ▼ carry
-//!   └────────── supply off, from everywhere ◄─────────────────────────── Standing ◄────────────────────┘
+//!   ▲                     (only if a joint does not know its angle) │                                │ the feet
+//!   │                   the feet carried already, or feel nothing   ▼                                ▼ carry
+//!   └────────── supply off, from everywhere ◄────────────────────── Standing ◄───────────────────────┘
 //! ```
+//!
+//! From everywhere to Stopped, while a controlled stop is latched.
 //!
 //! Nothing is followed before every drive is in Operation enabled. No drive is switched on while a joint does not know its
 //! angle, but to find it out.

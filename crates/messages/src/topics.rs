@@ -7,7 +7,7 @@ use crate::{
     Parameters, Plan, Power, Sensors, SimState, WatchdogReset,
 };
 
-/// The processes of a running robot, in the order they are started.
+/// The processes of a running robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Process {
     /// Forwards commands between processes and over TCP.
@@ -29,7 +29,7 @@ pub enum Process {
 }
 
 impl Process {
-    /// All processes, in the order in which `gangwerk run` starts them: the logger before those whose first cycle it is to
+    /// All processes, in the order in which the shipped `config/system.toml` has them started: the logger before those whose first cycle it is to
     /// have, the clock last.
     pub const ALL: [Self; 7] = [
         Self::Broker,
