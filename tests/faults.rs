@@ -1,4 +1,4 @@
-//! `gangwerk faults` in small: a few faults, and that a robot that does not react is a red line.
+//! `gangwerk faults` in small: a few faults. That a robot which does not react is a red line: `cli/src/faults/mod.rs`.
 
 use harness::turn;
 use std::process::Command;

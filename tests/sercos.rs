@@ -42,8 +42,7 @@ impl Ring {
         match ring.make() {
             Ok(()) => Some(ring),
             Err(reason) => {
-                assert_ne!(std::env::var("CI").as_deref(), Ok("true"), "left out: {reason}");
-                println!("left out: {reason}");
+                harness::left_out(&reason);
                 None
             }
         }

@@ -86,14 +86,19 @@ fn crates() -> BTreeMap<String, (BTreeSet<String>, PathBuf)> {
         let (mut name, mut section, mut needs) = (None, "", BTreeSet::new());
         for line in manifest.lines().map(str::trim) {
             if let Some(header) = line.strip_prefix('[') {
+                // `[target.X.dependencies]` is one, and `[dependencies.NAME]` names one.
                 section = header.trim_end_matches(']');
+                section = section.strip_prefix("target.").map_or(section, |s| s.rsplit('.').next().unwrap());
+                needs.extend(section.strip_prefix("dependencies.").map(str::to_owned));
             } else if let Some((key, value)) = line.split_once('=').filter(|_| !line.starts_with('#')) {
                 match section {
                     "package" if key.trim() == "name" => {
                         name = Some(value.trim().trim_matches('"').to_owned());
                     }
                     "dependencies" | "build-dependencies" => {
-                        needs.insert(key.trim().trim_end_matches(".workspace").to_owned());
+                        // Under another name, too.
+                        let renamed = value.split("package = \"").nth(1).and_then(|s| s.split('"').next());
+                        needs.insert(renamed.unwrap_or(key.trim().trim_end_matches(".workspace")).to_owned());
                     }
                     _ => {}
                 }
@@ -162,6 +167,9 @@ fn only_realtime_may_name_clocks() {
     let clocks = [
         "Instant::",
         "SystemTime::",
+        "Instant as",
+        "SystemTime as",
+        "UNIX_EPOCH.elapsed",
         "thread::sleep",
         "clock_gettime",
         "clock_nanosleep",

@@ -107,6 +107,30 @@ fn sequences(runs: u64, cycle: f64, commands: u64, dense: bool) -> Tally {
     tally
 }
 
+/// A NaN anywhere in a plan is seen, in whichever of its nine paths it stands.
+#[test]
+fn a_nan_in_any_path_is_a_jump() {
+    let mut r = Robot::with_cycle(&robot::gait(), robot::CYCLE);
+    r.stand();
+    r.step(&[Command::Start]);
+    r.run(2.0);
+    let sound = r.plans.last().expect("she walks").clone();
+    assert!(Worst::of(&sound).jump < 1e-9);
+    for path in 0..9 {
+        let mut plan = sound.clone();
+        let last = match path {
+            0 => plan.body.coefficients[0][2].last_mut(),
+            1 => plan.torso.coefficients[0][0].last_mut(),
+            2 => plan.load_left.coefficients[0][0].last_mut(),
+            3 | 4 => plan.feet[path - 3].coefficients[0][2].last_mut(),
+            5 | 6 => plan.pitch[path - 5].coefficients[0][0].last_mut(),
+            _ => plan.toes[path - 7].coefficients[0][0].last_mut(),
+        };
+        *last.expect("six coefficients") = f64::NAN;
+        assert!(Worst::of(&plan).jump.is_infinite(), "path {path}");
+    }
+}
+
 #[test]
 fn random_commands_are_walked() {
     let tally = sequences(200, robot::CYCLE, 8, true);

@@ -211,6 +211,14 @@ mod tests {
     }
 
     #[test]
+    fn an_unmet_demand_is_red() {
+        let seen = FaultObservation::new("F3", "-").demand(false, "stands");
+        assert_eq!(row(seen, &[]).verdict, FaultVerdict::NotMet);
+        let seen = FaultObservation::new("F3", "-").demand(true, "stands");
+        assert_eq!(row(seen, &[]).verdict, FaultVerdict::Met);
+    }
+
+    #[test]
     fn a_fault_that_nothing_tries_is_red() {
         let row = untried(&Fault { id: "F1", name: "", expected: "", proof: Proof::Tried });
         assert_eq!(row.verdict, FaultVerdict::NotMet);

@@ -69,6 +69,11 @@ impl Worst {
     /// points of the feet there and at some instants between.
     fn support(&mut self, plan: &Plan) {
         let n = plan.zmp.points as usize;
+        assert!(
+            plan.zmp.values[..n].iter().flatten().all(|x| x.is_finite()),
+            "plan {}: zero-moment point",
+            plan.id
+        );
         let steps = &plan.steps[..plan.step_count as usize];
         let (mut polygon, mut known) = (Vec::new(), usize::MAX);
         for k in 0..n - 1 {
@@ -122,7 +127,7 @@ fn jumps(plan: &Plan) -> f64 {
 }
 
 /// Largest difference of position, velocity and acceleration between the end of a piece and the begin of the next one;
-/// not a number if a coefficient is none.
+/// infinite if a coefficient is not finite (a NaN would be lost in the next maximum).
 fn jump<const D: usize, const N: usize>(path: &Path<D, N>) -> f64 {
     let n = path.pieces as usize;
     let mut worst = 0.0f64;
@@ -134,7 +139,7 @@ fn jump<const D: usize, const N: usize>(path: &Path<D, N>) -> f64 {
             let c = &path.coefficients[i][d];
             let end = derivatives(c, h);
             if !end.iter().chain(c).all(|x| x.is_finite()) {
-                return f64::NAN;
+                return f64::INFINITY;
             }
             if i + 1 < n {
                 let next = derivatives(&path.coefficients[i + 1][d], 0.0);
