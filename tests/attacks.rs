@@ -17,7 +17,7 @@ use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, POWER, SIM_STATE};
 use messages::{Command, ControllerState, GaitState, JointTargets, Power, Process, SimState};
 use realtime::clock::{SECOND, now};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use strangers::{ATTACKS, Place, operator_enters, under, with_door};
+use strangers::{ATTACKS, Place, under, with_door};
 
 const EXE: &str = harness::executable!();
 /// Emergency stops asked for under each attack.
@@ -109,7 +109,6 @@ fn strangers_move_nothing_and_hold_up_neither_operator_nor_emergency_stop() {
                 doze(0.05);
             }
         });
-        operator_enters(&robot.site, name);
         println!("{name}: {done} times, joint targets within {moved:.1e} rad ({quiet:.1e} rad before)");
         assert!(moved < 1e-3, "{name}: a joint target moved by {moved} rad");
         assert_eq!(power.latest().map(|p| p.on), Some(1), "{name}: {}", robot.run.err());

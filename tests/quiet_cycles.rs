@@ -56,21 +56,16 @@ const LIST: [(Process, &Topic, Calls); 5] = [
 const PLAY: f64 = 0.02;
 
 /// Counts the system calls of some threads, by thread and number.
-struct Trace {
-    dir: PathBuf,
-    /// Where tracefs was mounted for it, if it was nowhere.
-    mounted: Option<PathBuf>,
-}
+struct Trace(PathBuf);
 
 impl Trace {
     /// None without tracefs or the right to use it.
     fn of(threads: &[u32]) -> Option<Self> {
         let home = ["/sys/kernel/tracing", "/sys/kernel/debug/tracing"].map(Path::new);
-        let there = home.into_iter().find(|dir| dir.join("events/raw_syscalls").exists());
-        let mounted = if there.is_some() { None } else { Some(mount()?) };
-        let home = there.or(mounted.as_deref())?;
-        let trace = Self { dir: home.join(format!("instances/gangwerk-{}", std::process::id())), mounted };
-        fs::create_dir(&trace.dir).ok()?;
+        let home = home.into_iter().find(|dir| dir.join("events/raw_syscalls").exists())?;
+        let dir = home.join(format!("instances/gangwerk-{}", std::process::id()));
+        fs::create_dir(&dir).ok()?;
+        let trace = Self(dir);
         trace.set("buffer_size_kb", "65536").ok()?;
         let threads: Vec<String> = threads.iter().map(u32::to_string).collect();
         trace.set("set_event_pid", &threads.join(" ")).ok()?;
@@ -79,13 +74,13 @@ impl Trace {
     }
 
     fn set(&self, file: &str, to: &str) -> std::io::Result<()> {
-        fs::write(self.dir.join(file), to)
+        fs::write(self.0.join(file), to)
     }
 
     fn counts(&self) -> BTreeMap<(u32, u32), f64> {
         self.set("tracing_on", "0").unwrap();
         let mut counts = BTreeMap::new();
-        let text = fs::read_to_string(self.dir.join("trace")).unwrap();
+        let text = fs::read_to_string(self.0.join("trace")).unwrap();
         for line in text.lines().filter(|line| !line.starts_with('#')) {
             // `   gangwerk-27562 [001] ..... 99.1: sys_enter: NR 45 (...)`
             let words: Vec<&str> = line.split_whitespace().collect();
@@ -102,25 +97,8 @@ impl Trace {
 impl Drop for Trace {
     fn drop(&mut self) {
         let _ = self.set("events/raw_syscalls/sys_enter/enable", "0");
-        let _ = fs::remove_dir(&self.dir);
-        if let Some(home) = &self.mounted {
-            let _ = Command::new("umount").arg(home).status();
-            let _ = fs::remove_dir(home);
-        }
+        let _ = fs::remove_dir(&self.0);
     }
-}
-
-/// tracefs in a directory of its own; none without the right to mount it.
-fn mount() -> Option<PathBuf> {
-    let home = std::env::temp_dir().join(format!("gangwerk-tracefs-{}", std::process::id()));
-    fs::create_dir(&home).ok()?;
-    let done =
-        Command::new("mount").args(["-t", "tracefs", "nodev"]).arg(&home).stderr(Stdio::null()).status();
-    if done.is_ok_and(|status| status.success()) {
-        return Some(home);
-    }
-    let _ = fs::remove_dir(&home);
-    None
 }
 
 /// Observers come, read one record at least, and die.
@@ -204,7 +182,7 @@ fn a_cycle_makes_the_calls_of_its_list_and_neither_allocates_nor_faults() {
     println!("{observers} observers came and died");
     assert_eq!(wrong, [""; 0]);
     match counts {
-        None => harness::left_out("system calls are not counted: that needs root and tracefs"),
+        None => println!("system calls were not counted: that needs root and tracefs"),
         Some(counts) => assert!(counts.len() >= 15, "{counts:?}"),
     }
 }

@@ -13,7 +13,7 @@ use realtime::clock::{SECOND, now};
 use recording::{Log, payload_hashes};
 
 use crate::EXE;
-use crate::strangers::{ATTACKS, Attack, Place, operator_enters, under, with_door};
+use crate::strangers::{ATTACKS, Attack, Place, under, with_door};
 
 /// \[s\] Simulated time: when it walks; for how long each attack goes on.
 const WALKS: f64 = 3.5;
@@ -58,7 +58,6 @@ impl Walk {
                 time = self.at(time).time + EACH;
                 self.at(time);
             });
-            operator_enters(site, attack.0);
             println!("{}: {done} times", attack.0);
             assert!(done > 0, "{}", attack.0);
         }

@@ -118,7 +118,7 @@ fn pressure(plan: &Plan, t: f64) -> [f64; 2] {
 }
 
 /// Largest jump at a knot of any path of a plan.
-fn jumps(plan: &Plan) -> f64 {
+pub fn jumps(plan: &Plan) -> f64 {
     let mut worst = jump(&plan.body).max(jump(&plan.torso)).max(jump(&plan.load_left));
     for i in 0..2 {
         worst = worst.max(jump(&plan.feet[i])).max(jump(&plan.pitch[i])).max(jump(&plan.toes[i]));
@@ -127,10 +127,10 @@ fn jumps(plan: &Plan) -> f64 {
 }
 
 /// Largest difference of position, velocity and acceleration between the end of a piece and the begin of the next one;
-/// infinite if a coefficient is not finite (a NaN would be lost in the next maximum).
+/// infinite if its origin or a coefficient is not finite (a NaN would be lost in the next maximum).
 fn jump<const D: usize, const N: usize>(path: &Path<D, N>) -> f64 {
     let n = path.pieces as usize;
-    let mut worst = 0.0f64;
+    let mut worst = if path.origin.iter().all(|x| x.is_finite()) { 0.0f64 } else { f64::INFINITY };
     let mut begin = path.start;
     for i in 0..n {
         let h = path.ends[i] - begin;
