@@ -86,9 +86,11 @@ fn crates() -> BTreeMap<String, (BTreeSet<String>, PathBuf)> {
         let (mut name, mut section, mut needs) = (None, "", BTreeSet::new());
         for line in manifest.lines().map(str::trim) {
             if let Some(header) = line.strip_prefix('[') {
-                // `[target.X.dependencies]` is one, and `[dependencies.NAME]` names one.
+                // `[target.X.dependencies]` is one, too, and `[dependencies.NAME]` names one.
                 section = header.trim_end_matches(']');
-                section = section.strip_prefix("target.").map_or(section, |s| s.rsplit('.').next().unwrap());
+                if section.starts_with("target.") {
+                    section = section.find(".dependencies").map_or("", |at| &section[at + 1..]);
+                }
                 needs.extend(section.strip_prefix("dependencies.").map(str::to_owned));
             } else if let Some((key, value)) = line.split_once('=').filter(|_| !line.starts_with('#')) {
                 match section {

@@ -1,4 +1,5 @@
-//! A blocking client of the broker on a stream, for everything outside of the run: command line, dashboard, joystick, gateway, tests.
+//! A blocking client of the broker on a stream, for everything outside of the run: command line, dashboard, joystick,
+//! gateway, tests.
 
 use std::collections::VecDeque;
 use std::io::{Error, ErrorKind, Read, Write};

@@ -29,8 +29,8 @@ pub enum Process {
 }
 
 impl Process {
-    /// All processes, in the order in which the shipped `config/system.toml` has them started: the logger before those whose first cycle it is to
-    /// have, the clock last.
+    /// All processes, in the order in which the shipped `config/system.toml` has them started: the logger before those
+    /// whose first cycle it is to have, the clock last.
     pub const ALL: [Self; 7] = [
         Self::Broker,
         Self::Logger,
