@@ -5,7 +5,7 @@ mod gateway;
 #[path = "commands/joystick.rs"]
 mod joystick;
 
-use harness::{Running, Signal, Site, doze, turn};
+use harness::{Running, Signal, Site, doze, shared_turn, turn};
 use ipc::{Reader, Space};
 use messages::topics::{CONTROLLER_STATE, EVENTS_PLANNER, EVENTS_WATCHDOG, POWER, SIM_STATE};
 use messages::{Command, ControllerState, Event, EventCode, GaitState, Power, Process, Record, SimState};
@@ -87,7 +87,7 @@ fn until<T: Record>(run: &mut Running, reader: &mut Reader<T>, what: impl Fn(&T)
 
 #[test]
 fn walk_velocity_and_walk_stop_walk_and_stop() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     let (mut run, space) = standing(&site);
     let mut sim = space.reader::<SimState>(&SIM_STATE).unwrap();
@@ -116,7 +116,7 @@ fn walk_velocity_and_walk_stop_walk_and_stop() {
 
 #[test]
 fn sim_push_pushes_for_as_long_as_it_says() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     let (mut run, space) = standing(&site);
     let mut sim = space.reader::<SimState>(&SIM_STATE).unwrap();
@@ -130,7 +130,7 @@ fn sim_push_pushes_for_as_long_as_it_says() {
 
 #[test]
 fn an_emergency_stop_cuts_the_supply_in_the_cycle_that_hears_it() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     let (mut run, space) = standing(&site);
     let _operator = walk(&site);
@@ -275,7 +275,7 @@ fn a_command_that_waited_in_a_stalled_process_moves_nothing() {
 
 #[test]
 fn a_refused_command_ends_topic_pub_with_the_reason_and_the_limit() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     let (run, _space) = standing(&site);
     let said = site.topic(&["pub", "walk/velocity", "forward=1.9"]);
@@ -297,7 +297,7 @@ fn a_refused_command_ends_topic_pub_with_the_reason_and_the_limit() {
 /// The same protocol from another language, written from its page of the documentation.
 #[test]
 fn the_python_client_speaks_to_the_broker() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     let key = "00112233445566778899aabbccddeeff".repeat(2);
     let path = site.config("keys");

@@ -14,7 +14,7 @@ mod replay;
 #[path = "dashboard/scenes.rs"]
 mod scenes;
 
-use harness::{Running, Signal, Site, WALK, doze, turn};
+use harness::{Running, Signal, Site, WALK, doze, shared_turn};
 use measured::number_of;
 use messages::topics::{CONTROLLER_STATE, JOINT_TARGETS, SENSORS};
 use messages::{ControllerState, GaitState, JointTargets, Sensors};
@@ -53,7 +53,7 @@ fn standing(site: &Site) -> (Running, Server, Page) {
 fn the_estimated_error_of_a_method_is_told() {
     /// \[rad\] What the scene allows.
     const TOLERANCE: f64 = 0.5;
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     site.scene("auto", 100_000.0, &format!("{WAIT}[tolerance]\ntrial = 0.4\ninclination = {TOLERANCE}\n"));
     let file = site.path("config/scenes/auto.toml");
@@ -74,7 +74,7 @@ fn the_estimated_error_of_a_method_is_told() {
 
 #[test]
 fn hello_is_complete_and_frames_and_samples_are_the_log() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     site.scene("walk", 6.0, WALK);
     let server = Server::start(&site);
@@ -170,7 +170,7 @@ fn by_tick<T: messages::Record>(records: Vec<T>) -> BTreeMap<u64, T> {
 
 #[test]
 fn a_page_walks_her_and_she_stands_when_it_lives_no_more() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     let (_run, server, mut page) = standing(&site);
     let begin = page.entry("torso_truth")[0];
@@ -315,7 +315,7 @@ fn sixty_four_pages_and_no_more() {
 
 #[test]
 fn who_does_not_read_is_left_and_others_go_on() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     let (_run, server, mut page) = standing(&site);
     let names: Vec<&Value> =
@@ -366,7 +366,7 @@ fn targets(log: &Path) -> u64 {
 /// instants, for 8 s or `GANGWERK_SOAK_SECONDS`.
 #[test]
 fn pages_and_servers_that_die_change_no_bit_of_the_walk() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let seconds = number_of("GANGWERK_SOAK_SECONDS").unwrap_or(8) as u64;
     let walk = |site: &Site, more: &[&str]| {
         site.scene("walk", seconds as f64 + 4.0, WALK);
@@ -433,7 +433,7 @@ fn pages_and_servers_that_die_change_no_bit_of_the_walk() {
 
 #[test]
 fn each_directory_has_its_robot_and_the_next_one_is_found() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let sites = [Site::patient(EXE), Site::patient(EXE)];
     let names = ["one", "two"];
     let runs: Vec<Running> = (sites.iter().zip(names))
@@ -470,7 +470,7 @@ fn each_directory_has_its_robot_and_the_next_one_is_found() {
 /// `gangwerk run --desk`: the page is there with the run, and goes with it, ended or killed.
 #[test]
 fn the_page_of_a_run_goes_with_it() {
-    let _turn = turn();
+    let _turn = shared_turn();
     for signal in [Signal::INT, Signal::KILL] {
         let site = Site::patient(EXE);
         site.scene("desk", 2.0, WAIT);

@@ -4,7 +4,7 @@
 //! directory. `GANGWERK_TRIALS=500` takes 500 of each instead of a few, and then holds the limits: 5 bus cycles without load,
 //! 20 ms for 99 of 100 otherwise.
 
-use harness::{Running, Site, doze, turn};
+use harness::{Running, Site, doze, shared_turn, turn};
 use ipc::{Reader, Space, StopButton, StopName};
 use messages::topics::{EVENTS_WATCHDOG, POWER, SIM_STATE};
 use messages::{Event, EventCode, Power, Process, SimState};
@@ -363,7 +363,7 @@ fn flooded(flood: impl Fn(&mut Rig) -> Option<Load>) -> String {
 
 #[test]
 fn it_works_in_simulated_time_and_names_a_robot_that_is_not_there() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let mut rig = Rig::new(Site::patient(EXE), &["--lockstep", "--no-log"]);
     rig.stop();
     drop(rig);

@@ -1,6 +1,6 @@
 //! What the supervisor does when something hangs, dies, fills up or does not read: a robot in real time, and one thing wrong.
 
-use harness::{Running, Site, WALK, doze, turn};
+use harness::{Running, Site, WALK, doze, shared_turn, turn};
 use ipc::{Reader, Space};
 use messages::topics::{
     CONTROLLER_STATE, POWER, SIM_STATE, STATS_CONTROLLER, STATS_LOWLEVEL, STATS_PLANNER, STATS_SIM_BACKEND,
@@ -72,7 +72,7 @@ fn a_hung_process_is_named_and_ends_the_run() {
 
 #[test]
 fn in_lockstep_the_one_for_whom_all_wait_is_named() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     site.edit("system.toml", "peer_timeout = 5.0", "peer_timeout = 1.0");
     site.scene("hang", 1000.0, WAIT);

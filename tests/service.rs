@@ -1,6 +1,6 @@
 //! A run as a service: what a service manager hears, and whether the unit is one that systemd takes.
 
-use harness::{Signal, Site, doze, root, turn};
+use harness::{Signal, Site, doze, root, shared_turn};
 use realtime::clock;
 use std::os::unix::net::UnixDatagram;
 use std::process::Command;
@@ -37,7 +37,7 @@ impl Manager {
 
 #[test]
 fn a_service_manager_hears_ready_alive_and_stopping() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     let manager = Manager(UnixDatagram::bind(site.path("notify")).unwrap());
     site.scene("wait", 100_000.0, "");

@@ -1,7 +1,7 @@
 //! `gangwerk topic`, `param` and `log` at a robot in simulated time: fields with names and units, tables, repeated commands,
 //! values in a file, logs as tables and against each other.
 
-use harness::{Running, Site, doze, turn};
+use harness::{Running, Site, doze, shared_turn};
 use realtime::clock;
 use std::fs;
 
@@ -27,7 +27,7 @@ fn numbers(line: &str) -> Vec<f64> {
 
 #[test]
 fn what_a_topic_is_and_says_is_told_with_names_and_units() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     // About the table no robot is asked.
     let said = site.gangwerk(&["topic", "info", "sensors"]).well();
@@ -86,7 +86,7 @@ fn what_a_topic_is_and_says_is_told_with_names_and_units() {
 
 #[test]
 fn commands_are_repeated_as_often_as_asked() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     let run = standing(&site);
     let push = ["pub", "sim/push", "force.y=1", "duration=0.01"];
@@ -105,7 +105,7 @@ fn commands_are_repeated_as_often_as_asked() {
 
 #[test]
 fn parameters_go_to_a_file_and_back_and_all_that_is_wrong_is_told_at_once() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     let run = standing(&site);
     let dir = site.run_dir().display().to_string();
@@ -148,7 +148,7 @@ fn parameters_go_to_a_file_and_back_and_all_that_is_wrong_is_told_at_once() {
 
 #[test]
 fn logs_are_told_exported_and_compared() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     let log = |name: &str, scene: &str| {
         let path = site.path(name).display().to_string();

@@ -1,6 +1,6 @@
 //! What the command says: sentences with what to do, each once, and an end that is quiet when nobody reads any more.
 
-use harness::{Site, doze, turn};
+use harness::{Site, doze, shared_turn, turn};
 use messages::topics::SIM_STATE;
 use messages::{EventCode, Process, SimState};
 use realtime::clock;
@@ -21,7 +21,7 @@ fn no_codes(text: &str) {
 /// `PowerOff (ResetMissed)` and "reset, enable" stood at the end of every run that was as it should be.
 #[test]
 fn a_run_that_ends_well_tells_no_fault_and_gives_no_advice() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     site.scene("short", 1.5, "[[command]]\ntime = 0.2\ntopic = \"walk/stand\"\n");
     let said = site.run("short", &["--lockstep"]).end().well();

@@ -1,7 +1,7 @@
 //! `gangwerk gateway` at a robot that runs: a vision system walks her over UDP, and she stands whatever becomes of it.
 
 use super::joystick::{Dice, Robot, says};
-use super::{Site, doze, turn, until};
+use super::{Site, doze, shared_turn, until};
 use gateway::Cause;
 use gateway::trigger::flag;
 use gateway::wire::{Datagram, TRIGGER};
@@ -145,7 +145,7 @@ impl Eyes {
 /// A walk of her own program: the page's client in Python.
 #[test]
 fn the_python_client_walks_her_and_she_stops_before_a_box() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(super::EXE);
     let mut robot = Robot::standing_in(&site, &PACED);
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
@@ -174,7 +174,7 @@ fn the_python_client_walks_her_and_she_stops_before_a_box() {
 /// somebody else stops her.
 #[test]
 fn explore_keeps_her_off_walls_and_she_stands_without_it() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(super::EXE);
     let walls = [
         ([0.1, 4.0], [1.8, 0.0]),
@@ -227,7 +227,7 @@ fn explore_keeps_her_off_walls_and_she_stands_without_it() {
 /// Nearly a third of the datagrams lost, others late, doubled, replayed, or full of what is no number.
 #[test]
 fn a_bad_network_neither_throws_her_nor_makes_her_jump() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let (site, mut dice) = (Site::patient(super::EXE), Dice::new());
     let mut robot = Robot::standing_in(&site, &PACED);
     let (mut eyes, mut running) = Eyes::and_gateway(&site);
@@ -288,7 +288,7 @@ fn a_bad_network_neither_throws_her_nor_makes_her_jump() {
 
 #[test]
 fn she_stands_when_the_gateway_is_stopped_or_killed() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(super::EXE);
     let mut robot = Robot::standing_in(&site, &PACED);
     let mut events = robot.space.reader::<Event>(&EVENTS_PLANNER).unwrap();
@@ -321,7 +321,7 @@ fn she_stands_when_the_gateway_is_stopped_or_killed() {
 /// Whoever stops her is not overruled by a program that repeats itself, nor is who takes her over.
 #[test]
 fn somebody_elses_stop_holds_until_the_vision_system_has_seen_it() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(super::EXE);
     let mut robot = Robot::standing_in(&site, &PACED);
     let (mut eyes, mut running) = Eyes::and_gateway(&site);
@@ -363,7 +363,7 @@ fn somebody_elses_stop_holds_until_the_vision_system_has_seen_it() {
 /// Where the frames of a trigger are, beside those of the simulation.
 #[test]
 fn a_trigger_says_where_she_is() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(super::EXE);
     let mut robot = Robot::standing_in(&site, &PACED);
     let (mut eyes, _running) = Eyes::and_gateway(&site);
@@ -396,7 +396,7 @@ fn another_user_of_the_machine_moves_nothing() {
     if !root {
         return harness::left_out("another user: only root can be somebody else");
     }
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(super::EXE);
     let mut robot = Robot::standing_in(&site, &PACED);
     let (mut eyes, mut running) = Eyes::and_gateway(&site);

@@ -1,7 +1,7 @@
 //! `gangwerk joystick` at a robot that runs: events of a gamepad walk her, and she stands whatever ends them. This machine's kernel need
 //! not have a gamepad: events come through a pipe, as `/dev/input/event*` gives them (tests/vcan has a real one).
 
-use super::{Site, Tick, WAIT, doze, turn, until, walk};
+use super::{Site, Tick, WAIT, doze, shared_turn, until, walk};
 use harness::{Running, Signal};
 use ipc::{Reader, Space};
 use messages::topics::{CONTROLLER_STATE, POWER, SIM_STATE};
@@ -175,7 +175,7 @@ impl Robot {
 
 #[test]
 fn a_gamepad_walks_her_while_its_button_is_held() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let (site, mut dice) = (Site::patient(super::EXE), Dice::new());
     let mut pad = Pad::plug_in(&site);
     // Held before anything runs: no press.
@@ -265,7 +265,7 @@ fn a_gamepad_walks_her_while_its_button_is_held() {
 /// Without dead-man button and lease, while somebody else steers.
 #[test]
 fn the_emergency_stop_of_a_gamepad_needs_no_lease() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(super::EXE);
     let mut pad = Pad::plug_in(&site);
     let mut stick = joystick(&site);

@@ -3,7 +3,7 @@
 
 use crate::page::{PATIENCE, Server, knock};
 use crate::{EXE, targets};
-use harness::{Site, WALK, doze, turn};
+use harness::{Site, WALK, doze, shared_turn};
 use realtime::clock;
 use serde_json::{Value, json};
 use std::net::TcpStream;
@@ -170,7 +170,7 @@ fn sixteen_viewers_and_no_more() {
 /// Viewers that were there before her read everything, or nothing, and she walks as without them.
 #[test]
 fn viewers_of_all_channels_that_do_not_read_change_no_bit_of_the_walk() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let alone = Site::patient(EXE);
     alone.scene("walk", 6.0, WALK);
     alone.run("walk", &["--lockstep"]).end().well();

@@ -2,7 +2,7 @@
 
 use crate::page::{Page, Server};
 use crate::{EXE, WAIT};
-use harness::{Signal, Site, WALK, doze, turn};
+use harness::{Signal, Site, WALK, doze, shared_turn};
 use ipc::Space;
 use messages::topics::CONTROLLER_STATE;
 use messages::{ControllerState, GaitState, Process};
@@ -38,7 +38,7 @@ fn site() -> Site {
 
 #[test]
 fn a_page_starts_a_scene_sees_her_walk_and_ends_it() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = site();
     site.scene("broken", 10.0, "dept = 2\n");
     let server = Server::start_with(&site, &["--start"]);
@@ -107,7 +107,7 @@ fn a_page_starts_a_scene_sees_her_walk_and_ends_it() {
 /// Killed or asked to end: the robot comes to a stand, and the run ends; without its watchdog no supply stays on.
 #[test]
 fn a_run_ends_with_the_dashboard_that_started_it() {
-    let _turn = turn();
+    let _turn = shared_turn();
     for signal in [Signal::KILL, Signal::INT] {
         let site = site();
         let server = Server::start_with(&site, &["--start", "walk"]);
@@ -136,7 +136,7 @@ fn a_run_ends_with_the_dashboard_that_started_it() {
 
 #[test]
 fn nothing_is_started_unless_it_is_allowed_and_nothing_beside_another_run() {
-    let _turn = turn();
+    let _turn = shared_turn();
     let site = Site::patient(EXE);
     {
         let server = Server::start(&site);

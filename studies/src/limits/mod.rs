@@ -156,11 +156,9 @@ impl Study for LimitsStudy {
 /// A configuration or robot is wrong, or there is no limit where it was looked for.
 pub fn run(config: &Path) -> Result<Vec<Finding>> {
     let bench = Bench { setup: Setup::load(config, "stand")? };
-    let mut findings = Vec::new();
-    for check in CHECKS {
-        findings.extend(check(&bench)?);
-    }
-    Ok(findings)
+    let found = chain::parallel::map(CHECKS.len(), |k| CHECKS[k](&bench).map_err(|e| e.to_string()));
+    let found: std::result::Result<Vec<_>, _> = found.into_iter().collect();
+    Ok(found?.concat())
 }
 
 impl Bench {

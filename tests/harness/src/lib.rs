@@ -4,7 +4,7 @@ mod place;
 mod running;
 
 pub use place::{Site, WALK, root};
-pub use running::{Running, Said, doze, left_out, signal, turn};
+pub use running::{Running, Said, doze, left_out, shared_turn, signal, turn};
 pub use rustix::process::Signal;
 
 /// The executable that is tested: the file that `GANGWERK` names while the tests are built, or the one built beside them.

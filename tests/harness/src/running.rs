@@ -193,9 +193,20 @@ impl Drop for Running {
 
 /// A robot in real time has the machine for itself: holds up all other tests that ask, until it is dropped.
 pub fn turn() -> File {
-    let file = File::create(std::env::temp_dir().join("gangwerk-test-turn")).expect("a file can be made");
+    let file = turns();
     file.lock().expect("a file can be locked");
     file
+}
+
+/// Robots in simulated time run beside each other, and beside none in real time.
+pub fn shared_turn() -> File {
+    let file = turns();
+    file.lock_shared().expect("a file can be locked");
+    file
+}
+
+fn turns() -> File {
+    File::create(std::env::temp_dir().join("gangwerk-test-turn")).expect("a file can be made")
 }
 
 /// A signal to a process.
