@@ -13,8 +13,10 @@ use recording::{RecordedPose, odometry};
 use crate::local_map::LocalMap;
 use crate::tentacles::{self, ARCS, LENGTH, SHARPEST};
 
-/// \[m\] Radius of the disc that has to go through: half of the shoulders with arms, and what odometry, cells and swaying need.
-const CLEARANCE: f64 = 0.52;
+/// \[m\] Radius of the disc that has to go through: shoulders with arms that swing, and what odometry, cells and swaying need; and of the
+/// one for which ways are sought.
+const CLEARANCE: f64 = 0.48;
+const ROOMY: f64 = 0.6;
 /// \[m\] Free way below which nobody walks, that which full speed takes beyond it, and the least one after a turn on the spot.
 const STOP: f64 = 0.3;
 const BRAKE: f64 = 0.9;
@@ -71,6 +73,16 @@ enum Course {
     Turn(f64, f64),
 }
 
+/// An arc that it could go.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    /// \[1/m\]
+    curvature: f64,
+    /// \[m\] Free for it, and on average of that and what is free for somebody wider.
+    free: f64,
+    roomy: f64,
+}
+
 /// The pilot.
 #[derive(Clone, Debug)]
 pub struct Pilot {
@@ -93,14 +105,14 @@ impl Pilot {
     /// Answer to `trigger`, at which the cameras saw these points \[m\] @camera. None if it does not say where the robot is.
     pub fn answer(&mut self, trigger: &Trigger, points: &[[f64; 3]]) -> Option<Answer> {
         let time = trigger.stamp as f64 * 1e-9;
-        let (torso, camera) = poses(&trigger.odometry, &trigger.frames)?;
-        let [x, y, _] = torso.position;
+        let [torso, camera, right, left] = poses(&trigger.odometry, &trigger.frames)?;
+        let [x, y] = without_sway(&torso, [&right, &left]);
         let points: Vec<[f64; 3]> = points.iter().map(|p| camera.place(*p)).collect();
         self.map.add(time, [camera.position[0], camera.position[1]], &points);
         self.visits.insert(visit([x, y]), time);
         // What stands around the robot, seen from it; and the arcs between, of which none is free that is not seen.
         let (sin, cos) = torso.heading().sin_cos();
-        let taken = self.map.taken([x, y], LENGTH + CLEARANCE).map(|[px, py]| {
+        let taken = self.map.taken([x, y], LENGTH + ROOMY).map(|[px, py]| {
             let [dx, dy] = [px - x, py - y];
             [cos * dx + sin * dy, cos * dy - sin * dx]
         });
@@ -112,9 +124,12 @@ impl Pilot {
             let [ahead, left] = tentacles::place(k, 1.0);
             looks_down && wrapped(left.atan2(ahead) - aside).abs() < VIEW
         };
-        let arcs = tentacles::curvatures()
-            .map(|k| (k, if is_seen(k) { tentacles::free(k, CLEARANCE, &taken) } else { 0.0 }));
-        let velocity = self.choose(time, &arcs, place);
+        let ways = tentacles::curvatures().map(|curvature| {
+            let free =
+                |width| if is_seen(curvature) { tentacles::free(curvature, width, &taken) } else { 0.0 };
+            Way { curvature, free: free(CLEARANCE), roomy: 0.5 * (free(CLEARANCE) + free(ROOMY)) }
+        });
+        let velocity = self.choose(time, &ways, place);
         let look = self.look(time, torso.heading()).map(|heading| {
             let ahead = FAR * DOWN.cos();
             let [cx, cy, cz] = camera.position;
@@ -148,34 +163,35 @@ impl Pilot {
     fn choose(
         &mut self,
         time: f64,
-        arcs: &[(f64, f64); ARCS],
+        ways: &[Way; ARCS],
         place: impl Fn([f64; 2]) -> [f64; 2],
     ) -> VelocityCommand {
         let (last, least) = match self.course {
             Course::Arc(k) => (k, STOP + LEAST * BRAKE),
             Course::Turn(_, since) => (0.0, (START - CONTENT * (time - since)).max(STOP + LEAST * BRAKE)),
         };
-        let cost = |&(k, free): &(f64, f64)| {
-            let longest = tentacles::free(k, CLEARANCE, &[]);
-            // Floor along the way, each half metre of it.
+        let cost = |way: &Way| {
+            let longest = tentacles::free(way.curvature, CLEARANCE, &[]);
+            // Floor along the way, each quarter of it.
             let known: f64 = (1..=4)
-                .map(|i| self.known(time, place(tentacles::place(k, free * f64::from(i) / 4.0))))
+                .map(|i| tentacles::place(way.curvature, way.free * f64::from(i) / 4.0))
+                .map(|at| self.known(time, place(at)))
                 .sum();
-            1.0 - free / longest + CHANGE * (k - last).abs() / SHARPEST + KNOWN * known / 4.0
+            1.0 - way.roomy / longest + CHANGE * (way.curvature - last).abs() / SHARPEST + KNOWN * known / 4.0
         };
-        let passable = arcs.iter().filter(|(_, free)| *free > least);
+        let passable = ways.iter().filter(|way| way.free > least);
         let best = passable.min_by(|a, b| cost(a).total_cmp(&cost(b)));
-        let Some(&(curvature, free)) = best else { return self.turn(time, arcs) };
+        let Some(&Way { curvature, free, .. }) = best else { return self.turn(time, ways) };
         self.course = Course::Arc(curvature);
         let forward = self.speeds.forward * ((free - STOP) / BRAKE).min(1.0);
         VelocityCommand { forward, left: 0.0, turn: curvature * forward }
     }
 
     /// On the spot: to the side on which more is free, and on to that side until a way is found.
-    fn turn(&mut self, time: f64, arcs: &[(f64, f64); ARCS]) -> VelocityCommand {
+    fn turn(&mut self, time: f64, ways: &[Way; ARCS]) -> VelocityCommand {
         let side = match self.course {
             Course::Turn(side, _) => side,
-            Course::Arc(_) => arcs.iter().map(|(k, free)| k.signum() * free).sum::<f64>().signum(),
+            Course::Arc(_) => ways.iter().map(|way| way.curvature.signum() * way.free).sum::<f64>().signum(),
         };
         if let Course::Arc(_) = self.course {
             self.course = Course::Turn(side, time);
@@ -197,12 +213,22 @@ fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// Torso and camera @I_0, if the trigger knows them.
-fn poses(odometry: &Odometry, frames: &Frames) -> Option<(RecordedPose, RecordedPose)> {
+/// \[m\] @I_0 Place of the torso along its heading, and of the middle between the soles across it: where it is without its sway.
+fn without_sway(torso: &RecordedPose, soles: [&RecordedPose; 2]) -> [f64; 2] {
+    let (sin, cos) = torso.heading().sin_cos();
+    let [x, y] = [0, 1].map(|i| torso.position[i]);
+    let [dx, dy] = [0, 1].map(|i| 0.5 * (soles[0].position[i] + soles[1].position[i]) - torso.position[i]);
+    let left = cos * dy - sin * dx;
+    [x - sin * left, y + cos * left]
+}
+
+/// Torso, camera, right and left sole @I_0, if the trigger knows them.
+fn poses(odometry: &Odometry, frames: &Frames) -> Option<[RecordedPose; 4]> {
     let planning = odometry::frame(odometry.place);
-    let [torso, camera] = [&frames.torso, &frames.camera].map(|frame| planning.then(frame));
+    let [right, left] = &frames.soles;
+    let poses = [&frames.torso, &frames.camera, right, left].map(|frame| planning.then(frame));
     let known = |pose: &RecordedPose| pose.position.iter().chain(&pose.orientation).all(|x| x.is_finite());
-    (known(&torso) && known(&camera)).then_some((torso, camera))
+    poses.iter().all(known).then_some(poses)
 }
 
 #[cfg(test)]
@@ -278,6 +304,25 @@ mod tests {
         let mut up = trigger(1, 0.0);
         up.frames.camera.orientation = RecordedPose::IDENTITY.orientation;
         assert_eq!(Pilot::new(SPEEDS).answer(&up, &[]).unwrap().velocity.forward, 0.0);
+    }
+
+    /// Between walls 1.04 m apart, wherever the torso sways to.
+    #[test]
+    fn walks_through_a_gap_however_it_sways() {
+        for heading in [0.0, 1.0, -2.5] {
+            for sway in [-0.07, 0.0, 0.07] {
+                let mut trigger = trigger(1, 0.0);
+                let place = odometry::frame([0.0, 0.0, 0.0, heading]);
+                let swayed = RecordedPose::moved([0.0, sway, 0.0]);
+                let Frames { camera, torso, soles } = &mut trigger.frames;
+                [*camera, *torso] = [&*camera, &*torso].map(|frame| place.then(&swayed.then(frame)));
+                *soles = [-0.12, 0.12].map(|left| place.then(&RecordedPose::moved([0.0, left, 0.0])));
+                let ends = [-0.52, 0.52].map(|y| [[0.3, y], [3.0, y]].map(|[x, y]| place.place([x, y, 0.0])));
+                let ends = ends.map(|wall| wall.map(|[x, y, _]| [x, y]));
+                let answer = Pilot::new(SPEEDS).answer(&trigger, &walls(&trigger, &ends)).unwrap();
+                assert_eq!((answer.velocity.forward, answer.velocity.turn), (0.3, 0.0), "{heading} {sway}");
+            }
+        }
     }
 
     #[test]
