@@ -374,3 +374,28 @@ fn every_test_that_the_documents_name_exists() {
     }
     assert!(missing.is_empty(), "there is no\n{}", missing.join("\n"));
 }
+
+#[test]
+fn every_file_of_tests_is_run() {
+    let mut left_out = Vec::new();
+    for all in
+        files(&["all.rs"]).iter().filter(|path| path.parent().is_some_and(|folder| folder.ends_with("tests")))
+    {
+        let folder = root().join(all.parent().unwrap());
+        let (run, manifest) = (text(all), text(folder.parent().unwrap().join("Cargo.toml")));
+        for entry in fs::read_dir(&folder).unwrap().flatten() {
+            let path = entry.path();
+            let name = path.file_stem().unwrap().to_str().unwrap();
+            let runs = run.contains(&format!("mod {name};"))
+                || manifest.contains(&format!("[[test]]\nname = \"{name}\"\n"));
+            if !runs && (path.extension().is_some_and(|e| e == "rs") || path.join("mod.rs").exists()) {
+                left_out.push(path.display().to_string());
+            }
+        }
+    }
+    assert!(
+        left_out.is_empty(),
+        "neither in all.rs nor an executable of their own:\n{}",
+        left_out.join("\n")
+    );
+}

@@ -1,7 +1,6 @@
 //! Archie's data against the thesis of 2013 and against each other.
 
-mod robot;
-
+use crate::robot;
 use multibody::{Data, Model};
 use nalgebra::{Matrix3, Vector3};
 

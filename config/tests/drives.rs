@@ -1,7 +1,6 @@
 //! Drives of every shipped robot against its URDF, and Lola's against what her joints ask of them.
 
-mod robot;
-
+use crate::robot;
 use std::f64::consts::TAU;
 
 use config::Robot;

@@ -1,6 +1,6 @@
 //! Johnnie's data against the sources and against each other.
 
-mod robot;
+use crate::robot;
 
 const NAME: &str = "johnnie";
 

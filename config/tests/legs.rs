@@ -1,7 +1,6 @@
 //! Archie's legs in closed form against his URDF, and what is refused when his file is read.
 
-mod robot;
-
+use crate::robot;
 use std::fs;
 use std::path::PathBuf;
 

@@ -1,11 +1,9 @@
 //! Plans that begin inside a step, at the measured pose.
 
-mod robot;
-
+use crate::robot::Robot;
 use config::gait::Reaction;
 use messages::command::StepCommand;
 use messages::{Command, LEFT, RIGHT};
-use robot::Robot;
 
 /// Lola's.
 const RULES: Reaction = Reaction {

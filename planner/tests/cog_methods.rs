@@ -1,13 +1,12 @@
 //! Both methods for the centre of gravity plan the same walks, where the closed form holds, and one says so where it does not.
 
-mod robot;
-
+use crate::robot;
+use crate::robot::Robot;
+use crate::robot::checks::{implied_margin, seam, unrest, zmp_margin};
 use config::Gait;
 use config::gait::CogMethod;
 use messages::command::StepCommand;
 use messages::{Command, EventCode, GaitState};
-use robot::Robot;
-use robot::checks::{implied_margin, seam, unrest, zmp_margin};
 
 /// A gait of one mass on level ground.
 fn gait(cog_method: CogMethod) -> Gait {

@@ -1,13 +1,12 @@
 //! Feet that roll: toe joints, heel strike (thesis 4.5, (4.29), (4.30)).
 
-mod robot;
-
+use crate::robot;
+use crate::robot::{Robot, TOES, checks};
 use config::Gait;
 use config::gait::Bend;
 use curves::{Path, Sample};
 use messages::command::StepCommand;
 use messages::{Command, LEFT, Plan, RIGHT};
-use robot::{Robot, TOES, checks};
 
 fn rolling() -> Gait {
     let bend = |angle: f64| Some(Bend { angle, length: [0.3, 0.6] });

@@ -1,13 +1,12 @@
 //! Steps over obstacles and onto platforms, fixed distances, with a controller that follows perfectly.
 
-mod robot;
-
+use crate::robot;
+use crate::robot::checks::*;
+use crate::robot::{Robot, SUPPORT};
 use config::Gait;
 use messages::command::{DistanceCommand, PlatformCommand, VelocityCommand};
 use messages::{Command, Detail, EventCode, GaitState, Plan};
 use planner::obstacles::KnownObstacles;
-use robot::checks::*;
-use robot::{Robot, SUPPORT};
 
 /// Least and greatest x and the height of a bar across the way \[m\].
 type Bar = [f64; 3];

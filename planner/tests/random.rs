@@ -1,12 +1,11 @@
 //! Random commands at random times: whatever is asked, plans can be walked, join, and end standing.
 
-mod robot;
-
+use crate::robot;
+use crate::robot::checks::*;
+use crate::robot::feasible::{Worst, jumps};
+use crate::robot::{Random, Robot};
 use messages::command::{StepCommand, VelocityCommand};
 use messages::{Command, EventCode};
-use robot::checks::*;
-use robot::feasible::{Worst, jumps};
-use robot::{Random, Robot};
 
 fn command(random: &mut Random, limits: &config::gait::CommandLimits) -> Command {
     match random.below(10) {

@@ -1,10 +1,9 @@
 //! Footholds on ground of a known slope: each is as high as the slope says, however the robot turns on it.
 
-mod robot;
-
+use crate::robot;
+use crate::robot::{Random, Robot};
 use messages::Command;
 use messages::command::StepCommand;
-use robot::{Random, Robot};
 
 /// \[m\] How far a foothold may be from the plane.
 const OFF: f64 = 1e-9;

@@ -1,11 +1,10 @@
 //! Boxes that come and go while she walks, with a controller that follows perfectly.
 
-mod robot;
-
+use crate::robot;
+use crate::robot::checks::*;
+use crate::robot::{CYCLE, Random, Robot};
 use messages::command::{BoxCommand, GoneCommand, MAX_BOXES, VelocityCommand};
 use messages::{Command, EventCode, GaitState, Plan, Reason};
-use robot::checks::*;
-use robot::{CYCLE, Random, Robot};
 
 const SLOW: Command = Command::Velocity(VelocityCommand { forward: 1.0 / 3.6, left: 0.0, turn: 0.0 });
 const BAR: BoxCommand =

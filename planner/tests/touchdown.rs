@@ -1,12 +1,11 @@
 //! A swing foot that meets the ground before its time: the step ends there, and the walk goes on.
 
-mod robot;
-
+use crate::robot;
+use crate::robot::checks::*;
+use crate::robot::{CYCLE, Robot};
 use config::Gait;
 use messages::command::StepCommand;
 use messages::{Command, EventCode, Plan};
-use robot::checks::*;
-use robot::{CYCLE, Robot};
 
 /// A robot that walks in steps of 30 cm, in the middle of the swing of a step.
 fn walking(gait: &Gait) -> Robot {

@@ -1,12 +1,11 @@
 //! Every kind of walk, with a controller that follows perfectly: what each plan promises.
 
-mod robot;
-
+use crate::robot;
+use crate::robot::checks::*;
+use crate::robot::{CYCLE, Robot};
 use config::Gait;
 use messages::command::{StepCommand, VelocityCommand};
 use messages::{Command, Detail, EventCode, GaitState, Plan};
-use robot::checks::*;
-use robot::{CYCLE, Robot};
 
 fn forward(kmh: f64) -> Command {
     Command::Velocity(VelocityCommand { forward: kmh / 3.6, left: 0.0, turn: 0.0 })

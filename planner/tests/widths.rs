@@ -1,12 +1,11 @@
 //! Step widths keep the feet apart (4.4), over as many random steps as errata 2.2.
 
-mod robot;
-
+use crate::robot;
+use crate::robot::Random;
 use config::gait::{CommandLimits, StepSettings};
 use planner::pose::PlanarPose;
 use planner::sole::Sole;
 use planner::steps::{StepParameters, next_foothold, next_width, nu};
-use robot::Random;
 
 /// Lateral gap \[m\], seen from the stance foot, between its sole and the one at `landing`.
 fn gap(sole: &Sole, landing: &PlanarPose, nu: f64) -> f64 {

@@ -1,14 +1,12 @@
 //! Components of the simulated robot: types are sets of them, and what is left out is not computed.
 
-mod rig;
-
+use crate::rig::lola;
 use codec::frames::{DriveCommand, decode_sensors, encode_targets};
 use config::components::{Components, ContactModel, JointModel, Selection};
 use config::method::Integrator;
 use config::{Robot, Setup};
 use environment::Environment;
 use messages::{BusFrames, JointMode, JointTargets, Power, Sensors};
-use rig::lola;
 use sim_backend::SimBackend;
 use sim_backend::drive::{JointCubic, JointMotion};
 use sim_backend::integrate::Stepper;

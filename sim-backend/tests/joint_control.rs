@@ -1,7 +1,6 @@
 //! Local controllers: what they feed back, when they measure, what they put out.
 
-mod rig;
-
+use crate::rig::{Rig, lola};
 use config::Robot;
 use config::method::Integrator;
 use drives::{
@@ -9,7 +8,6 @@ use drives::{
     VoltageLaw,
 };
 use environment::Environment;
-use rig::{Rig, lola};
 use sim_backend::drive::JointCubic;
 
 const CASCADE: Cascade = Cascade {

@@ -1,13 +1,11 @@
 //! Methods and models against each other: orders of convergence, limits of stiff gears and strong controllers, dry
 //! friction that holds.
 
-mod rig;
-
+use crate::rig::{Rig, lola};
 use config::Robot;
 use config::method::Integrator;
 use drives::{Elasticity, Friction};
 use environment::Environment;
-use rig::{Rig, lola};
 
 /// Lola without what has corners: no friction, springs of one stiffness, no limits of current and voltage.
 fn smooth(stiffer: f64) -> Robot {

@@ -1,10 +1,8 @@
 //! Lola on objects: gap and normal force, friction of an object, an object that wants to vanish while it is stood on.
 
-mod rig;
-
+use crate::rig::{Rig, lola};
 use config::method::Integrator;
 use environment::{Environment, Mesh, Object, ObjectEvent, Pose, Schedule};
-use rig::{Rig, lola};
 
 /// A board of 5 mm under both feet or under the right one, which stands on it.
 fn on_board(depth: u8, both: bool, friction: Option<f64>, vanishes: f64) -> Rig {

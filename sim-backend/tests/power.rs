@@ -3,14 +3,12 @@
 //! d/dt (kinetic + potential + springs) = motors + friction + brakes + ground, and for every motor
 //! d/dt (L I^2 / 2) = U I - R I^2 - k_M I w.
 
-mod rig;
-
+use crate::rig::{Rig, lola};
 use config::Robot;
 use config::brake::Brake;
 use config::method::Integrator;
 use environment::Environment;
 use nalgebra::Vector3;
-use rig::{Rig, lola};
 
 /// d/dt of a function of time and state along the motion, by central differences.
 fn change(rig: &mut Rig, t: f64, dx: &[f64], f: impl Fn(&mut Rig, f64, &[f64]) -> f64) -> f64 {

@@ -1,14 +1,12 @@
 //! Local controllers with look-up tables and counts: what they make of joints, seen in the voltage that they set.
 
-mod rig;
-
+use crate::rig::{Rig, lola};
 use config::Robot;
 use drives::lookup::LookupTable;
 use drives::{
     ControlLaw, JointControl, OutOfDomain, Resolution, Sampled, Sampling, Transmission, VoltageLaw,
 };
 use environment::Environment;
-use rig::{Rig, lola};
 use sim_backend::drive::{JointCubic, JointMotion};
 use sim_backend::plant::Plant;
 use sim_backend::train::FaultCause;

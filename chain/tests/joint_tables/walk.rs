@@ -8,8 +8,8 @@ use lowlevel::joint_loop::LoopState;
 use messages::command::VelocityCommand;
 use messages::{BusFrames, Command, Detail, EventCode, JointTables, TableFault};
 
-use crate::remove;
-use crate::rig::Rig;
+use crate::joint_tables::remove;
+use crate::joint_tables::rig::Rig;
 
 /// The shipped scene with whole steps of another pattern, on type 1, whose joints follow their drives exactly.
 fn setup(change: impl Fn(&mut Pattern)) -> Setup {

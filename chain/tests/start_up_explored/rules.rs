@@ -4,8 +4,8 @@ use drives::cia402::ENABLE_OPERATION;
 use lowlevel::joint_loop::LoopState;
 use messages::{Command, StartUp};
 
-use crate::robot::{JOINTS, MISSED, NEEDED, NODE};
-use crate::world::{Happens, RESET};
+use crate::start_up_explored::robot::{JOINTS, MISSED, NEEDED, NODE};
+use crate::start_up_explored::world::{Happens, RESET};
 
 /// Controlword of a quick stop: the drive brakes and holds.
 const QUICK_STOP: u16 = 0x02;

@@ -10,8 +10,8 @@ use messages::{BusFrames, Command, Header, JointMode, JointTargets, Power, Senso
 use sim_backend::power::PowerLine;
 use watchdog::{Inputs, Supply, Watchdog};
 
-use crate::robot::{DT, JOINTS, WEIGHT};
-use crate::rules::{Rules, Seen};
+use crate::start_up_explored::robot::{DT, JOINTS, WEIGHT};
+use crate::start_up_explored::rules::{Rules, Seen};
 
 /// Cycles of silence after which a drive with torque has a fault, and the relay falls.
 const SILENT: u32 = 2;
@@ -119,7 +119,7 @@ pub(crate) struct World {
 impl World {
     /// Without power; the second joint knows its angle or not.
     pub(crate) fn new(known: bool) -> Self {
-        let (robot, system) = &*crate::SMALL;
+        let (robot, system) = &*crate::start_up_explored::SMALL;
         let mut drives = [DriveStateMachine::default(); JOINTS];
         drives.iter_mut().for_each(|drive| _ = drive.step(&DriveInputs::default()));
         Self {
@@ -165,7 +165,7 @@ impl World {
         for wrench in &mut said.foot_wrench {
             wrench.force[2] = 0.5 * (HANGS + if self.lowered { WEIGHT } else { 0.0 });
         }
-        let layout = &crate::SMALL.0.layout;
+        let layout = &crate::start_up_explored::SMALL.0.layout;
         let mut frames = BusFrames::default();
         encode_sensors(layout, &said, &mut frames);
         let all = frames;
@@ -205,7 +205,7 @@ impl World {
         let (frames, reset) = self.joints.send(Some(&self.targets), None);
         self.reset = WatchdogReset { header: self.reset.header, ..*reset };
         self.reset.header.tick = self.tick;
-        decode_targets(&crate::SMALL.0.layout, frames, &mut self.told);
+        decode_targets(&crate::start_up_explored::SMALL.0.layout, frames, &mut self.told);
         self.joints.events().drain().for_each(drop);
         Seen {
             happens,

@@ -1,5 +1,4 @@
 //! What holds for the data of every robot; each robot's own test names what is its own.
-#![allow(dead_code, reason = "every test file uses its own part")]
 
 use config::Robot;
 use multibody::{Data, Model};

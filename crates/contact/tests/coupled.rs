@@ -1,13 +1,11 @@
 //! Coupled nodes: vector V7 of errata 1, the law on random problems, all methods against each other and against a dense
 //! solver of another kind.
 
-mod problem;
-
+use crate::problem::{Problem, exact};
 use contact::coupling::Coupling;
 use contact::solver::solve;
 use contact::{CouplingMethod, Memory, Settings};
 use nalgebra::{DMatrix, Vector3};
-use problem::{Problem, exact};
 
 const METHODS: [CouplingMethod; 4] =
     [CouplingMethod::Jacobi, CouplingMethod::GaussSeidel, CouplingMethod::Velocity, CouplingMethod::Fastest];

@@ -1,12 +1,11 @@
 //! Where the solvers fail, with the numbers predicted: r-factors too large, nearly incompressible rubber, much friction.
 
-mod sole;
-
+use crate::sole;
+use crate::sole::layer;
 use contact::coupling::Coupling;
 use contact::solver::solve;
 use contact::{CouplingMethod, Layer, Memory, Settings, SolverReport};
 use nalgebra::{DMatrix, Vector3};
-use sole::layer;
 
 /// The sole pressed so evenly and hard that all nodes stick, with a little shear.
 fn sticking(coupling: &Coupling, settings: &Settings) -> (SolverReport, Memory) {

@@ -1,11 +1,9 @@
 //! A pad on a segment: statics, relaxation, force and moment, sticking and sliding, an edge, bad data.
 
-mod sole;
-
+use crate::sole::{ALPHA, Sole};
 use contact::point::PointState;
 use contact::{CouplingMethod, Ground, SegmentMotion, Settings};
 use nalgebra::Vector3;
-use sole::{ALPHA, Sole};
 
 fn sharp(friction: f64) -> Settings {
     Settings { tolerance: 1e-9, sweeps: 100_000, ..Settings::of_friction(friction) }

@@ -1,8 +1,7 @@
 //! Fixed-point tables against the linkage itself and against the table in floating point: order two down to the predicted
 //! rounding, ends of ranges, and nothing beyond them.
 
-mod linkages;
-
+use crate::linkages;
 use drives::fixed_table::{FixedTable, OutOfTable, Reading, whole_angle};
 use drives::lookup::LookupTable;
 use drives::{Ankle, AnkleGeometry, OutOfDomain, Transmission};

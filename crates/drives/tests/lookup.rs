@@ -1,7 +1,6 @@
 //! Look-up tables: the error falls with the square of the points, is the one that theory predicts, and ends at the edge.
 
-mod linkages;
-
+use crate::linkages;
 use drives::lookup::LookupTable;
 use drives::{OutOfDomain, Transmission};
 

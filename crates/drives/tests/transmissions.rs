@@ -1,9 +1,7 @@
 //! Transmissions against finite differences, energy balance, their own inverses, and at their dead points.
 
-mod linkages;
-
+use crate::linkages::{ankle, knee, sample_ankle, sample_knee};
 use drives::{Ankle, AnkleGeometry, Gear, Knee, OutOfDomain, Transmission};
-use linkages::{ankle, knee, sample_ankle, sample_knee};
 use proptest::prelude::*;
 
 /// Angles over Lola's ranges: right knee, ankle adduction, ankle flexion.

@@ -1,7 +1,6 @@
 //! Test vectors of errata 1: V3 (knee), V4 (ankle), V9, V10 (friction), V11 (elasticity).
 
-mod linkages;
-
+use crate::linkages;
 use drives::{Ankle, Elasticity, Friction, HarmonicFriction, Knee, ScrewFriction, Transmission};
 
 fn near(is: f64, wanted: f64) {

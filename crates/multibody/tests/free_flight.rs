@@ -1,7 +1,6 @@
 //! Lola thrown into the air without drives: energy and momentum stay, and the error falls with the integrator's order.
 
-mod tree;
-
+use crate::tree;
 use multibody::{Data, Model};
 
 const LOLA: &str = include_str!("../../../config/robots/lola/lola.urdf");

@@ -1,11 +1,10 @@
 //! What must hold between the results for any tree: each number by two independent routes.
 
-mod tree;
-
+use crate::tree;
+use crate::tree::{Dice, configuration, error};
 use multibody::{Data, Frame, Model};
 use nalgebra::{DVector, Matrix3xX, Matrix6xX, Vector3};
 use proptest::prelude::*;
-use tree::{Dice, configuration, error};
 
 struct Case {
     model: Model,

@@ -2,9 +2,7 @@
 //! shows where it goes wrong, and by how much. Numbers were computed apart from this project (errata 3, sections 1 and 4).
 //! In cm.
 
-mod legs;
-
-use legs::{A1, A2, A3, A6, D3, D6, Dice, STANDING, apart, heights, leg, off, posture, rows};
+use crate::legs::{A1, A2, A3, A6, D3, D6, Dice, STANDING, apart, heights, leg, off, posture, rows};
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
 /// Which formulas are taken as printed.

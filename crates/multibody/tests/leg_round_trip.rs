@@ -2,9 +2,8 @@
 //!
 //! 10^6 postures for each leg, 10^6 poses around each singular set, 10^5 for what needs no more.
 
-mod legs;
-
-use legs::{Dice, apart, heights, leg, mirrored, off, posture};
+use crate::legs;
+use crate::legs::{Dice, apart, heights, leg, mirrored, off, posture};
 use multibody::LegError;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 

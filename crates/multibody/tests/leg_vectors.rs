@@ -1,10 +1,8 @@
 //! Legs against numbers that were computed apart from this project (errata 3, V1 to V6), in cm.
 
-mod legs;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use legs::{A6, D6, STANDING, leg, rows};
+use crate::legs::{A6, D6, STANDING, leg, rows};
 use multibody::LegError;
 use nalgebra::{Matrix3, Vector3};
 

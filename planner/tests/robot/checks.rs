@@ -8,7 +8,7 @@ use messages::{LEFT, Plan, RIGHT};
 const G: f64 = 9.81;
 
 /// A point seen from a frame (x, y, heading) in the outer frame.
-pub fn outer(frame: [f64; 3], p: [f64; 2]) -> [f64; 2] {
+pub(crate) fn outer(frame: [f64; 3], p: [f64; 2]) -> [f64; 2] {
     let (s, c) = frame[2].sin_cos();
     [frame[0] + c * p[0] - s * p[1], frame[1] + s * p[0] + c * p[1]]
 }
@@ -18,7 +18,7 @@ fn turned(frame: [f64; 3], v: [f64; 2]) -> [f64; 2] {
 }
 
 /// Convex hull of points, counter-clockwise (monotone chain).
-pub fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+pub(crate) fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_by(|a, b| a.partial_cmp(b).expect("finite"));
     let cross =
         |o: [f64; 2], a: [f64; 2], b: [f64; 2]| (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
@@ -39,7 +39,7 @@ pub fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 }
 
 /// Distance to the edge of a convex polygon, positive inside.
-pub fn inside(polygon: &[[f64; 2]], p: [f64; 2]) -> f64 {
+pub(crate) fn inside(polygon: &[[f64; 2]], p: [f64; 2]) -> f64 {
     (0..polygon.len())
         .map(|i| {
             let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
@@ -49,36 +49,36 @@ pub fn inside(polygon: &[[f64; 2]], p: [f64; 2]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-pub fn sole(i: usize, pose: [f64; 3]) -> Vec<[f64; 2]> {
+pub(crate) fn sole(i: usize, pose: [f64; 3]) -> Vec<[f64; 2]> {
     let [back, front, right, left] = SUPPORT[i];
     [[back, right], [front, right], [front, left], [back, left]].into_iter().map(|c| outer(pose, c)).collect()
 }
 
-pub fn foot(plan: &Plan, i: usize, t: f64) -> [f64; 3] {
+pub(crate) fn foot(plan: &Plan, i: usize, t: f64) -> [f64; 3] {
     let p = plan.feet[i].sample(t).position;
     [p[0], p[1], p[3]]
 }
 
 /// The foot in the air at `t`.
-pub fn swinging(plan: &Plan, t: f64) -> Option<usize> {
+pub(crate) fn swinging(plan: &Plan, t: f64) -> Option<usize> {
     let s = plan.steps[..plan.step_count as usize].iter().find(|s| t > s.lift + 1e-9 && t < s.end - 1e-9);
     s.map(|s| 1 - s.stance as usize)
 }
 
 /// Support polygon at `t`.
-pub fn support(plan: &Plan, t: f64) -> Vec<[f64; 2]> {
+pub(crate) fn support(plan: &Plan, t: f64) -> Vec<[f64; 2]> {
     let up = swinging(plan, t);
     hull((0..2).filter(|&i| Some(i) != up).flat_map(|i| sole(i, foot(plan, i, t))).collect())
 }
 
 /// Instants of a plan \[s\].
-pub fn instants(plan: &Plan, spacing: f64) -> impl Iterator<Item = f64> {
+pub(crate) fn instants(plan: &Plan, spacing: f64) -> impl Iterator<Item = f64> {
     let n = (plan.end() / spacing) as usize;
     (0..=n).map(move |k| k as f64 * spacing)
 }
 
 /// Zero-moment point, at the height of the planned one, of three masses that move as the plan says.
-pub fn implied_zmp(plan: &Plan, gait: &Gait, t: f64) -> [f64; 2] {
+pub(crate) fn implied_zmp(plan: &Plan, gait: &Gait, t: f64) -> [f64; 2] {
     let m_l = gait.model.leg_mass;
     let m_b = 1.0 - 2.0 * m_l;
     let com = plan.body.sample(t);
@@ -105,21 +105,21 @@ pub fn implied_zmp(plan: &Plan, gait: &Gait, t: f64) -> [f64; 2] {
 }
 
 /// Least distance of the planned zero-moment point to the edge of the support polygon.
-pub fn zmp_margin(plan: &Plan) -> f64 {
+pub(crate) fn zmp_margin(plan: &Plan) -> f64 {
     instants(plan, 0.005)
         .map(|t| inside(&support(plan, t), plan.zmp.sample(t).0))
         .fold(f64::INFINITY, f64::min)
 }
 
 /// Least distance of the zero-moment point of the planned motion to the edge of the support polygon.
-pub fn implied_margin(plan: &Plan, gait: &Gait) -> f64 {
+pub(crate) fn implied_margin(plan: &Plan, gait: &Gait) -> f64 {
     instants(plan, 0.005)
         .map(|t| inside(&support(plan, t), implied_zmp(plan, gait, t)))
         .fold(f64::INFINITY, f64::min)
 }
 
 /// Largest distance between planned and implied zero-moment point.
-pub fn zmp_error(plan: &Plan, gait: &Gait) -> f64 {
+pub(crate) fn zmp_error(plan: &Plan, gait: &Gait) -> f64 {
     instants(plan, 0.005)
         .map(|t| {
             let (a, b) = (plan.zmp.sample(t).0, implied_zmp(plan, gait, t));
@@ -129,7 +129,7 @@ pub fn zmp_error(plan: &Plan, gait: &Gait) -> f64 {
 }
 
 /// Least distance of the centre of pressure of a loaded foot to the edge of its sole (gap 15).
-pub fn sole_margin(plan: &Plan) -> f64 {
+pub(crate) fn sole_margin(plan: &Plan) -> f64 {
     instants(plan, 0.005)
         .map(|t| {
             let rho = plan.load_left.sample(t).position[0];
@@ -150,7 +150,7 @@ pub fn sole_margin(plan: &Plan) -> f64 {
 }
 
 /// Least lateral gap between the soles' rectangles: negative if they overlap.
-pub fn feet_gap(plan: &Plan) -> f64 {
+pub(crate) fn feet_gap(plan: &Plan) -> f64 {
     instants(plan, 0.01)
         .map(|t| {
             let (a, b) = (sole(0, foot(plan, 0, t)), sole(1, foot(plan, 1, t)));
@@ -173,12 +173,12 @@ pub fn feet_gap(plan: &Plan) -> f64 {
 }
 
 /// Largest difference of position, velocity and acceleration between two plans where the second one begins.
-pub fn seam(before: &Plan, after: &Plan) -> f64 {
+pub(crate) fn seam(before: &Plan, after: &Plan) -> f64 {
     seam_of(before, after, CYCLE)
 }
 
 /// The same with cycles of another length \[s\].
-pub fn seam_of(before: &Plan, after: &Plan, cycle: f64) -> f64 {
+pub(crate) fn seam_of(before: &Plan, after: &Plan, cycle: f64) -> f64 {
     let t = (after.start_tick - before.start_tick) as f64 * cycle;
     let mut worst = 0.0f64;
     let mut compare = |a: f64, b: f64| worst = worst.max((a - b).abs());
@@ -239,7 +239,7 @@ pub fn seam_of(before: &Plan, after: &Plan, cycle: f64) -> f64 {
 
 /// How far from standing a plan ends: motion, distance of the centre of gravity from where it should stand, and of the
 /// feet from standing side by side.
-pub fn unrest(plan: &Plan, gait: &Gait) -> f64 {
+pub(crate) fn unrest(plan: &Plan, gait: &Gait) -> f64 {
     let end = plan.end();
     let c = plan.body.sample(end - 1e-12);
     let mut worst = c.velocity.iter().chain(&c.acceleration).map(|x| x.abs()).fold(0.0, f64::max);

@@ -8,23 +8,23 @@ const G: f64 = 9.81;
 
 /// What was worst about plans.
 #[derive(Clone, Copy, Debug)]
-pub struct Worst {
+pub(crate) struct Worst {
     /// \[m\] Least distance of the planned zero-moment point from the edge of the support polygon.
-    pub zmp: f64,
+    pub(crate) zmp: f64,
     /// \[m\] Least distance of the pressure point that both feet share (4.64) from the edges of their soles.
-    pub shared: f64,
+    pub(crate) shared: f64,
     /// \[m\] Least distance of the zero-moment point from the edge of what the soles can carry together.
-    pub sole: f64,
+    pub(crate) sole: f64,
     /// Most friction asked for.
-    pub friction: f64,
+    pub(crate) friction: f64,
     /// Least vertical force over the weight.
-    pub force: f64,
+    pub(crate) force: f64,
     /// Largest jump of a position, velocity or acceleration at a knot.
-    pub jump: f64,
+    pub(crate) jump: f64,
 }
 
 impl Worst {
-    pub const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         zmp: f64::INFINITY,
         shared: f64::INFINITY,
         sole: f64::INFINITY,
@@ -33,7 +33,7 @@ impl Worst {
         jump: 0.0,
     };
 
-    pub fn and(self, o: Self) -> Self {
+    pub(crate) fn and(self, o: Self) -> Self {
         Self {
             zmp: self.zmp.min(o.zmp),
             shared: self.shared.min(o.shared),
@@ -45,7 +45,7 @@ impl Worst {
     }
 
     /// All of one plan.
-    pub fn of(plan: &Plan) -> Self {
+    pub(crate) fn of(plan: &Plan) -> Self {
         let mut worst = Self { jump: jumps(plan), ..Self::NONE };
         worst.ground(plan);
         worst.support(plan);
@@ -118,7 +118,7 @@ fn pressure(plan: &Plan, t: f64) -> [f64; 2] {
 }
 
 /// Largest jump at a knot of any path of a plan.
-pub fn jumps(plan: &Plan) -> f64 {
+pub(crate) fn jumps(plan: &Plan) -> f64 {
     let mut worst = jump(&plan.body).max(jump(&plan.torso)).max(jump(&plan.load_left));
     for i in 0..2 {
         worst = worst.max(jump(&plan.feet[i])).max(jump(&plan.pitch[i])).max(jump(&plan.toes[i]));

@@ -1,8 +1,7 @@
 //! Lola's gait in code, and a controller that follows every plan perfectly.
-#![allow(dead_code, unreachable_pub, missing_docs, reason = "each test uses its own part of it")]
 
-pub mod checks;
-pub mod feasible;
+pub(crate) mod checks;
+pub(crate) mod feasible;
 
 use config::gait::{CogMethod, CommandLimits, Gait, GaitModel, Obstacles, StabilizerGains, StepSettings};
 use messages::{Command, ControllerState, Detail, EventCode, Plan, Record};
@@ -10,14 +9,14 @@ use planner::Planner;
 use realtime::clock;
 
 /// One cycle \[s\].
-pub const CYCLE: f64 = 1e-3;
+pub(crate) const CYCLE: f64 = 1e-3;
 /// Support rectangles of Lola's feet: the sole frame lies in the middle of the toe segment.
-pub const SUPPORT: [[f64; 4]; 2] = [[-0.26, 0.04, -0.05, 0.05]; 2];
+pub(crate) const SUPPORT: [[f64; 4]; 2] = [[-0.26, 0.04, -0.05, 0.05]; 2];
 
 /// Ranges of Lola's toe joints.
-pub const TOES: [Option<[f64; 2]>; 2] = [Some([-0.7767, 0.1623]), Some([-0.1885, 0.7645])];
+pub(crate) const TOES: [Option<[f64; 2]>; 2] = [Some([-0.7767, 0.1623]), Some([-0.1885, 0.7645])];
 
-pub fn gait() -> Gait {
+pub(crate) fn gait() -> Gait {
     Gait {
         arm_swing: None,
         reaction: None,
@@ -89,55 +88,55 @@ pub fn gait() -> Gait {
 }
 
 /// Numbers that are the same in every run.
-pub struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self((seed + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15))
     }
 
     /// In [0, 1).
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    pub fn range(&mut self, [lo, hi]: [f64; 2]) -> f64 {
+    pub(crate) fn range(&mut self, [lo, hi]: [f64; 2]) -> f64 {
         lo + (hi - lo) * self.unit()
     }
 
-    pub fn below(&mut self, n: u64) -> u64 {
+    pub(crate) fn below(&mut self, n: u64) -> u64 {
         (self.unit() * n as f64) as u64
     }
 }
 
 /// Planner and perfect controller.
-pub struct Robot {
-    pub planner: Planner,
+pub(crate) struct Robot {
+    pub(crate) planner: Planner,
     /// \[s\]
-    pub cycle: f64,
+    pub(crate) cycle: f64,
     /// \[us\] What the planner took for its last cycle.
-    pub took: f64,
-    pub tick: u64,
-    pub state: ControllerState,
-    pub active: Box<Plan>,
-    pub next: Option<Box<Plan>>,
-    pub plans: Vec<Box<Plan>>,
-    pub events: Vec<(u64, EventCode, Detail)>,
+    pub(crate) took: f64,
+    pub(crate) tick: u64,
+    pub(crate) state: ControllerState,
+    pub(crate) active: Box<Plan>,
+    pub(crate) next: Option<Box<Plan>>,
+    pub(crate) plans: Vec<Box<Plan>>,
+    pub(crate) events: Vec<(u64, EventCode, Detail)>,
     /// \[m\] Height over the planning frame below which a sole touches something; it goes no deeper.
-    pub ground: f64,
+    pub(crate) ground: f64,
 }
 
 impl Robot {
     /// Hanging over the ground in a pose that is not the walking pose.
-    pub fn new(gait: &Gait) -> Self {
+    pub(crate) fn new(gait: &Gait) -> Self {
         Self::with_cycle(gait, CYCLE)
     }
 
     /// The same, with cycles of another length \[s\].
-    pub fn with_cycle(gait: &Gait, cycle: f64) -> Self {
+    pub(crate) fn with_cycle(gait: &Gait, cycle: f64) -> Self {
         let mut state = ControllerState::empty();
         state.com = [-0.06, 0.01, 0.85];
         state.feet = [[0.0, -0.1, 0.0, 0.0], [0.01, 0.105, 0.0, 0.0]];
@@ -156,7 +155,7 @@ impl Robot {
     }
 
     /// One cycle.
-    pub fn step(&mut self, commands: &[Command]) {
+    pub(crate) fn step(&mut self, commands: &[Command]) {
         self.tick += 1;
         let start = clock::now();
         let out = self.planner.step(self.tick, self.cycle, Some(&self.state), commands);
@@ -192,19 +191,19 @@ impl Robot {
     }
 
     /// Time in the active plan \[s\].
-    pub fn time(&self) -> f64 {
+    pub(crate) fn time(&self) -> f64 {
         (self.tick - self.active.start_tick) as f64 * self.cycle
     }
 
     /// Runs for some time \[s\].
-    pub fn run(&mut self, seconds: f64) {
+    pub(crate) fn run(&mut self, seconds: f64) {
         for _ in 0..(seconds / self.cycle) as u64 {
             self.step(&[]);
         }
     }
 
     /// Takes the walking pose.
-    pub fn stand(&mut self) {
+    pub(crate) fn stand(&mut self) {
         self.step(&[Command::Stand]);
         self.run(2.5);
     }

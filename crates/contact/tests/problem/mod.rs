@@ -1,5 +1,4 @@
 //! Random problems of coupled nodes, the law written out, and two solvers of another kind.
-#![allow(dead_code, reason = "each test uses its part")]
 
 use contact::Memory;
 use contact::frame::frame;

@@ -1,5 +1,4 @@
 //! One pad over level ground, for tests.
-#![allow(dead_code, reason = "each test uses its part")]
 
 use std::sync::Arc;
 

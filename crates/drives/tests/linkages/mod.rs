@@ -1,7 +1,5 @@
 //! Linkages to test with: the sample geometries of errata 1 (V3, V4), and legs of the size of Lola's.
 
-#![allow(dead_code, reason = "not every test needs all of them")]
-
 use drives::{Ankle, AnkleGeometry, Knee, KneeGeometry, Transmission};
 
 /// V3.
