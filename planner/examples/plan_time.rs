@@ -2,6 +2,7 @@
 //!
 //! `cargo run --release -p planner --example plan_time`
 
+#[allow(dead_code, reason = "the tests use all of it")]
 #[path = "../tests/robot/mod.rs"]
 mod robot;
 

@@ -1,6 +1,6 @@
 //! Plans that begin inside a step, at the measured pose.
 
-use crate::robot::Robot;
+use crate::robot::{self, Robot};
 use config::gait::Reaction;
 use messages::command::StepCommand;
 use messages::{Command, LEFT, RIGHT};

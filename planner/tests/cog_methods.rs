@@ -1,8 +1,7 @@
 //! Both methods for the centre of gravity plan the same walks, where the closed form holds, and one says so where it does not.
 
-use crate::robot;
-use crate::robot::Robot;
 use crate::robot::checks::{implied_margin, seam, unrest, zmp_margin};
+use crate::robot::{self, Robot};
 use config::Gait;
 use config::gait::CogMethod;
 use messages::command::StepCommand;

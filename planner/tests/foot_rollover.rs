@@ -1,7 +1,6 @@
 //! Feet that roll: toe joints, heel strike (thesis 4.5, (4.29), (4.30)).
 
-use crate::robot;
-use crate::robot::{Robot, TOES, checks};
+use crate::robot::{self, Robot, TOES, checks};
 use config::Gait;
 use config::gait::Bend;
 use curves::{Path, Sample};

@@ -1,8 +1,7 @@
 //! Steps over obstacles and onto platforms, fixed distances, with a controller that follows perfectly.
 
-use crate::robot;
 use crate::robot::checks::*;
-use crate::robot::{Robot, SUPPORT};
+use crate::robot::{self, Robot, SUPPORT};
 use config::Gait;
 use messages::command::{DistanceCommand, PlatformCommand, VelocityCommand};
 use messages::{Command, Detail, EventCode, GaitState, Plan};

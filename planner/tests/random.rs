@@ -1,9 +1,8 @@
 //! Random commands at random times: whatever is asked, plans can be walked, join, and end standing.
 
-use crate::robot;
 use crate::robot::checks::*;
 use crate::robot::feasible::{Worst, jumps};
-use crate::robot::{Random, Robot};
+use crate::robot::{self, Random, Robot};
 use messages::command::{StepCommand, VelocityCommand};
 use messages::{Command, EventCode};
 

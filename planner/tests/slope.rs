@@ -1,7 +1,6 @@
 //! Footholds on ground of a known slope: each is as high as the slope says, however the robot turns on it.
 
-use crate::robot;
-use crate::robot::{Random, Robot};
+use crate::robot::{self, Random, Robot};
 use messages::Command;
 use messages::command::StepCommand;
 

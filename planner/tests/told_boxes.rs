@@ -1,8 +1,7 @@
 //! Boxes that come and go while she walks, with a controller that follows perfectly.
 
-use crate::robot;
 use crate::robot::checks::*;
-use crate::robot::{CYCLE, Random, Robot};
+use crate::robot::{self, CYCLE, Random, Robot};
 use messages::command::{BoxCommand, GoneCommand, MAX_BOXES, VelocityCommand};
 use messages::{Command, EventCode, GaitState, Plan, Reason};
 

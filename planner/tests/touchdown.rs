@@ -1,8 +1,7 @@
 //! A swing foot that meets the ground before its time: the step ends there, and the walk goes on.
 
-use crate::robot;
 use crate::robot::checks::*;
-use crate::robot::{CYCLE, Robot};
+use crate::robot::{self, CYCLE, Robot};
 use config::Gait;
 use messages::command::StepCommand;
 use messages::{Command, EventCode, Plan};

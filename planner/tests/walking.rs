@@ -1,8 +1,7 @@
 //! Every kind of walk, with a controller that follows perfectly: what each plan promises.
 
-use crate::robot;
 use crate::robot::checks::*;
-use crate::robot::{CYCLE, Robot};
+use crate::robot::{self, CYCLE, Robot};
 use config::Gait;
 use messages::command::{StepCommand, VelocityCommand};
 use messages::{Command, Detail, EventCode, GaitState, Plan};

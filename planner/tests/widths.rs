@@ -1,7 +1,6 @@
 //! Step widths keep the feet apart (4.4), over as many random steps as errata 2.2.
 
-use crate::robot;
-use crate::robot::Random;
+use crate::robot::{self, Random};
 use config::gait::{CommandLimits, StepSettings};
 use planner::pose::PlanarPose;
 use planner::sole::Sole;

@@ -1,7 +1,6 @@
 //! Where the solvers fail, with the numbers predicted: r-factors too large, nearly incompressible rubber, much friction.
 
-use crate::sole;
-use crate::sole::layer;
+use crate::sole::{self, layer};
 use contact::coupling::Coupling;
 use contact::solver::solve;
 use contact::{CouplingMethod, Layer, Memory, Settings, SolverReport};

@@ -1,7 +1,6 @@
 //! What must hold between the results for any tree: each number by two independent routes.
 
-use crate::tree;
-use crate::tree::{Dice, configuration, error};
+use crate::tree::{self, Dice, configuration, error};
 use multibody::{Data, Frame, Model};
 use nalgebra::{DVector, Matrix3xX, Matrix6xX, Vector3};
 use proptest::prelude::*;

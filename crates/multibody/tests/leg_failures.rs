@@ -1,10 +1,9 @@
 //! What a leg refuses, at poses where that is known without its formulas: from the product of its rows, tangents and
 //! circles. In m.
 
-use crate::legs;
 use std::f64::consts::PI;
 
-use crate::legs::{Dice, posture, rows};
+use crate::legs::{self, Dice, posture, rows};
 use multibody::{ClosedFormLeg, DhRow, LegError};
 use nalgebra::{Matrix3, Vector3};
 

@@ -2,8 +2,7 @@
 //!
 //! 10^6 postures for each leg, 10^6 poses around each singular set, 10^5 for what needs no more.
 
-use crate::legs;
-use crate::legs::{Dice, apart, heights, leg, mirrored, off, posture};
+use crate::legs::{self, Dice, apart, heights, leg, mirrored, off, posture};
 use multibody::LegError;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 

@@ -1,8 +1,7 @@
 //! Rotors as gyrostats against rotors as bodies: the same robot twice, once with every rotor on a joint of its own,
 //! once with the rotors' inertia in the links. What a gear does to the first is the projection by v = T v_geared + b.
 
-use crate::tree;
-use crate::tree::{Dice, configuration, error};
+use crate::tree::{self, Dice, configuration, error};
 use multibody::{Data, Inertia, JointKind, Model, ModelBuilder, ModelError, Rotor};
 use nalgebra::{DMatrix, DVector, IsometryMatrix3, Matrix3, Vector3};
 use proptest::prelude::*;
