@@ -40,6 +40,21 @@ fn trials() -> usize {
     std::env::var("GANGWERK_TRIALS").ok().and_then(|n| n.parse().ok()).unwrap_or(TRIALS)
 }
 
+/// The same, armed by the scene long after a person can have pressed.
+const LATE: &str = "
+[[command]]
+time = 2.0
+topic = \"system/reset\"
+
+[[command]]
+time = 2.1
+topic = \"system/enable\"
+
+[[command]]
+time = 2.2
+topic = \"walk/stand\"
+";
+
 /// A robot that stands, and what is seen of its supply.
 struct Rig {
     run: Running,
@@ -69,13 +84,18 @@ impl Rig {
         Self::of(site, run)
     }
 
-    fn of(site: Site, mut run: Running) -> Self {
+    fn of(site: Site, run: Running) -> Self {
+        let mut rig = Self::beginning(site, run);
+        rig.wait_for("power", |rig| rig.power.latest().is_some_and(|p| p.on == 1));
+        rig
+    }
+
+    /// Whatever its supply.
+    fn beginning(site: Site, mut run: Running) -> Self {
         let space = run.space();
         let (power, sim) = (space.reader(&POWER).unwrap(), space.reader(&SIM_STATE).unwrap());
         let events = space.reader(&EVENTS_WATCHDOG).unwrap();
-        let mut rig = Self { power, sim, events, run, _space: space, site };
-        rig.wait_for("power", |rig| rig.power.latest().is_some_and(|p| p.on == 1));
-        rig
+        Self { power, sim, events, run, _space: space, site }
     }
 
     #[track_caller]
@@ -290,6 +310,26 @@ fn full_disk() -> Option<String> {
     let done = done.ok().filter(|o| !refused(&o.stderr))?;
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stdout));
     Some(std::fs::read_to_string(table).unwrap())
+}
+
+/// Regression: reset and enable of the scene undid what a person had pressed before them, and she stood up.
+#[test]
+fn no_scene_undoes_what_a_person_pressed() {
+    let (_turn, site) = (turn(), Site::patient(EXE));
+    site.scene("late", 100_000.0, LATE);
+    let run = site.run("late", &[]);
+    let mut rig = Rig::beginning(site, run);
+    rig.wait_for("a cycle", |rig| {
+        rig.sim.latest().is_some_and(|s| s.header.tick > 10) && rig.power.latest().is_some()
+    });
+    let dir = rig.site.run_dir();
+    let said = Command::new(EXE).args(["estop", "--dir"]).arg(&dir).output().unwrap();
+    assert!(said.status.success(), "{said:?}");
+    rig.wait_for("the scene's commands", |rig| {
+        assert_eq!(rig.power.latest().unwrap().on, 0);
+        rig.sim.latest().unwrap().time > 3.0
+    });
+    rig.arm();
 }
 
 #[test]

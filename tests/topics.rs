@@ -187,4 +187,13 @@ fn logs_are_told_exported_and_compared() {
         .unwrap_or_else(|| panic!("{}", said.out));
     assert!(line.contains("tick 2") && line.contains(" and "), "the first cycle after 0.2 s: {line}");
     assert!(said.out.starts_with("configurations differ: "), "{}", said.out);
+    // Of two beginnings that hold no record yet nothing is equal.
+    let whole = std::fs::read(&first).unwrap();
+    let [short, shorter] = [30_000, 29_000].map(|bytes| {
+        let path = site.path(&format!("{bytes}.mcap")).display().to_string();
+        std::fs::write(&path, &whole[..bytes]).unwrap();
+        path
+    });
+    let said = site.gangwerk(&["log", "compare", &short, &shorter]);
+    assert!(said.code == Some(1) && said.err.contains("neither log holds a record"), "{said:?}");
 }

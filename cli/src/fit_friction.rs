@@ -140,7 +140,7 @@ impl FrictionReport {
 pub fn main(file: &Path, out: Option<PathBuf>, json: bool) -> Result<(), Box<dyn Error>> {
     let report = run(file)?;
     println!("{}", if json { report.json() } else { report.table() });
-    let beside = || file.file_stem().map(|stem| PathBuf::from(stem).with_extension("png"));
+    let beside = || file.file_stem().map(|stem| PathBuf::from(format!("{}.png", stem.to_string_lossy())));
     if let Some(out) = out.or_else(|| if json { None } else { beside() }) {
         report.draw(&out)?;
         if !json {

@@ -43,7 +43,9 @@ pub fn info(path: &Path) -> Result<(), Box<dyn Error>> {
     let size = std::fs::metadata(path)?.len() as f64 * 1e-6;
     let messages: u64 = channels.values().sum();
     println!("{seconds:.3} s, {messages} messages, {size:.1} MB, {} joints", log.robot().joints.len());
-    if end != recording::LogEnd::Complete {
+    if recording::is_being_written(path) {
+        println!("it is being written: this is its beginning");
+    } else if end != recording::LogEnd::Complete {
         println!("it has no end: `gangwerk log repair {}` makes it whole", path.display());
     }
     for (channel, count) in channels {
@@ -109,25 +111,37 @@ impl ForType<Result<(), Box<dyn Error>>> for Export<'_> {
 /// Cycle statistics are left out: no two runs have the same.
 ///
 /// # Errors
-/// One of the files is no log.
+/// One of the files is no log, or no topic has a record in both of them.
 pub fn compare(a: &Path, b: &Path) -> Result<bool, Box<dyn Error>> {
     let (a, b) = (Log::open(a)?, Log::open(b)?);
     let (ours, theirs) = (a.run().config_hash, b.run().config_hash);
     if ours != theirs {
         println!("configurations differ: {ours:016x} and {theirs:016x}");
     }
-    let (mut same, mut equal) = (0, true);
+    let (mut same, mut different) = (0, 0);
     for topic in TOPICS.iter().filter(|t| t.logged && !t.name.starts_with("cycle_stats/")) {
-        match with_type(topic.name, Compare { a: &a, b: &b }).unwrap_or(Ok(None))? {
-            None => same += 1,
-            Some(difference) => {
-                println!("{}: {difference}", topic.name);
-                equal = false;
+        match with_type(topic.name, Compare { a: &a, b: &b }).unwrap_or(Ok(Compared::Empty))? {
+            Compared::Empty => {}
+            Compared::Equal => same += 1,
+            Compared::Different(how) => {
+                println!("{}: {how}", topic.name);
+                different += 1;
             }
         }
     }
+    if same + different == 0 {
+        return Err("neither log holds a record: there is nothing to compare".into());
+    }
     println!("{same} topics are equal, bit for bit");
-    Ok(equal)
+    Ok(different == 0)
+}
+
+/// A topic of two logs.
+enum Compared {
+    /// Neither has a record of it.
+    Empty,
+    Equal,
+    Different(String),
 }
 
 struct Compare<'a> {
@@ -135,23 +149,24 @@ struct Compare<'a> {
     b: &'a Log,
 }
 
-impl ForType<Result<Option<String>, Box<dyn Error>>> for Compare<'_> {
-    /// First difference between the records of a topic, if any.
-    fn call<T: Record>(self, topic: &'static Topic) -> Result<Option<String>, Box<dyn Error>> {
+impl ForType<Result<Compared, Box<dyn Error>>> for Compare<'_> {
+    /// The records of a topic, up to the first difference.
+    fn call<T: Record>(self, topic: &'static Topic) -> Result<Compared, Box<dyn Error>> {
         let (a, b) = (self.a.records::<T>(topic)?, self.b.records::<T>(topic)?);
         let differs =
             a.iter().zip(&b).enumerate().find_map(|(i, (a, b))| Some((i, a, first_difference(a, b)?)));
         Ok(match differs {
-            Some((i, record, (field, ours, theirs))) => Some(format!(
+            Some((i, record, (field, ours, theirs))) => Compared::Different(format!(
                 "record {i}, tick {}, {field}: {ours} and {theirs}; {} and {} records",
                 record.header().tick,
                 a.len(),
                 b.len()
             )),
             None if a.len() != b.len() => {
-                Some(format!("equal as far as it goes, {} and {} records", a.len(), b.len()))
+                Compared::Different(format!("equal as far as it goes, {} and {} records", a.len(), b.len()))
             }
-            None => None,
+            None if a.is_empty() => Compared::Empty,
+            None => Compared::Equal,
         })
     }
 }

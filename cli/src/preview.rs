@@ -48,7 +48,7 @@ pub fn of_files(
     out: &Path,
 ) -> Result<Preview, String> {
     let file =
-        if gait.is_file() { gait.to_owned() } else { root.join("gaits").join(gait).with_extension("toml") };
+        if gait.is_file() { gait.to_owned() } else { config::gait_path(root, &gait.to_string_lossy()) };
     let of_gait = Gait::load(&file).map_err(|e| e.to_string())?;
     let of = Robot::load(&root.join("robots").join(robot)).map_err(|e| e.to_string())?;
     preview(&of_gait, &of, speed, &format!("{}, {robot}", gait.display()), out)

@@ -128,7 +128,7 @@ impl Study for Realtime {
             found.inspect_err(|error| tracing::warn!("{error}")).ok()
         };
         studies::sheet::make(&self.out)?;
-        let log = self.out.join(format!("{}.mcap", self.scene));
+        let log = self.out.join(format!("{}.mcap", config::scenes::name(&self.scene)));
         // The machine may change meanwhile, so it is measured before and after.
         let before = cyclictest();
         let order = RunOptions {

@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::error::ConfigError;
 use crate::key_meaning::Sources;
 use crate::questions::{self, Heard, Question};
-use crate::{Gait, Robot, Scene, System, file, scenes};
+use crate::{Gait, Robot, Scene, System, file, gait_path, scenes};
 
 /// Kinds of files, with the ends of their names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -89,7 +89,7 @@ fn read_all(root: &Path) -> Result<(), ConfigError> {
     scenes::list(root)?.into_iter().try_for_each(|(_, scene)| scene.map(|_: Scene| ()))?;
     let names = |folder: &str, ending: &str| file::names(&root.join(folder), ending).unwrap_or_default();
     for name in names("gaits", "toml") {
-        Gait::load(&root.join("gaits").join(name).with_extension("toml"))?;
+        Gait::load(&gait_path(root, &name))?;
     }
     for name in names("robots", "") {
         Robot::load(&root.join("robots").join(name))?;

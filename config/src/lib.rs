@@ -77,7 +77,7 @@ pub use robot::Robot;
 pub use scene::Scene;
 pub use search::{ConfigDirectory, find, root};
 pub use sensors::SensorErrors;
-pub use setup::{Setup, SetupFiles, SetupNumbers};
+pub use setup::{Setup, SetupFiles, SetupNumbers, gait_path};
 pub use snapshot::snapshot;
 pub use sweep::Sweep;
 pub use system::System;

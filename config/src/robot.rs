@@ -1,11 +1,13 @@
 //! Robot file: soles, contact points, sensors, limits, bus, beside the URDF.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use codec::layout::FrameLayout;
 use drives::homing::HomeSwitch;
 use messages::MAX_JOINTS;
+use multibody::Model;
 
 use crate::acceleration;
 use crate::dbc;
@@ -21,6 +23,9 @@ use crate::limbs::{Arms, Head};
 use crate::protection::{Protection, homes};
 use crate::section::{self, POSITIVE, Section};
 use crate::tables::TableDrives;
+
+/// Stiffnesses up to that of steel.
+const STIFFNESS: RangeInclusive<f64> = 1e-9..=1e13;
 
 /// A robot: its URDF and everything else that is data about it.
 #[derive(Clone, Debug)]
@@ -150,10 +155,11 @@ impl Robot {
         }
         robot.spare = spare(&robot.layout, &can.spare).map_err(of_robot)?;
         robot.can = can;
-        // The URDF is parsed where models are built; here only its masses are compared.
+        // Models are built elsewhere; here the masses are compared.
         let urdf_path = directory.join(&robot.urdf);
         robot.urdf = file::text(&urdf_path, hash)?;
-        let masses = masses(&robot.urdf).map_err(|text| ConfigError::of_file(&urdf_path, text))?;
+        let masses =
+            Model::urdf_mass(&robot.urdf).map_err(|e| ConfigError::of_file(&urdf_path, e.to_string()))?;
         if (masses - robot.total_mass).abs() > MASS_TOLERANCE {
             let wanted = robot.total_mass;
             let text =
@@ -261,8 +267,8 @@ impl Contact {
     fn build(table: &Section<'_, '_>) -> Self {
         Self {
             pads: table.has("pads").then(|| table.table("pads", Pads::build)).flatten(),
-            normal_stiffness: table.number("normal_stiffness", "N/m", POSITIVE),
-            tangential_stiffness: table.number("tangential_stiffness", "N/m", POSITIVE),
+            normal_stiffness: table.number("normal_stiffness", "N/m", STIFFNESS),
+            tangential_stiffness: table.number("tangential_stiffness", "N/m", STIFFNESS),
             damping_time: table.number("damping_time", "s", POSITIVE),
             friction: table.number("friction", "", 0.0..=2.0),
         }
@@ -274,7 +280,7 @@ impl Pads {
         Self {
             size: table.numbers("size", "m", 1e-4..=1.0),
             bricks: whole(table, "bricks"),
-            modulus: table.number("modulus", "N/m^2", POSITIVE),
+            modulus: table.number("modulus", "N/m^2", STIFFNESS),
             poisson: table.number("poisson", "", 0.0..=0.499),
         }
     }
@@ -411,18 +417,4 @@ fn spare(layout: &FrameLayout, names: &[String]) -> Result<Vec<usize>, String> {
         })
     };
     names.iter().map(node).collect()
-}
-
-/// Sum of all `<mass value="...">` of a URDF; its structure is checked where the model is built.
-fn masses(urdf: &str) -> Result<f64, String> {
-    let values = urdf.split("<mass").skip(1).map(|rest| rest.split("value=\"").nth(1)?.split('"').next());
-    let mut sum = 0.0;
-    for value in values {
-        let value = value.ok_or("a <mass> has no value")?;
-        sum += value
-            .trim()
-            .parse::<f64>()
-            .map_err(|_| format!("a <mass> has the value `{value}`, not a number"))?;
-    }
-    Ok(sum)
 }

@@ -395,16 +395,14 @@ impl Drop for Section<'_, '_> {
     }
 }
 
+/// A range, both ends included.
 fn number_in(unit: &str, range: &RangeInclusive<f64>) -> String {
+    let end = |x: f64| {
+        let plain = x == 0.0 || (1e-4..1e6).contains(&x.abs());
+        if plain { x.to_string() } else { format!("{x:e}") }
+    };
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-    let (lo, hi) = (*range.start(), *range.end());
-    match (lo > -1e9 && lo != *POSITIVE.start(), hi < 1e9) {
-        (true, true) => format!("a number from {lo} to {hi}{unit}"),
-        (true, false) => format!("a number of at least {lo}{unit}"),
-        (false, _) if lo == *POSITIVE.start() && hi < 1e9 => format!("a number above 0, up to {hi}{unit}"),
-        (false, _) if lo == *POSITIVE.start() => format!("a number above 0{unit}"),
-        _ => format!("a number{unit}"),
-    }
+    format!("a number from {} to {}{unit}", end(*range.start()), end(*range.end()))
 }
 
 /// `a`, `b` and `c`.

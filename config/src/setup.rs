@@ -60,7 +60,7 @@ impl SetupFiles {
         let (mut hash, mut robot_hash) = (Hash::default(), Hash::default());
         let scene = Scene::load_hashed(&path, root, &mut hash)?;
         let robot = Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut robot_hash)?;
-        Gait::load_hashed(&gait_path(root, &scene), &mut hash)?;
+        Gait::load_hashed(&gait_path(root, &scene.gait), &mut hash)?;
         System::load_hashed(&root.join("system.toml"), &mut hash)?;
         Ok(Self { root: root.into(), path, files: hash.1, robot, robot_files: robot_hash.1 })
     }
@@ -83,7 +83,7 @@ impl SetupFiles {
         if scene.plays_tables {
             robot.play_tables().map_err(|text| ConfigError::of_file(path, format!("points: {text}")))?;
         }
-        let gait = gait_path(root, &scene);
+        let gait = gait_path(root, &scene.gait);
         hash.edit(&gait, &numbers.gait)?;
         let gait = Gait::load_hashed(&gait, &mut hash)?;
         let system = System::load_hashed(&root.join("system.toml"), &mut hash)?;
@@ -97,8 +97,9 @@ impl SetupFiles {
     }
 }
 
-fn gait_path(root: &Path, scene: &Scene) -> PathBuf {
-    root.join("gaits").join(&scene.gait).with_extension("toml")
+/// File of the gait with this name, which may have dots.
+pub fn gait_path(root: &Path, name: &str) -> PathBuf {
+    root.join("gaits").join(format!("{name}.toml"))
 }
 
 impl Setup {

@@ -116,6 +116,10 @@ impl Sweep {
         if let Some((i, n)) = sweep.numbers.iter().enumerate().find(|n| twice(*n)) {
             top.problem("number", format!("[{i}].key = `{}` is varied twice", n.key));
         }
+        let scenes = &sweep.scenes;
+        if let Some((_, name)) = scenes.iter().enumerate().find(|(i, name)| scenes[..*i].contains(name)) {
+            top.problem("scenes", format!("`{name}` is there twice"));
+        }
         sweep
     }
 
@@ -142,6 +146,9 @@ impl SweptNumber {
         let key = table.text("key");
         if !key.is_empty() && !key.starts_with("scene.") && !key.starts_with("gait.") {
             table.problem("key", format!("`{key}` begins neither with `scene.` nor with `gait.`"));
+        }
+        if key == "scene.seed" {
+            table.problem("key", "`scene.seed` is varied by `seeds` and `first_seed`");
         }
         let any = -1e12..=1e12;
         let listed = table.has("values");
@@ -254,6 +261,11 @@ mod tests {
                 number("key = \"gait.x\"\nvalues = [1]\n[[number]]\nkey = \"gait.x\"\nvalues = [2]"),
                 "number: [1].key = `gait.x` is varied twice",
             ),
+            (
+                number("key = \"scene.seed\"\nvalues = [1, 2]"),
+                "number[0].key: `scene.seed` is varied by `seeds`",
+            ),
+            ("about = \"a\"\nscenes = [\"a\", \"b\", \"a\"]\n".into(), "line 2: scenes: `a` is there twice"),
             (
                 number(
                     "key = \"gait.x\"\nrange = [1, 2]\ncount = 9000000\n[[number]]\nkey = \"gait.y\"\nvalues = [1, 2]",

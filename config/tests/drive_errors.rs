@@ -81,7 +81,7 @@ fn values_that_cannot_be() {
         ],
         &[
             "gear.hfuc_11_100.ratio: 0.5 is not allowed; a gear's ratio is at least 1, or at most -1",
-            "gear.hfuc_14_100.elasticity.stiffness[2]: -7100 is not allowed; it takes a number above 0 N m/rad",
+            "gear.hfuc_14_100.elasticity.stiffness[2]: -7100 is not allowed; it takes a number from 1e-9 to 1e9 N m/rad",
             "gear.hfuc_14_100.elasticity.knees: its lower end 7 must lie below its upper end 6.9 N m",
             "drive[0].axis: has the length 1.118034; it takes a unit vector",
             "drive[5].knee.lead: 0 is not allowed; a screw's lead is not zero",
@@ -99,7 +99,7 @@ fn brakes_that_cannot_be() {
             ("current_limit = 50.0", "current_limit = 50.0\nbrake = { torque = 5.0, dellay = 1.5 }"),
         ],
         &[
-            "drive[0].brake.torque: 0 is not allowed; it takes a number above 0 N m",
+            "drive[0].brake.torque: 0 is not allowed; it takes a number from 1e-9 to 1e9 N m",
             "drive[4].brake.delay: missing; it takes a number from 0 to 1 s",
             "drive[4].brake.dellay: unknown key; the nearest known one is `delay`",
         ],
@@ -196,7 +196,7 @@ fn joint_control_that_cannot_be() {
         &[("feedback = \"motor\"", "feedback = \"motr\""), ("position_gain = 100.0", "position_gain = 0.0")],
         &[
             "joint_control.feedback: `motr` is not known; it takes one of ",
-            "joint_control.position_gain: 0 is not allowed; it takes a number above 0 1/s",
+            "joint_control.position_gain: 0 is not allowed; it takes a number from 1e-9 to 1e9 1/s",
         ],
     );
     refused(
@@ -318,9 +318,9 @@ fn protection_that_cannot_be() {
             ("continuous_current = 20.0 # [A]\nthermal_time = 60.0 # [s]\n", ""),
         ],
         &[
-            "protection.following_error: missing; it takes a number above 0 rad",
+            "protection.following_error: missing; it takes a number from 1e-9 to 1e9 rad",
             "protection.following_eror: unknown key; the nearest known one is `following_error`",
-            "protection.following_time: -0.02 is not allowed; it takes a number of at least 0 s",
+            "protection.following_time: -0.02 is not allowed; it takes a number from 0 to 1e9 s",
             "protection.over_current: 0.9 is not allowed; it takes a number from 1 to 10",
             "protection.surroundings: NaN is not allowed; it takes a number from -40 to 60 deg C",
             "protection.warning: 120 deg C must lie between surroundings = NaN and temperature = 120 deg C",
@@ -338,7 +338,7 @@ fn protection_that_cannot_be() {
     refused(
         "thermal",
         &[("thermal_time = 60.0 # [s]\n", "")],
-        &["motor.cha_25.thermal_time: missing; it takes a number above 0 s"],
+        &["motor.cha_25.thermal_time: missing; it takes a number from 1e-9 to 1e9 s"],
     );
 }
 
@@ -354,8 +354,8 @@ fn home_switches_that_cannot_be() {
         &[
             "home.head_pam: there is no joint `head_pam`; the nearest is `head_pan`",
             "home.head_pam.angle_deg: 400 is not allowed; it takes a number from -360 to 360 deg",
-            "home.head_pam.slow: is of type boolean; it takes a number above 0 rad/s",
-            "home.head_tilt.fast: 0 is not allowed; it takes a number above 0 rad/s",
+            "home.head_pam.slow: is of type boolean; it takes a number from 1e-9 to 1e9 rad/s",
+            "home.head_tilt.fast: 0 is not allowed; it takes a number from 1e-9 to 1e9 rad/s",
         ],
     );
     refused(

@@ -96,7 +96,7 @@ fn wrong_tolerances() {
     assert_eq!(
         problems("range", "depth = \"auto\"\n[tolerance]\nposition = 0.0\ntrial = 600"),
         [
-            "line 10: tolerance.position: 0 is not allowed; it takes a number above 0 m",
+            "line 10: tolerance.position: 0 is not allowed; it takes a number from 1e-9 to 1e9 m",
             "line 11: tolerance.trial: 600 is not allowed; it takes a number from 0.1 to 60 s"
         ]
     );

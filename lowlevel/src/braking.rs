@@ -1,15 +1,16 @@
 //! Bringing a joint to rest: the controlled stop.
 
-use crate::limits::Setpoint;
+use crate::limits::{Setpoint, inside, moved, range};
 use config::robot::Joint;
 
-/// One cycle of `dt` \[s\] of braking at the joint's rate; the angle stays in the joint's range.
+/// One cycle of `dt` \[s\] of braking at the joint's rate, or faster where its range ends sooner; the angle stays in the range.
 pub fn brake(joint: &Joint, now: Setpoint, dt: f64) -> Setpoint {
     let less = joint.braking * dt;
     let speed = if now.speed.abs() <= less { 0.0 } else { now.speed - less * now.speed.signum() };
-    let wanted = now.angle + 0.5 * (now.speed + speed) * dt;
-    let angle = wanted.clamp(joint.range[0].min(now.angle), joint.range[1].max(now.angle));
-    Setpoint { angle, speed: if angle == wanted { speed } else { 0.0 } }
+    let wanted = moved(now, inside(joint, now, speed, dt), dt);
+    let [low, high] = range(joint, now);
+    let angle = wanted.angle.clamp(low, high);
+    Setpoint { angle, speed: if angle == wanted.angle { wanted.speed } else { 0.0 } }
 }
 
 #[cfg(test)]

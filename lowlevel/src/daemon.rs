@@ -209,7 +209,8 @@ fn real_time(d: &mut Daemon, p: &mut LowlevelPorts, joints: &mut JointLoop, last
         take_tables(d, p, joints);
         take_commands(d, p, joints, header);
         let off = joints.state() == LoopState::Off;
-        cause = cause.filter(|_| !off); // a stop is latched until the supply was off
+        // A stop is latched until the supply was off; of what ended nothing, as joints at rest, nothing is kept.
+        cause = cause.filter(|_| matches!(joints.state(), LoopState::Track | LoopState::Stop(_)));
         let targets = p.targets.latest();
         d.log.uses(0, &JOINT_TARGETS, targets);
         d.log.now().cause = cause.map_or(0, |cause| cause as u64);

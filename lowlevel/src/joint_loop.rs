@@ -176,13 +176,15 @@ impl JointLoop {
         targets: Option<&JointTargets>,
         cause: Option<EventCode>,
     ) -> (&BusFrames, &WatchdogReset) {
-        self.output.reset.trip = 0;
         if self.state == LoopState::Off {
             self.follow_measured(); // whatever comes next begins where the joints are
         }
         // State of the loop, then that of the start-up, which a stop holds.
         self.age.step(targets);
         self.state = self.next_state(targets, cause);
+        if self.state == LoopState::Off {
+            self.output.reset.trip = 0;
+        }
         let stopped = matches!(self.state, LoopState::Stop(_));
         self.start_up.step(&self.sensors, stopped, |j| self.guard.spares(j));
         match self.state {
@@ -326,7 +328,7 @@ impl JointLoop {
         }
     }
 
-    /// Asks for power off; the first reason of a cycle stands.
+    /// Asks for power off until it is off: a watchdog that stands still for a while shall find it. The first reason stands.
     fn trip(&mut self, why: EventCode) {
         if self.output.reset.trip == 0 {
             self.output.reset.trip = why as u64;

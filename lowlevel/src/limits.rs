@@ -28,7 +28,7 @@ pub struct Setpoint {
 
 /// The nearest admissible target to `wanted`, one cycle of `dt` \[s\] after `last`, and whether anything was held back.
 ///
-/// Range, speed, and what its drives can accelerate with a load that helps ([`WITH_LOAD`]): alone `possible` \[rad/s^2\], asked for only when the target needs more than
+/// Range, in which it comes to rest before its end, speed, and what its drives can accelerate with a load that helps ([`WITH_LOAD`]): alone `possible` \[rad/s^2\], asked for only when the target needs more than
 /// they can everywhere. A joint that was held back follows as fast as it can and slows down in time, so that it meets its
 /// targets again without passing them.
 ///
@@ -50,9 +50,9 @@ pub fn admit(
         accelerated(joint, WITH_LOAD * possible(), last, wanted, dt)
     };
     let reach = joint.speed_limit * dt;
-    let [low, high] = joint.range;
-    // A joint found outside of its range may stay where it is or come back, never go further out.
-    let (low, high) = (low.min(last.angle), high.max(last.angle));
+    let [low, high] = range(joint, last);
+    let speed = inside(joint, last, reached.speed, dt);
+    let reached = if speed == reached.speed { reached } else { moved(last, speed, dt) };
     let angle = reached.angle.clamp(low, high).clamp(last.angle - reach, last.angle + reach);
     let mut speed = reached.speed.clamp(-joint.speed_limit, joint.speed_limit);
     if angle != reached.angle {
@@ -60,6 +60,28 @@ pub fn admit(
     }
     let motion = Setpoint { angle, speed };
     Ok((motion, motion != wanted))
+}
+
+/// \[rad\] Range of a joint. One found outside of it may stay where it is or come back, never go further out.
+pub(crate) fn range(joint: &Joint, last: Setpoint) -> [f64; 2] {
+    [joint.range[0].min(last.angle), joint.range[1].max(last.angle)]
+}
+
+/// `speed` \[rad/s\] one cycle of `dt` \[s\] after `last`, or as much of it as the joint can brake in what is left of its range.
+pub(crate) fn inside(joint: &Joint, last: Setpoint, speed: f64, dt: f64) -> f64 {
+    let ([low, high], braking) = (range(joint, last), PLANNED * WITH_LOAD * joint.acceleration);
+    // s^2 <= 2 b r with the r that is left after the cycle. Without a limit of acceleration this is NaN, which min and max pass over.
+    let most = |room: f64, speed: f64| {
+        let half = 0.5 * braking * dt;
+        let left = (room - 0.5 * dt * speed).max(0.0);
+        (half * half + 2.0 * braking * left).sqrt() - half
+    };
+    speed.min(most(high - last.angle, last.speed)).max(-most(last.angle - low, -last.speed))
+}
+
+/// Where a joint gets to whose speed changes evenly to `speed`.
+pub(crate) fn moved(last: Setpoint, speed: f64, dt: f64) -> Setpoint {
+    Setpoint { angle: last.angle + 0.5 * (last.speed + speed) * dt, speed }
 }
 
 /// \[rad/s^2\] Acceleration that a target needs: by its speed, or by its angle if that is further from where the joint moves
@@ -79,7 +101,7 @@ fn accelerated(joint: &Joint, most: f64, last: Setpoint, wanted: Setpoint, dt: f
     let speed = wanted.speed + in_time.copysign(ahead);
     let speed = speed.clamp(last.speed - most * dt, last.speed + most * dt);
     let speed = speed.clamp(-joint.speed_limit, joint.speed_limit);
-    Setpoint { angle: last.angle + 0.5 * (last.speed + speed) * dt, speed }
+    moved(last, speed, dt)
 }
 
 /// Largest allowed distance between target and measured angle at a joint speed: a floor plus a delay (scales with
@@ -144,6 +166,44 @@ mod tests {
         // Half of the way at 400 rad/s^2 each, at best.
         let best = 2.0 * (0.5 / 400.0f64).sqrt() / 1e-3;
         assert!((best..1.5 * best).contains(&f64::from(cycles)), "{cycles} cycles, {best:.0} at best");
+    }
+
+    /// Whatever targets lead or run out of the range, from wherever and for however long: the drive's acceleration is kept, with the
+    /// load that [`WITH_LOAD`] stands for, and so it is by braking from there.
+    #[test]
+    fn the_end_of_the_range_is_met_within_the_acceleration() {
+        let (j, dt) = (joint(), 1e-3);
+        let mut seed = 20_261_129_u64;
+        let mut draw = |low: f64, high: f64| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            low + (high - low) * (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let within = |last: Setpoint, next: Setpoint| {
+            let most = WITH_LOAD * j.acceleration * dt * (1.0 + 1e-6);
+            assert!((next.speed - last.speed).abs() <= most, "{last:?} {next:?}");
+            assert!((j.range[0]..=j.range[1]).contains(&next.angle), "{next:?}");
+        };
+        let mut last = Setpoint { angle: 0.5, speed: 0.0 };
+        for _ in 0..2000 {
+            let (ramp, cycles) = (draw(-1.0, 1.0) > 0.0, draw(1.0, 300.0) as usize);
+            let (mut angle, speed) = (draw(-2.0, 4.0), if ramp { draw(-8.0, 8.0) } else { 0.0 });
+            if ramp && draw(0.0, 1.0) < 0.5 {
+                angle = last.angle;
+            }
+            for _ in 0..cycles {
+                angle += speed * dt;
+                let (next, _) = admit(&j, || 200.0, last, Setpoint { angle, speed }, dt).unwrap();
+                within(last, next);
+                last = next;
+            }
+            // A controlled stop from here.
+            let mut braked = last;
+            while braked.speed != 0.0 {
+                let next = crate::braking::brake(&j, braked, dt);
+                within(braked, next);
+                braked = next;
+            }
+        }
     }
 
     fn any_f64() -> impl Strategy<Value = f64> {

@@ -154,6 +154,14 @@ fn a_blocked_joint_trips_the_supply() {
     }
     assert_eq!(trip, EventCode::FollowingError as u64);
     assert_eq!(rig.loop_.events().pop(), Some((EventCode::FollowingError, Detail::Joint(5))));
+    // Regression: a watchdog that stood still then found nothing, for the joint follows again as soon as nothing leads it.
+    rig.blocked.clear();
+    for _ in 0..50 {
+        let still = rig.still();
+        assert_eq!(rig.cycle(Some(&still)), EventCode::FollowingError as u64, "until the supply is off");
+    }
+    rig.drives.power = 0;
+    assert_eq!(rig.cycle(None), 0);
 }
 
 /// Two blocked joints, and a target that is NaN while they still do not follow: each is reported, and once.

@@ -92,7 +92,8 @@ impl Study for RandomCommands {
         for (done, &depth) in self.types.iter().enumerate() {
             (given.progress)(done, self.types.len(), &format!("type {depth}"));
             let setup = of_type(Setup::load(given.config, &self.scene)?, depth);
-            let walked = parallel::map(self.timelines as usize, |k| walk(&setup, self.seed + k as u64));
+            let walked =
+                parallel::map(self.timelines as usize, |k| walk(&setup, self.seed.wrapping_add(k as u64)));
             let walked = walked.into_iter().collect::<Result<Vec<_>, _>>()?;
             rows.push(summed(depth, &walked));
         }
@@ -122,10 +123,10 @@ fn uncommanded(mut setup: Setup) -> Setup {
 ///
 /// # Errors
 /// The robot cannot be built.
-pub(crate) fn not_as_told(setup: &Setup, seeds: std::ops::Range<u64>) -> Result<Vec<String>, String> {
+pub(crate) fn not_as_told(setup: &Setup, seeds: &[u64]) -> Result<Vec<String>, String> {
     let setup = uncommanded(setup.clone());
     let mut failed = Vec::new();
-    for seed in seeds {
+    for &seed in seeds {
         let walked = walk(&setup, seed)?;
         let how = if walked.end == WalkEnd::Done { "not as told".into() } else { walked.end.to_string() };
         failed.extend(walked.failed().then(|| format!("seed {seed}: {how}")));

@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crate::push::DURATION;
 use crate::random::Random;
 use crate::sheet::{Column, fixed, plain};
-use crate::undisturbed::{STEP, ended, on_type, walk_at, walk_on};
+use crate::undisturbed::{STEP, ended, on_type, stride, walk_at, walk_on};
 use crate::{Error, Given, Sheet, Study};
 
 /// \[s\] Time from which on she walks as she will go on.
@@ -37,6 +37,8 @@ const COLUMNS: &[Column] = &[
 ];
 /// \[N s/kg\] Least impulses of the classes in which pushes are counted.
 const CLASSES: [f64; 5] = [0.0, 0.1, 0.2, 0.3, 0.4];
+/// Share of the speed by which an undisturbed walk may differ from it.
+const HELD: f64 = 0.1;
 /// \[s\] Time that a fall takes at most.
 const FALLING: f64 = 4.0;
 
@@ -93,9 +95,10 @@ struct Pushed {
     fatal: bool,
 }
 
-/// Marks the push that felled the robot, which ended at `at` \[s\]; a fall that no push explains counts, too.
-fn blame(pushes: &mut Vec<Pushed>, at: f64) {
-    let late = pushes.iter_mut().rev().take_while(|push| at - push.at < FALLING);
+/// Marks the push, of those since the robot `begun` anew, that felled it: it ended at `at` \[s\]. A fall that no push explains
+/// counts, too.
+fn blame(pushes: &mut Vec<Pushed>, begun: usize, at: f64) {
+    let late = pushes[begun..].iter_mut().rev().take_while(|push| at - push.at < FALLING);
     match late.max_by(|a, b| a.impulse.total_cmp(&b.impulse)) {
         Some(push) => push.fatal = true,
         None => pushes.push(Pushed { at, impulse: 0.0, fatal: true }),
@@ -117,7 +120,7 @@ impl Study for Hours {
             for &kmh in &self.speeds {
                 let (start, mass) = self.walking(given, depth, kmh)?;
                 let pushes = parallel::map(walks, |k| {
-                    let pushes = self.walk(&start, mass, self.seed + k as u64);
+                    let pushes = self.walk(&start, mass, self.seed.wrapping_add(k as u64));
                     (given.progress)(done.fetch_add(1, Ordering::Relaxed), all, &format!("{kmh} km/h"));
                     pushes
                 });
@@ -138,8 +141,16 @@ impl Hours {
     fn walking(&self, given: &Given<'_>, depth: u8, kmh: f64) -> Result<(Chain, f64), Error> {
         let mut setup = Setup::load(given.config, &self.scene)?;
         on_type(&mut setup, depth, if depth == 1 { 1e-3 } else { STEP });
-        walk_at(&mut setup, kmh);
+        walk_at(&mut setup, kmh)?;
         walk_on(&mut setup, SETTLED);
+        let walked = 3.6 * stride(&setup, SETTLED)?.speed(setup.scene.cycle);
+        if (walked - kmh).abs() > HELD * kmh {
+            let name = &self.scene;
+            return Err(format!(
+                "scene {name}: told to walk at {kmh} km/h, the robot walks at {walked:.2} km/h"
+            )
+            .into());
+        }
         let mut chain = Chain::new(&setup)?;
         for _ in 0..(SETTLED / chain.cycle()) as u64 {
             if ended(chain.step()) {
@@ -153,7 +164,8 @@ impl Hours {
     fn walk(&self, start: &Chain, mass: f64, seed: u64) -> Vec<Pushed> {
         let mut random = Random(seed);
         let drawn = |random: &mut Random, mean: f64| -mean * (1.0 - random.unit()).ln();
-        let (mut chain, cycle, mut pushes) = (start.clone(), start.cycle(), Vec::new());
+        let (mut chain, cycle) = (start.clone(), start.cycle());
+        let (mut pushes, mut begun) = (Vec::new(), 0);
         let mut next = drawn(&mut random, self.every);
         for k in 0..(3600.0 * self.hours / cycle) as u64 {
             let at = k as f64 * cycle;
@@ -167,8 +179,8 @@ impl Hours {
             }
             let c = chain.step();
             if ended(c) || GaitState::from(c.controller_state.gait) != GaitState::Walking {
-                blame(&mut pushes, at);
-                chain = start.clone();
+                blame(&mut pushes, begun, at);
+                (chain, begun) = (start.clone(), pushes.len());
             }
         }
         pushes
@@ -214,13 +226,40 @@ mod tests {
         let fatal = |pushes: &[(f64, f64)], at: f64| {
             let push = |&(at, impulse): &(f64, f64)| Pushed { at, impulse, fatal: false };
             let mut pushes: Vec<_> = pushes.iter().map(push).collect();
-            blame(&mut pushes, at);
+            blame(&mut pushes, 0, at);
             let fatal: Vec<_> = pushes.iter().filter(|push| push.fatal).map(|push| push.impulse).collect();
             fatal
         };
         assert_eq!(fatal(&[(1.0, 0.5), (9.0, 0.2), (9.2, 0.02)], 10.5), [0.2]);
         assert_eq!(fatal(&[(1.0, 0.5)], 10.5), [0.0]);
         assert_eq!(fatal(&[], 10.5), [0.0]);
+    }
+
+    /// A larger push that had felled her before she began anew is not to blame again: two falls count as two.
+    #[test]
+    fn each_fall_has_a_push_of_its_own() {
+        let push = |at, impulse| Pushed { at, impulse, fatal: false };
+        let mut pushes = vec![push(1.0, 0.5)];
+        blame(&mut pushes, 0, 2.2);
+        pushes.push(push(3.0, 0.4));
+        blame(&mut pushes, 1, 4.2);
+        assert!(pushes.iter().all(|push| push.fatal));
+    }
+
+    /// Neither a robot that only stands nor one that walks otherwise than asked is counted as falling.
+    #[test]
+    fn speeds_that_are_not_walked_are_refused() {
+        let root = config::root(None);
+        let given = Given { config: &root, progress: &|_, _, _| () };
+        for (line, why) in [
+            ("hours --speeds 4", "no whole stride"),
+            ("hours --scene stand", "no walk/velocity"),
+            ("hours --scene push", "no walk/velocity"),
+        ] {
+            let hours = Line::parse_from(line.split(' ')).hours;
+            let error = hours.walking(&given, 1, hours.speeds[0]).map(|_| ()).unwrap_err().to_string();
+            assert!(error.contains(why), "{line}: {error}");
+        }
     }
 
     /// A minute of small pushes are walked, of large ones not; the same seed is the same walk, and pushes come as often and are

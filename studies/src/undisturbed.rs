@@ -48,12 +48,20 @@ pub(crate) fn on_type(setup: &mut Setup, depth: u8, step: f64) {
 }
 
 /// Walks forward at this speed \[km/h\] from the scene's own velocity command on.
-pub(crate) fn walk_at(setup: &mut Setup, kmh: f64) {
+///
+/// # Errors
+/// It has none.
+pub(crate) fn walk_at(setup: &mut Setup, kmh: f64) -> Result<(), String> {
+    let mut told = false;
     for (_, command) in &mut setup.scene.commands {
         if let Command::Velocity(velocity) = command {
-            velocity.forward = kmh / 3.6;
+            (velocity.forward, told) = (kmh / 3.6, true);
         }
     }
+    let name = &setup.scene.name;
+    told.then_some(()).ok_or_else(|| {
+        format!("scene {name}: a speed was asked for, but it has no walk/velocity; take one that does, such as walk_1kmh")
+    })
 }
 
 /// Leaves out what would disturb or end the walk of a scene; its strides after `settled` \[s\] can be watched.
@@ -102,6 +110,11 @@ pub(crate) fn stride(setup: &Setup, settled: f64) -> Result<Stride, Error> {
 }
 
 impl Stride {
+    /// Mean speed forward \[m/s\] in cycles of this length \[s\].
+    pub(crate) fn speed(&self, cycle: f64) -> f64 {
+        self.way[0] / ((self.ticks[1] - self.ticks[0]) as f64 * cycle)
+    }
+
     /// Whether the robot walks, or stands if it stood, and its next stride, which `see` sees, is like this one, whatever its phase.
     pub(crate) fn is_repeated(&self, chain: &mut Chain, mut see: impl FnMut(&Cycle)) -> bool {
         let (mut way, cycle) = (Way::default(), chain.cycle());

@@ -118,16 +118,18 @@ impl Guard {
         let mut waiting = [Command::End; MAX_COMMANDS + 1];
         let mut count = 0;
         let now = self.now();
+        let asker = self.stop.asked();
+        if asker.is_some() {
+            self.timeline.skip_before(u64::MAX);
+        }
         while count < MAX_COMMANDS
-            && let Some(live) =
-                self.timeline.due(now.tick).map(Live::of_scene).or_else(|| self.commands.next())
+            && let Some(live) = self.next_command(now.tick)
         {
             (lives[count], waiting[count]) = (live, live.command);
             count += 1;
         }
         let lives = &lives[..count];
         let before = self.watchdog.supply();
-        let asker = self.stop.asked();
         if let Some(asker) = asker {
             // Last, so that no reset and enable of the same cycle undo it; in front there may be no room.
             waiting[count] = Command::EmergencyStop;
@@ -158,6 +160,20 @@ impl Guard {
         if let Some((code, detail)) = supply_event(before, after) {
             d.report(self.now(), code, detail);
         }
+    }
+
+    /// The next command of this cycle: the scene's that are due, then live ones.
+    ///
+    /// After somebody's emergency stop the scene says no more: its reset and enable would undo what a person did.
+    fn next_command(&mut self, tick: u64) -> Option<Live> {
+        if let Some(scene) = self.timeline.due(tick) {
+            return Some(Live::of_scene(scene));
+        }
+        let live = self.commands.next()?;
+        if live.command == Command::EmergencyStop {
+            self.timeline.skip_before(u64::MAX);
+        }
+        Some(live)
     }
 
     /// Tick and stamp of the newest sign of life.

@@ -52,9 +52,12 @@ pub fn run(config: &Path, order: &CheckOptions) -> Result<(), Box<dyn Error>> {
     } else {
         "\nThe configuration is another one than that of the run; that may be the reason."
     };
-    let Equal { cycles, answers, told } = outcome.map_err(|different| format!("{different}{other}"))?;
+    let Equal { cycles, of, answers, told } = outcome.map_err(|different| format!("{different}{other}"))?;
+    if cycles == 0 {
+        return Err("the recording ends before its first whole cycle: there is nothing to compare".into());
+    }
     println!(
-        "{cycles} cycles: sensors of {answers} frames and {told} frames to the drives are the same, bit for bit"
+        "{cycles} of the log's {of} cycles: sensors of {answers} frames and {told} frames to the drives are the same, bit for bit"
     );
     Ok(())
 }
@@ -62,6 +65,8 @@ pub fn run(config: &Path, order: &CheckOptions) -> Result<(), Box<dyn Error>> {
 /// Counts of equal frames and values.
 struct Equal {
     cycles: u64,
+    /// Cycles of the log.
+    of: usize,
     answers: u64,
     told: u64,
 }
@@ -97,7 +102,7 @@ impl<'a> Comparison<'a> {
 
     /// Cycle by cycle, to the end of the shorter one.
     fn run(mut self) -> Result<Equal, String> {
-        let mut equal = Equal { cycles: 0, answers: 0, told: 0 };
+        let mut equal = Equal { cycles: 0, of: self.sensors.len(), answers: 0, told: 0 };
         let (mut from, mut to) = (CdrEncoder::new(), CdrEncoder::new());
         for (i, logged) in std::mem::take(&mut self.sensors).iter().enumerate() {
             let tick = i as u64 + 1;

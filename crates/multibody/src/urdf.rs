@@ -45,6 +45,15 @@ impl Model {
         Ok((root.to_owned(), order))
     }
 
+    /// Sum of the masses of a URDF's links \[kg\].
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn urdf_mass(urdf: &str) -> Result<f64, ModelError> {
+        let robot = urdf_rs::read_from_string(urdf).map_err(|e| ModelError::Unreadable(e.to_string()))?;
+        Ok(robot.links.iter().map(|link| link.inertial.mass.value).sum())
+    }
+
     /// [`Model::from_urdf`] with some joints held at these coordinates \[rad, m\], as if they were fixed: they are none of `joint_order`.
     pub fn from_urdf_locked(
         urdf: &str,

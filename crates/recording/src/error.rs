@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 pub enum RecordingError {
     /// The file could not be made.
     Create(PathBuf, std::io::Error),
+    /// Somebody is writing the file.
+    BeingWritten(PathBuf),
     /// The file could not be opened or read.
     Read(PathBuf, std::io::Error),
     /// Writing failed; nothing more can be written to this file.
@@ -52,6 +54,13 @@ impl fmt::Display for RecordingError {
                 write!(
                     f,
                     "{}: cannot make the log: {e}; choose a directory that exists and is writable",
+                    path.display()
+                )
+            }
+            Self::BeingWritten(path) => {
+                write!(
+                    f,
+                    "{}: it is being written; wait for the end of the run, or choose another file",
                     path.display()
                 )
             }

@@ -11,6 +11,7 @@
 //! Design: profile `ros2`, CDR only. One channel of another encoding would break other readers of ROS 2 bags.
 
 pub mod cdr;
+mod claim;
 pub mod composer;
 pub mod definition;
 mod error;
@@ -33,6 +34,7 @@ mod standard_definitions;
 mod time;
 pub mod traffic;
 
+pub use claim::is_being_written;
 pub use composer::{ComposedMessage, Composer, LogChannel, STANDARD_RATE, channel_name};
 pub use error::RecordingError;
 pub use hashes::payload_hashes;

@@ -18,6 +18,7 @@ use std::path::Path;
 use mcap::records::{MessageHeader, Metadata};
 use messages::{Record, Topic};
 
+use crate::claim;
 use crate::composer::{Composer, ENCODING, LogChannel, Out, SCHEMA_ENCODING, channels};
 use crate::error::RecordingError;
 use crate::links::LinkPoses;
@@ -48,10 +49,9 @@ struct FileChannel {
 }
 
 impl Recorder {
-    /// Makes the file; an existing one is overwritten.
+    /// Makes the file; an existing one is overwritten, unless somebody writes it.
     pub fn create(path: &Path, robot: &RobotInfo, run: &RunInfo) -> Result<Self, RecordingError> {
-        let file = std::fs::File::create(path).map_err(|e| RecordingError::Create(path.into(), e))?;
-        Self::to(Box::new(BufWriter::new(file)), robot, run)
+        Self::to(Box::new(BufWriter::new(claim::create(path)?)), robot, run)
     }
 
     /// Writes to something else than a file.

@@ -1,13 +1,15 @@
 //! A log once more, message by message: with an index if it had none, because its writer died.
 
+use crate::claim;
 use crate::error::RecordingError;
 use crate::log::{LogContent, LogEnd, walk};
 use crate::recorder::{Sink, options};
 use mcap::records::{MessageHeader, Metadata};
 use std::collections::{BTreeMap, HashMap};
+use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Outcome of repairing a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,9 +23,14 @@ pub struct Repaired {
 /// Gives a log its end and index, if it lacks them: everything up to the cut, or up to the first damage, is kept.
 ///
 /// # Errors
-/// The file is no log, or there is no room beside it for the new one; then it stays as it was.
+/// The file is no log, it is being written, or there is no room beside it for the new one; then it stays as it was.
 pub fn repair(path: &Path) -> Result<Repaired, RecordingError> {
-    let new = path.with_extension("repair");
+    let log = File::open(path).map_err(|e| RecordingError::Read(path.into(), e))?;
+    // Held until the new one has its name: a writer would go on in a file that nobody finds.
+    claim::claim(&log, path)?;
+    let mut new = path.as_os_str().to_owned();
+    new.push(".repair");
+    let new = PathBuf::from(new);
     let done = rewrite(path, &new, |_, _| true);
     let found = match &done {
         Ok((LogEnd::Complete, _)) => None,
@@ -56,8 +63,7 @@ pub fn rewrite(
     to: &Path,
     mut edit: impl FnMut(&str, &mut Vec<u8>) -> bool,
 ) -> Result<(LogEnd, u64), RecordingError> {
-    let file = std::fs::File::create(to).map_err(|e| RecordingError::Create(to.into(), e))?;
-    let sink: Box<dyn Sink> = Box::new(BufWriter::new(file));
+    let sink: Box<dyn Sink> = Box::new(BufWriter::new(claim::create(to)?));
     let mut mcap = options().create(sink).map_err(RecordingError::write)?;
     let mut schemas = HashMap::new();
     let mut channels: HashMap<String, u16> = HashMap::new();

@@ -3,6 +3,7 @@
 //! The message is `gangwerk_msgs/msg/CanFrame`. `can_msgs/msg/Frame` of ROS 2 has no room for CAN FD.
 
 use crate::cdr::{CdrDecoder, CdrEncoder};
+use crate::claim;
 use crate::definition::PACKAGE;
 use crate::error::RecordingError;
 use crate::log::{LogContent, LogEnd, walk};
@@ -70,13 +71,12 @@ fn channel_name(line: &str) -> String {
 }
 
 impl TrafficWriter {
-    /// Makes the file; an existing one is overwritten.
+    /// Makes the file; an existing one is overwritten, unless somebody writes it.
     ///
     /// # Errors
     /// It cannot be made or written.
     pub fn create(path: &Path) -> Result<Self, RecordingError> {
-        let file = std::fs::File::create(path).map_err(|e| RecordingError::Create(path.into(), e))?;
-        let sink: Box<dyn Sink> = Box::new(BufWriter::new(file));
+        let sink: Box<dyn Sink> = Box::new(BufWriter::new(claim::create(path)?));
         let mut mcap = options().create(sink).map_err(RecordingError::write)?;
         let about = BTreeMap::from([("software".into(), env!("CARGO_PKG_VERSION").into())]);
         mcap.write_metadata(&Metadata { name: METADATA.into(), metadata: about })

@@ -2,7 +2,7 @@
 
 use messages::topics::SENSORS;
 use messages::{Header, Sensors};
-use recording::{Log, LogEnd, Recorder, RecordingError, RobotInfo, RunInfo, repair};
+use recording::{Log, LogEnd, Recorder, RecordingError, RobotInfo, RunInfo, is_being_written, repair};
 use std::path::{Path, PathBuf};
 
 fn file(name: &str) -> PathBuf {
@@ -58,5 +58,41 @@ fn a_whole_log_is_left_as_it_is_and_another_file_is_refused() {
     let other = file("other");
     std::fs::write(&other, b"no log at all, by any means").unwrap();
     assert!(matches!(repair(&other), Err(RecordingError::NotALog(..))));
-    assert!(!other.with_extension("repair").exists());
+    assert!(!beside(&other).exists());
+}
+
+/// Where the new log is made.
+fn beside(path: &Path) -> PathBuf {
+    PathBuf::from(format!("{}.repair", path.display()))
+}
+
+/// Regression: what the writer wrote after a repair went into a file without a name.
+#[test]
+fn a_log_that_is_being_written_is_neither_repaired_nor_begun_anew() {
+    let path = file("written");
+    let mut log = Recorder::create(&path, &RobotInfo::default(), &RunInfo::default()).unwrap();
+    assert!(is_being_written(&path));
+    assert!(matches!(repair(&path), Err(RecordingError::BeingWritten(..))));
+    let again = Recorder::create(&path, &RobotInfo::default(), &RunInfo::default()).map(|_| ());
+    assert!(matches!(again, Err(RecordingError::BeingWritten(..))));
+    for tick in 1..=2000 {
+        let header = Header { tick, stamp_ns: tick * 1_000_000, epoch: 1 };
+        log.write(&SENSORS, &Sensors { header, ..Sensors::default() }).unwrap();
+    }
+    log.finish().unwrap();
+    assert!(!is_being_written(&path) && !beside(&path).exists());
+    let mut messages = 0;
+    assert_eq!(Log::open(&path).unwrap().each(|_| messages += 1).unwrap(), LogEnd::Complete);
+    assert!(messages >= 2000);
+}
+
+/// Regression: a log with the ending of the new file was emptied and removed.
+#[test]
+fn a_log_may_have_any_name() {
+    let (path, before) = cut("named", 100);
+    let named = file("named").with_extension("repair");
+    std::fs::rename(path, &named).unwrap();
+    let done = repair(&named).unwrap();
+    assert!(done.found.is_some() && done.messages == before, "{done:?}, {before}");
+    assert_eq!(repair(&named).unwrap().found, None);
 }

@@ -19,7 +19,7 @@ impl JointLoop {
             LoopState::Stop(why) => Some(why as u64),
             _ => None,
         };
-        (std::mem::discriminant(&self.state), stop).hash(h);
+        (std::mem::discriminant(&self.state), stop, self.output.reset.trip).hash(h);
         self.age.hash_state(self.sensors.header.tick, h);
         self.setpoints.hash_state(self.robot.joints.len(), h);
         self.guard.hash_state(h);

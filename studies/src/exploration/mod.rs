@@ -23,6 +23,7 @@ use config::Setup;
 use serde::Serialize;
 use vision::Speeds;
 
+use crate::random::seeds;
 use crate::sheet::{Column, fixed, plain};
 use crate::undisturbed::{STEP, on_type};
 use crate::{Error, Given, Sheet, Study};
@@ -118,8 +119,7 @@ struct Row {
 impl Study for Exploration {
     fn run(&self, given: &Given<'_>) -> Result<Sheet, Error> {
         let scene = Setup::load(given.config, &self.scene)?;
-        let seeds = self.seed..self.seed + self.rooms;
-        let cases: Vec<(u8, NetworkKind, u64)> = seeds
+        let cases: Vec<(u8, NetworkKind, u64)> = seeds(self.seed, self.rooms)
             .flat_map(|seed| self.types.iter().map(move |depth| (*depth, seed)))
             .flat_map(|(depth, seed)| self.network.iter().map(move |network| (depth, *network, seed)))
             .collect();

@@ -23,6 +23,8 @@ const PERSON: [f64; 3] = [0.3, 0.45, 1.7];
 const PERSON_SPEED: [f64; 2] = [0.2, 0.5];
 const REST: [f64; 2] = [2.0, 8.0];
 const KEEPS_CLEAR: f64 = 0.8;
+/// Places in a row that nobody who is not shut in finds out of reach.
+const TRIED: u32 = 1000;
 
 /// A rectangle of the floor that something stands on.
 #[derive(Clone, Copy, Debug)]
@@ -131,15 +133,18 @@ impl Room {
         };
         let mut person =
             TerrainObject { keeps_clear: KEEPS_CLEAR, ..object(name, PERSON, pose(start, 0.0, PERSON[2])) };
-        let (mut time, mut at, mut yaw) = (0.0, start, 0.0);
-        while time < end {
+        let (mut time, mut at, mut yaw, mut missed) = (0.0, start, 0.0, 0);
+        // Among many boxes someone may be shut in, and stands there.
+        while time < end && missed < TRIED {
             let to = place(random);
             let [dx, dy] = [to[0] - at[0], to[1] - at[1]];
             let straight =
                 (0..=100).all(|i| is_free([0, 1].map(|k| at[k] + f64::from(i) / 100.0 * [dx, dy][k])));
             if !straight || dx.hypot(dy) < 0.5 {
+                missed += 1;
                 continue;
             }
+            missed = 0;
             // Turns within the rest, and then goes.
             time += random.within(REST);
             yaw = nearest_turn(yaw, dy.atan2(dx));

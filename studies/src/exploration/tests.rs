@@ -135,3 +135,12 @@ fn a_bad_network_is_as_bad_as_it_says() {
     assert!((share(spoiled) - 0.7 * 1.1 * 0.05).abs() < 0.01);
     assert!(first.iter().flatten().any(|late| *late > 0.25));
 }
+
+/// Regression: someone shut in among boxes sought a way for ever (seeds 9 and 12).
+#[test]
+fn crowded_rooms_are_drawn_too() {
+    for seed in 1..=20 {
+        let room = Room::draw(seed, 50, 2, 600.0);
+        assert!(room.objects.len() > 50, "seed {seed}");
+    }
+}

@@ -30,19 +30,19 @@ pub enum GroundKind {
     Payload,
 }
 
-/// All kinds, what one is called in a table, and its size: unit, times of that in SI, sizes tried by default.
-const TABLE: &[(GroundKind, &str, &str, f64, &[f64])] = &[
-    (GroundKind::StepUp, "step up", "m", 1.0, &[0.02, 0.04]),
-    (GroundKind::StepDown, "step down", "m", 1.0, &[0.04, 0.08]),
-    (GroundKind::Board, "board", "m", 1.0, &[0.02, 0.04]),
-    (GroundKind::HalfFoothold, "half foothold", "1", 1.0, &[0.5]),
-    (GroundKind::Slope, "slope", "deg", std::f64::consts::PI / 180.0, &[2.0, 5.0]),
-    (GroundKind::HeightField, "height field", "m", 1.0, &[0.01, 0.03]),
-    (GroundKind::LowFriction, "low friction", "1", 1.0, &[0.3]),
-    (GroundKind::Masses, "masses, each", "1", 1.0, &[0.2]),
-    (GroundKind::Weight, "masses, all", "1", 1.0, &[0.2]),
-    (GroundKind::TorsoCog, "torso's CoG", "m", 1.0, &[0.03]),
-    (GroundKind::Payload, "payload", "kg", 1.0, &[8.0]),
+/// All kinds, what one is called in a table, and its size: unit, times of that in SI, sizes tried by default, largest one.
+const TABLE: &[(GroundKind, &str, &str, f64, &[f64], f64)] = &[
+    (GroundKind::StepUp, "step up", "m", 1.0, &[0.02, 0.04], 1.0),
+    (GroundKind::StepDown, "step down", "m", 1.0, &[0.04, 0.08], 1.0),
+    (GroundKind::Board, "board", "m", 1.0, &[0.02, 0.04], 1.0),
+    (GroundKind::HalfFoothold, "half foothold", "1", 1.0, &[0.5], 1.0),
+    (GroundKind::Slope, "slope", "deg", std::f64::consts::PI / 180.0, &[2.0, 5.0], 45.0),
+    (GroundKind::HeightField, "height field", "m", 1.0, &[0.01, 0.03], 1.0),
+    (GroundKind::LowFriction, "low friction", "1", 1.0, &[0.3], 10.0),
+    (GroundKind::Masses, "masses, each", "1", 1.0, &[0.2], 0.9),
+    (GroundKind::Weight, "masses, all", "1", 1.0, &[0.2], 0.9),
+    (GroundKind::TorsoCog, "torso's CoG", "m", 1.0, &[0.03], 0.5),
+    (GroundKind::Payload, "payload", "kg", 1.0, &[8.0], 100.0),
 ];
 
 impl GroundKind {
@@ -51,7 +51,7 @@ impl GroundKind {
         TABLE.iter().map(|row| row.0)
     }
 
-    fn row(self) -> &'static (Self, &'static str, &'static str, f64, &'static [f64]) {
+    fn row(self) -> &'static (Self, &'static str, &'static str, f64, &'static [f64], f64) {
         TABLE.iter().find(|row| row.0 == self).expect("every kind has its row")
     }
 
@@ -76,6 +76,12 @@ impl GroundKind {
         self.row().3 * size
     }
 
+    /// Refuses a size, in its unit, of which there is none, or no place to walk over.
+    pub(super) fn check(self, size: f64) -> Result<(), String> {
+        let (name, unit, most) = (self.name(), self.unit(), self.row().5);
+        (size <= most).then_some(()).ok_or(format!("--size {size}: {name} takes a size up to {most} {unit}"))
+    }
+
     /// Sizes tried unless told otherwise, in its unit.
     pub(super) fn sizes(self) -> &'static [f64] {
         self.row().4
@@ -89,7 +95,13 @@ mod tests {
 
     #[test]
     fn every_kind_has_its_row() {
-        assert!(GroundKind::value_variants().iter().all(|kind| !kind.sizes().is_empty()));
+        for kind in GroundKind::value_variants() {
+            assert!(
+                !kind.sizes().is_empty() && kind.sizes().iter().all(|&size| kind.check(size).is_ok()),
+                "{kind:?}"
+            );
+        }
+        assert!(GroundKind::Slope.check(180.0).is_err(), "as level as 0 deg");
         assert_eq!(GroundKind::all().collect::<Vec<_>>(), GroundKind::value_variants());
     }
 }

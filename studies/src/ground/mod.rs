@@ -130,6 +130,7 @@ impl Study for GroundStudy {
             |kind: &GroundKind| if self.size.is_empty() { kind.sizes().to_vec() } else { self.size.clone() };
         let ground: Vec<(GroundKind, f64)> =
             kinds.iter().flat_map(|kind| sizes(kind).into_iter().map(|size| (*kind, size))).collect();
+        ground.iter().try_for_each(|&(kind, size)| kind.check(size))?;
         let walks: Vec<(u8, f64)> =
             self.types.iter().flat_map(|depth| self.speeds.iter().map(|speed| (*depth, *speed))).collect();
         // Each type and speed walks on level ground once; every place is held against that.
@@ -143,7 +144,7 @@ impl Study for GroundStudy {
         let failed = parallel::map(each * rows.len(), |k| {
             let (&(kind, size), (_, reference)) = rows[k / each];
             (given.progress)(done.fetch_add(1, Ordering::Relaxed), each * rows.len(), kind.name());
-            reference.over(kind, size, self.seed + (k % each) as u64)
+            reference.over(kind, size, self.seed.wrapping_add((k % each) as u64))
         });
         let failed = failed.into_iter().collect::<Result<Vec<_>, _>>()?;
         let rows = rows.iter().zip(failed.chunks(each));
@@ -191,12 +192,12 @@ pub(crate) fn not_walked(
     setup: &Setup,
     (kind, size): (GroundKind, f64),
     kmh: f64,
-    seeds: std::ops::Range<u64>,
+    seeds: &[u64],
 ) -> Result<Vec<String>, String> {
     let walk = (setup.scene.depth, kmh);
     let reference = LevelWalk::of(setup.clone(), walk).map_err(|e| e.to_string())?;
     let mut failed = Vec::new();
-    for seed in seeds {
+    for &seed in seeds {
         let of = reference.over(kind, size, seed)?;
         failed.extend(of.map(|f| format!("{}, {kmh} km/h, seed {seed}: {}", kind.of(size), f.how)));
     }
@@ -210,7 +211,7 @@ impl LevelWalk {
     /// The robot cannot be built, or does not walk.
     pub(crate) fn of(mut setup: Setup, (depth, kmh): (u8, f64)) -> Result<Self, Error> {
         on_type(&mut setup, depth, STEP);
-        walk_at(&mut setup, kmh);
+        walk_at(&mut setup, kmh)?;
         let speed = kmh / 3.6;
         walk_on(&mut setup, f64::max(SETTLED, 2.0 * ALONG[1] / speed));
         Ok(Self { speed, stride: stride(&setup, SETTLED)?, steps: footprints(&setup)?, setup })

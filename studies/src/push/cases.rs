@@ -88,7 +88,7 @@ fn walks(arguments: &Push, config: &Path) -> Result<Vec<Case>, Error> {
     }
     for &kmh in &arguments.speeds {
         let mut walking = case(base.unwrap_or(SCENES[1]))?;
-        walking.walk_at(kmh);
+        walking.walk_at(kmh)?;
         all.push(walking);
     }
     if arguments.standing {
@@ -101,17 +101,16 @@ fn walks(arguments: &Push, config: &Path) -> Result<Vec<Case>, Error> {
 }
 
 impl Case {
-    fn walk_at(&mut self, kmh: f64) {
+    fn walk_at(&mut self, kmh: f64) -> Result<(), String> {
         self.walk = format!("{} at {kmh} km/h", self.setup.scene.robot);
-        if kmh > 0.0 {
-            return walk_at(&mut self.setup, kmh);
-        }
+        walk_at(&mut self.setup, kmh)?;
         // A velocity of zero is a stop.
         for (_, command) in &mut self.setup.scene.commands {
-            if matches!(command, Command::Velocity(_)) {
+            if kmh == 0.0 && matches!(command, Command::Velocity(_)) {
                 *command = Command::Start;
             }
         }
+        Ok(())
     }
 
     fn choose(&mut self, depth: Option<u8>, cycle: Option<f64>) {

@@ -174,7 +174,7 @@ impl Case {
                 always_n_s_per_kg: sorted[0] / mass,
                 bound_always_n_s_per_kg: bounds.iter().copied().reduce(f64::min),
                 bound_n_s_per_kg: bounds,
-                median_n_s_per_kg: sorted[instants / 2] / mass,
+                median_n_s_per_kg: 0.5 * (sorted[(instants - 1) / 2] + sorted[instants / 2]) / mass,
             }
         };
         Ok((mass, impulses.chunks(instants).enumerate().map(row).collect()))

@@ -20,7 +20,7 @@ fn rung(order: &ScorecardOptions<'_>, kmh: f64, cycle: f64) -> Result<(Result<f6
         let why = format!("{kmh} km/h: the gait `{}` has no steps beyond {most:.2} km/h", setup.scene.gait);
         return Ok((Err(why), 0.0, String::new()));
     }
-    walk_at(&mut setup, kmh);
+    walk_at(&mut setup, kmh)?;
     let walked = walk(&setup)?;
     let f = &walked.figures;
     let reached = 3.6 * f.mean_speed_m_s;

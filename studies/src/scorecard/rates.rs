@@ -1,12 +1,11 @@
 //! Rates over places and commands that nobody chose: how often does the robot walk as it is told?
 
-use std::ops::Range;
-
 use config::Setup;
 use realtime::clock::thread_time;
 
 use super::entries::{COMMANDED, GROUND, OVER_GROUND};
 use super::{Goal, Result, ScorecardOptions, ScorecardRow};
+use crate::random::seeds;
 use crate::undisturbed::{STEP, on_type};
 use crate::{commands, ground};
 
@@ -36,7 +35,7 @@ pub(super) fn over_ground(order: &ScorecardOptions<'_>, k: usize) -> Result<Vec<
         share,
     };
     rate.row(order, SPEEDS.len(), |setup, seeds| {
-        let failed = SPEEDS.map(|kmh| ground::not_walked(setup, (kind, size), kmh, seeds.clone()));
+        let failed = SPEEDS.map(|kmh| ground::not_walked(setup, (kind, size), kmh, seeds));
         Ok(failed.into_iter().collect::<Result<Vec<_>>>()?.concat())
     })
 }
@@ -58,15 +57,15 @@ impl Rate {
         self,
         order: &ScorecardOptions<'_>,
         walks: usize,
-        failed: impl Fn(&Setup, Range<u64>) -> Result<Vec<String>>,
+        failed: impl Fn(&Setup, &[u64]) -> Result<Vec<String>>,
     ) -> Result<Vec<ScorecardRow>> {
         let begun = thread_time();
         let mut setup = Setup::load(order.config, self.scene).map_err(|e| e.to_string())?;
         on_type(&mut setup, DEPTH, STEP);
-        let drawn = DRAWN[usize::from(order.quick)];
         // Seeds count on from the scorecard's own; what failed is named with its seed.
-        let failed = failed(&setup, order.seed..order.seed + drawn)?;
-        let tried = walks * drawn as usize;
+        let seeds: Vec<u64> = seeds(order.seed, DRAWN[usize::from(order.quick)]).collect();
+        let failed = failed(&setup, &seeds)?;
+        let tried = walks * seeds.len();
         // Whole walks: the share is rounded up, and not by what 0.95 lacks in binary.
         let (walked, least) = ((tried - failed.len()) as f64, (self.share * tried as f64 - 1e-9).ceil());
         Ok(vec![ScorecardRow {

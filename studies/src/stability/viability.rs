@@ -40,6 +40,8 @@ pub(super) const DIRECTIONS: usize = 8;
 const LESS: [f64; 3] = [0.25, 0.5, 0.75];
 /// \[1\] By how much the way may differ from that of the undisturbed robot.
 const WAY: f64 = 0.1;
+/// \[m\] By how much at least, where the way is short.
+const ASIDE: f64 = 0.1;
 /// Errors that are tried together.
 const PAIRS: [[&str; 2]; 5] = [
     ["IMU bias, roll", "tilt of the ground, roll"],
@@ -335,7 +337,7 @@ impl Walked {
         if self.ended == "done" && self.gait != told.gait {
             return format!("{:?} at the end", self.gait);
         }
-        if self.ended == "done" && apart > WAY * a.hypot(b) {
+        if self.ended == "done" && apart > ASIDE.max(WAY * a.hypot(b)) {
             return format!("{apart:.1} m less or more than told");
         }
         self.ended.clone()

@@ -293,7 +293,7 @@ impl TuneGait {
             );
             return Ok(sheet);
         }
-        let path = self.out.join(format!("{}_tuned.toml", self.scene));
+        let path = self.out.join(format!("{}_tuned.toml", config::scenes::name(&self.scene)));
         let text = self.evidence(&values, best.cost, searches, (speeds, others))
             + &parameters.text_at(&best.point)?;
         let lost = parameters.written(&best.point);

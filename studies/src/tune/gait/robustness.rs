@@ -74,7 +74,7 @@ impl Trials {
         let (mut fell, mass) = (Vec::new(), setup.robot.total_mass);
         for &kmh in &self.speeds {
             let mut setup = setup.clone();
-            walk_at(&mut setup, kmh);
+            walk_at(&mut setup, kmh)?;
             let starts = at_random(&setup, self.pushes as usize, self.seed)?;
             let mut random = Random(!self.seed);
             let mut drawn = || ((TAU * random.unit()).sin_cos(), random.within(IMPULSES));
