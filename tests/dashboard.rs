@@ -13,6 +13,8 @@ mod page;
 mod replay;
 #[path = "dashboard/scenes.rs"]
 mod scenes;
+#[path = "dashboard/standstill.rs"]
+mod standstill;
 
 use harness::{Running, Signal, Site, WALK, doze, shared_turn};
 use measured::number_of;
@@ -23,7 +25,6 @@ use realtime::clock;
 use recording::{Log, payload_hashes};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::net::TcpStream;
 use std::path::Path;
 
 const EXE: &str = harness::executable!();
@@ -465,35 +466,4 @@ fn each_directory_has_its_robot_and_the_next_one_is_found() {
     page.until_entry("time", |time| time[0] > 0.1 && time[0] < 30.0);
     assert!(page.order(json!({"type": "command", "name": "walk/stop", "values": {}})).0);
     drop((next, second));
-}
-
-/// `gangwerk run --desk`: the page is there with the run, and goes with it, ended or killed.
-#[test]
-fn the_page_of_a_run_goes_with_it() {
-    let _turn = shared_turn();
-    for signal in [Signal::INT, Signal::KILL] {
-        let site = Site::patient(EXE);
-        site.scene("desk", 2.0, WAIT);
-        let mut run = site.run("desk", &["--lockstep", "--paced", "--no-log", "--stay", "--desk"]);
-        drop(run.space());
-        let file = site.run_dir().join(dashboard::daemon::URL_FILE);
-        let read = || std::fs::read_to_string(&file).unwrap_or_default();
-        let within = |seconds: f64, done: &dyn Fn() -> bool| {
-            let begun = clock::now();
-            while !done() && clock::now() - begun < (seconds * 1e9) as u64 {
-                doze(0.02);
-            }
-            assert!(done(), "within {seconds} s, {signal:?}; {}: {}", file.display(), read());
-        };
-        within(10.0, &|| read().ends_with('\n'));
-        let url = read();
-        let host = url.trim_start_matches("http://").split('/').next().unwrap();
-        assert!(TcpStream::connect(host).is_ok(), "{url}");
-        // Beyond the scene's end both are there.
-        doze(3.0);
-        assert!(run.is_alive() && TcpStream::connect(host).is_ok());
-        run.signal_supervisor(signal);
-        within(20.0, &|| TcpStream::connect(host).is_err());
-        drop(run);
-    }
 }

@@ -85,6 +85,35 @@ with Client.local(run, "operator") as robot:
         assert two.tick > one.tick and len(two.joint_angle) == 32 and late.lost == 0
     robot.command("walk/stop")
 
+
+def forgets():
+    """Makes a client and walks her; nobody refers to it any more once it has raised."""
+    robot = Client.local(run, "forgetful")
+    robot.command("walk/velocity", forward=0.2)
+    raise RuntimeError("a fault of the program")
+
+
+with Client.local(run, "next") as other:
+
+    def is_free():
+        try:
+            other.take_lease()
+        except Refused:
+            return False
+        other.give_lease()
+        return True
+
+    try:
+        forgets()
+    except RuntimeError as error:
+        print("forgotten after", error)
+    until("end of the lease of a forgotten client", is_free)
+    # A program that hangs keeps it for as long as its deadline says.
+    with Client.local(run, "hanging", deadline=0.3) as robot:
+        robot.command("walk/velocity", forward=0.2)
+        until("end of the lease of a program that hangs", is_free)
+        print("accepted by", robot.command("walk/velocity", forward=0.2))
+
 with Client.network(host, int(port), (key_name, key)) as console:
     print("accepted by", console.command("walk/velocity", forward=0.1))
     refused(lambda: console.command("system/enable"), "may not command `system`")

@@ -1,6 +1,8 @@
-//! Admission of one command: rights of its sender, sequence, age, lease. No clock and no socket: time is an argument.
+//! Admission of one command, or of a request for the lease: rights of its sender, sequence, age, lease. No clock and no
+//! socket: time is an argument.
 
-use messages::command::Priority;
+use messages::command::{Domain, Priority};
+use messages::command_text::COMMANDS;
 use messages::{Command, Reason, Stamp};
 
 use crate::lease::LeaseKeeper;
@@ -16,20 +18,30 @@ pub struct Sender {
     pub last: [u64; 3],
 }
 
-/// Reason of the broker for not passing a command on.
+/// Reason of the broker for not passing a command on, or not giving the lease.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Denied {
     /// Age or sequence.
     Reason(Reason),
-    /// The sender may not command this domain.
+    /// The sender may not command this domain, or nothing that needs the lease.
     NoAccess,
     /// Another one holds the lease: the number of its connection.
     LeaseHeld(u32),
 }
 
 impl Sender {
+    const fn commands(&self, domain: Domain) -> bool {
+        self.may & 1 << domain as u16 != 0
+    }
+
     const fn may_command(&self, command: &Command) -> bool {
-        self.may & 1 << command.address().0 as u16 != 0
+        self.commands(command.address().0)
+    }
+
+    /// Whether there is a command for which it would need the lease.
+    fn may_hold_lease(&self) -> bool {
+        let commands = COMMANDS.iter().map(|info| info.example());
+        commands.filter(Command::needs_lease).any(|command| self.may_command(&command))
     }
 }
 
@@ -68,12 +80,37 @@ pub fn admit(
     }
 }
 
+/// The lease on request; whose it was, if it was somebody else's. `over`: also from whoever holds it.
+///
+/// # Errors
+/// The right or age that is missing, or who holds the lease and keeps it.
+pub fn take_lease(
+    sender: &Sender,
+    lease: &mut LeaseKeeper,
+    stamp: &Stamp,
+    over: bool,
+    now_ns: u64,
+) -> Result<Option<u32>, Denied> {
+    lease.renew(sender.token, stamp.sent_ns, now_ns);
+    if !sender.may_hold_lease() {
+        return Err(Denied::NoAccess);
+    }
+    // A lease that begins long ago would be over at once, and with it the walk of the former holder.
+    stamp.check_age(now_ns).map_err(Denied::Reason)?;
+    // Who takes a walk over must be able to end it.
+    let over = over && sender.commands(Domain::Walk);
+    match lease.holder(now_ns).filter(|holder| *holder != sender.token) {
+        Some(holder) if !over => Err(Denied::LeaseHeld(holder)),
+        _ => Ok(lease.take_over(sender.token, stamp.sent_ns, now_ns)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use messages::command::{Domain, VelocityCommand};
+    use messages::command::VelocityCommand;
     use messages::command_stamp::{LEASE, MAX_AGE};
-    use messages::command_text::COMMANDS;
+    use proptest::prelude::*;
 
     const WALK: Command = Command::Velocity(VelocityCommand { forward: 0.4, left: 0.0, turn: 0.0 });
     const NOW: u64 = 10_000_000_000;
@@ -141,6 +178,62 @@ mod tests {
         }
         assert_eq!(admit(&WALK, Priority::Normal, 10), Ok(1));
         assert_eq!(admit(&WALK, Priority::Low, 9), Ok(1), "a lower class may be passed");
+    }
+
+    /// A camera's key took the lease from the operator, who could neither steer nor end his walk any more.
+    #[test]
+    fn who_can_command_nothing_under_the_lease_holds_none_and_who_cannot_walk_takes_none_over() {
+        for domain in Domain::ALL {
+            let take = |lease: &mut LeaseKeeper, over| {
+                super::take_lease(&sender(&[domain]), lease, &stamp(6, NOW), over, NOW)
+            };
+            let holds = !matches!(domain, Domain::Log | Domain::Vision);
+            for over in [false, true] {
+                let mut free = LeaseKeeper::new(0);
+                let expected = if holds { Ok(None) } else { Err(Denied::NoAccess) };
+                assert_eq!(take(&mut free, over), expected, "{domain:?}");
+                assert_eq!(free.holder(NOW), holds.then_some(3), "{domain:?}");
+                let mut held = LeaseKeeper::new(0);
+                assert_eq!(held.admit(1, NOW, NOW), Ok(1));
+                let takes = over && domain == Domain::Walk;
+                let expected = match holds {
+                    true if takes => Ok(Some(1)),
+                    true => Err(Denied::LeaseHeld(1)),
+                    false => Err(Denied::NoAccess),
+                };
+                assert_eq!(take(&mut held, over), expected, "{domain:?}");
+                assert_eq!(held.holder(NOW), Some(if takes { 3 } else { 1 }), "{domain:?}");
+            }
+        }
+    }
+
+    proptest! {
+        /// A request of two seconds ago was accepted: the lease was over at once, and with it the walk of its holder.
+        #[test]
+        fn a_request_for_the_lease_is_taken_at_the_age_of_a_command_and_not_after(
+            sent in prop_oneof![
+                Just(0), Just(u64::MAX), 0..NOW, NOW - 2 * MAX_AGE..=NOW, NOW..NOW + MAX_AGE,
+                Just(NOW - MAX_AGE), Just(NOW - MAX_AGE - 1),
+            ],
+            over: bool,
+            held: bool,
+        ) {
+            let mut lease = LeaseKeeper::new(0);
+            if held {
+                lease.admit(1, NOW, NOW).unwrap();
+            }
+            let taken = super::take_lease(&sender(&[Domain::Walk]), &mut lease, &stamp(6, sent), over, NOW);
+            let command = super::admit(
+                &mut sender(&[Domain::Walk]), &mut LeaseKeeper::new(0), &WALK, Priority::Normal, &stamp(6, sent), NOW,
+            );
+            match command {
+                Err(denied) => {
+                    prop_assert_eq!(taken, Err(denied));
+                    prop_assert_eq!(lease.holder(NOW), held.then_some(1));
+                }
+                Ok(_) => prop_assert_eq!(taken.is_ok(), over || !held),
+            }
+        }
     }
 
     /// Nothing moves without the lease, and nothing that stops is ever denied.

@@ -7,9 +7,10 @@
 //! Limits: a frame must be complete [`FRAME_TIME`] after its first byte, the first one as soon after connecting; a
 //! connection that says nothing for [`IDLE_TIME`] is closed. At most [`UNANSWERED`] frames are on their way, the next is
 //! not read until one of them is answered. A client that does not read loses what it subscribed to first and its
-//! connection after [`FRAME_TIME`]. At most [`Rights::rate`] messages per second are taken, emergency stops not counted.
-//! Bytes that are no frame close their connection.
+//! connection after [`FRAME_TIME`]. At most [`Rights::rate`] messages per second are taken, emergency stops not counted; a
+//! stop beyond them waits, and is not refused. Bytes that are no frame close their connection.
 
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
@@ -18,7 +19,7 @@ use messages::command::Domain;
 use realtime::clock::{SECOND, now};
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::sync::{Semaphore, mpsc, oneshot};
-use tokio::time::timeout;
+use tokio::time::{sleep, timeout};
 
 use crate::exchange::FIRST_STREAM;
 use crate::inlet::{BrokerTable, Gate, Request};
@@ -56,7 +57,7 @@ pub struct Rights {
     pub may: u32,
     /// Whether it may subscribe and ask.
     pub reads: bool,
-    /// One place too many: it is heard for a stop and for nothing else.
+    /// One place too many: it is heard for a stop and what clients say before one, and for nothing else.
     pub only_stops: bool,
     /// Messages per second, and as many at once.
     pub rate: f64,
@@ -75,6 +76,8 @@ struct Session {
     bucket: Bucket,
     /// Name and key that the client has claimed, both nonces: until it proves the key.
     claimed: Option<(String, Key, [Half; 2])>,
+    /// True once it has proved a key.
+    proven: Arc<AtomicBool>,
     incoming: Option<Half>,
     outgoing: Arc<OnceLock<Half>>,
 }
@@ -89,11 +92,23 @@ impl Drop for Session {
 
 /// Serves a client until it closes the connection, or must be closed; then why, for the log.
 pub async fn serve(
+    read: impl AsyncRead + Unpin,
+    write: impl AsyncWrite + Unpin,
+    gate: Gate,
+    token: u32,
+    rights: Rights,
+) -> Result<(), Refusal> {
+    serve_at_door(read, write, gate, token, rights, Arc::default()).await
+}
+
+/// The same for a door, which keeps the place of who has `proven` a key.
+pub(crate) async fn serve_at_door(
     mut read: impl AsyncRead + Unpin,
     write: impl AsyncWrite + Unpin,
     gate: Gate,
     token: u32,
     rights: Rights,
+    proven: Arc<AtomicBool>,
 ) -> Result<(), Refusal> {
     let (answers, given) = mpsc::unbounded_channel();
     let (frames, subscribed) = mpsc::channel(WAITING);
@@ -111,6 +126,7 @@ pub async fn serve(
         permits,
         joined: false,
         claimed: None,
+        proven,
         incoming,
         outgoing,
     };
@@ -185,16 +201,28 @@ impl Session {
             let message = Message::parse(bytes)?;
             let urgent = message.command() == Ok(Command::EmergencyStop);
             let stops = urgent || message.command() == Ok(Command::Stop);
-            if self.rights.only_stops && !stops {
+            if self.rights.only_stops && !stops && !comes_before_a_stop(&message) {
                 return Err(Refusal::TooManyConnections("of this user or address"));
             }
-            let taken = urgent || self.bucket.take(now());
+            if stops && !urgent {
+                self.hold_back().await;
+            }
+            let taken = stops || self.bucket.take(now());
             self.take(&message, bytes, taken).await?;
             if self.joined {
                 patience = IDLE_TIME;
             }
         }
         Ok(())
+    }
+
+    /// Takes from the ration what must not be refused. Beyond it this connection waits, so that a flood of stops is no quicker
+    /// than any other.
+    async fn hold_back(&mut self) {
+        let wait = self.bucket.owe(now());
+        if !wait.is_zero() {
+            sleep(wait).await;
+        }
     }
 
     /// The message of a frame, without its tag.
@@ -278,18 +306,19 @@ impl Session {
         let (name, key) = text.split_once('\0').unwrap_or((&text, ""));
         let name: String = name.chars().filter(|c| !c.is_control()).take(NAME).collect();
         let own = keys::nonce().map_err(Refusal::Malformed)?;
-        let claims = !key.is_empty();
+        let (claims, mut may) = (!key.is_empty(), self.granted(self.rights.may));
         if claims {
             let key = self.rights.keys.iter().find(|k| k.name == key).ok_or(Refusal::NotAuthentic)?;
+            may = self.granted(key.may);
             self.claimed = Some((name, key.clone(), keys::session(key, nonce, &own)));
         } else {
-            self.join(name, self.rights.may).await?;
+            self.join(name, may).await?;
         }
         let mut payload = VERSION.to_le_bytes().to_vec();
         payload.extend(schema.to_le_bytes());
         payload.extend(own);
         payload.extend(self.token.to_le_bytes());
-        payload.extend(self.rights.may.to_le_bytes());
+        payload.extend(may.to_le_bytes());
         payload.push(u8::from(claims));
         let welcome = service_message(service::WELCOME, message.stamp.sequence, now(), &payload);
         let _ = self.out.answers.send(welcome);
@@ -303,13 +332,19 @@ impl Session {
         }
         self.rights.reads = true;
         self.bucket.rate = RATE;
+        self.proven.store(true, Relaxed);
         // From here on both directions carry tags: also what the broker sends to whoever joins.
         self.incoming = Some(to_broker);
         let _ = self.outgoing.set(to_client);
-        self.join(format!("{name} with key {}", key.name), key.may).await?;
+        self.join(format!("{name} with key {}", key.name), self.granted(key.may)).await?;
         let accepted = service_message(service::ACCEPTED, message.stamp.sequence, now(), &[]);
         let _ = self.out.answers.send(accepted);
         Ok(())
+    }
+
+    /// Domains that this connection may command of those that it has the right to.
+    const fn granted(&self, may: u32) -> u32 {
+        if self.rights.only_stops { 0 } else { may }
     }
 
     /// The broker knows the client from here on.
@@ -381,6 +416,12 @@ impl Session {
     }
 }
 
+/// Frames that clients send before a stop: they are answered even beyond the places.
+fn comes_before_a_stop(message: &Message<'_>) -> bool {
+    let harmless = [service::HELLO, service::PROVE, service::PING, service::SUBSCRIBE, service::DESCRIBE];
+    message.domain == SERVICE && harmless.contains(&message.id)
+}
+
 /// One frame, or none if the client closed the connection between two frames.
 async fn read_frame<'a>(
     read: &mut (impl AsyncRead + Unpin),
@@ -421,14 +462,25 @@ struct Bucket {
 
 impl Bucket {
     fn take(&mut self, now_ns: u64) -> bool {
-        let passed = now_ns.saturating_sub(self.at_ns) as f64 / SECOND as f64;
-        self.level = (self.level + self.rate * passed).min(self.rate);
-        self.at_ns = now_ns;
+        self.fill(now_ns);
         let free = self.level >= 1.0;
         if free {
             self.level -= 1.0;
         }
         free
+    }
+
+    /// Takes one that may not be there yet; how long it is until it will be.
+    fn owe(&mut self, now_ns: u64) -> Duration {
+        self.fill(now_ns);
+        self.level -= 1.0;
+        Duration::from_secs_f64((-self.level).max(0.0) / self.rate)
+    }
+
+    fn fill(&mut self, now_ns: u64) {
+        let passed = now_ns.saturating_sub(self.at_ns) as f64 / SECOND as f64;
+        self.level = (self.level + self.rate * passed).min(self.rate);
+        self.at_ns = now_ns;
     }
 }
 

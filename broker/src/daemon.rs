@@ -77,7 +77,7 @@ pub fn serve(run: &Run, tcp: &Tcp, stop: &Stop) -> Result<(), String> {
     doors::serve_socket(socket, owner, gate)?;
     events.write(EventCode::Started, Detail::Nothing);
     while !stop.asked() {
-        let busy = exchange.turn(clock::now(), &mut |report| match report {
+        let busy = exchange.turn_by(&clock::now, &mut |report| match report {
             BrokerEvent::Refused(address) => {
                 events.write(EventCode::CommandRefused, Detail::Message(address.into()));
             }

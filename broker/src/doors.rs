@@ -2,7 +2,7 @@
 //!
 //! Each door has a thread and places of its own: what floods one of them leaves the other alone. A place is for one
 //! connection; nobody gets more than a share of them, counted by user or address, and beyond the places a few more
-//! connections are heard for a stop and nothing else.
+//! connections are heard for a stop and nothing else. Where there are keys, who has proved none gives way to who comes.
 //!
 //! | who | may |
 //! |---|---|
@@ -17,6 +17,7 @@ use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::os::unix::net::UnixListener;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use messages::command::Domain;
@@ -181,6 +182,8 @@ fn in_thread(name: &str, serve: impl Future<Output = ()> + Send + 'static) -> Re
 struct Open {
     peer: Peer,
     only_stops: bool,
+    /// True once it has proved a key.
+    proven: Arc<AtomicBool>,
     task: AbortHandle,
 }
 
@@ -220,27 +223,42 @@ impl Door {
         write: impl AsyncWrite + Unpin + Send + 'static,
     ) {
         self.open.retain(|open| !open.task.is_finished());
-        let full = self.open.iter().filter(|open| !open.only_stops);
-        let (all, own) = (full.clone().count(), full.filter(|open| open.peer == peer).count());
-        let each = match peer {
-            Peer::User { own: false, .. } => OTHER_USERS,
-            _ => self.places.each,
-        };
-        let only_stops = all >= self.places.total || own >= each;
+        let only_stops = !self.has_place(peer);
         if only_stops {
             self.make_room_for_a_stop();
         }
         let rights = rights(peer, name.clone(), only_stops, self.keys.clone());
         let (gate, token, ends) = (self.gate.clone(), self.token, self.ends.clone());
+        let proven = Arc::new(AtomicBool::new(false));
+        let serve = connection::serve_at_door(read, write, gate, token, rights, proven.clone());
         let task = tokio::spawn(async move {
-            if let Err(refusal) = connection::serve(read, write, gate, token, rights).await {
+            if let Err(refusal) = serve.await {
                 let _ = ends.send((token, name, refusal));
             }
         });
-        self.open.push(Open { peer, only_stops, task: task.abort_handle() });
+        self.open.push(Open { peer, only_stops, proven, task: task.abort_handle() });
         // Numbers of the two doors never meet.
         let last = self.places.first + 0x3fff_ffff;
         self.token = if self.token >= last { self.places.first } else { self.token + 1 };
+    }
+
+    /// Whether there is a place for one more connection of this peer. If there is none, and keys are shown here, the oldest one
+    /// that has not proved any is closed for it: whoever has a key would be locked out by a crowd of those who have none.
+    fn has_place(&mut self, peer: Peer) -> bool {
+        let each = match peer {
+            Peer::User { own: false, .. } => OTHER_USERS,
+            _ => self.places.each,
+        };
+        let placed = self.open.iter().filter(|open| !open.only_stops);
+        let (all, own) = (placed.clone().count(), placed.filter(|open| open.peer == peer).count());
+        if all < self.places.total && own < each {
+            return true;
+        }
+        // Who has a full share gives way to itself only.
+        let gives_way =
+            |open: &Open| !open.only_stops && !open.proven.load(Relaxed) && (own < each || open.peer == peer);
+        let oldest = self.open.iter().position(gives_way).filter(|_| !self.keys.is_empty());
+        oldest.map(|at| self.open.remove(at).task.abort()).is_some()
     }
 
     /// One more connection beyond the places closes the oldest of them.
@@ -277,6 +295,10 @@ fn rights(peer: Peer, name: String, only_stops: bool, keys: Arc<Vec<Key>>) -> Ri
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::inlet;
+    use proptest::prelude::*;
+    use proptest::strategy::ValueTree;
+    use proptest::test_runner::TestRunner;
 
     #[test]
     fn only_the_user_of_the_run_may_command_without_a_key() {
@@ -288,6 +310,50 @@ mod tests {
             let rights = rights(peer, String::new(), false, Arc::default());
             assert_eq!((rights.may, rights.reads), (0, address != "10.0.0.7"), "{address}");
         }
+    }
+
+    /// 16 connections without a key locked out whoever had one for their address, and two addresses everybody. At random, with
+    /// more addresses than there are places: who comes has a place unless all of them are held by keys, those stay, and no
+    /// limit is passed. Without keys whoever was there first stays.
+    #[tokio::test]
+    async fn a_crowd_without_keys_gives_way_and_who_has_proved_one_stays() {
+        let places = DoorPlaces { total: 6, each: 3, first: FIRST_STREAM };
+        for keys in [vec![crate::keys::tests::key()], Vec::new()] {
+            let mut runner = TestRunner::deterministic();
+            for _ in 0..200 {
+                let steps = prop::collection::vec((0u8..4, 0..9usize, any::<bool>()), 0..60);
+                let steps = steps.new_tree(&mut runner).expect("steps").current();
+                let mut door = Door::new(places, inlet::gate().0, keys.clone());
+                for (address, chosen, comes) in steps {
+                    if comes {
+                        one_comes(&mut door, Peer::Address([10, 0, 0, address].into()));
+                    } else if let Some(open) = door.open.get(chosen).filter(|_| !keys.is_empty()) {
+                        open.proven.store(true, Relaxed);
+                    }
+                }
+            }
+        }
+    }
+
+    /// One more connection of `peer`, held against the rule.
+    fn one_comes(door: &mut Door, peer: Peer) {
+        // Places held, or held by keys: all, and those of the peer.
+        let held = |door: &Door, keys_only: bool| {
+            let of = door.open.iter().filter(|open| !keys_only || open.proven.load(Relaxed));
+            [of.clone().count(), of.filter(|open| open.peer == peer).count()]
+        };
+        let [all, own] = held(door, !door.keys.is_empty());
+        let expected = all < door.places.total && own < door.places.each;
+        let keys = held(door, true);
+        let has_place = door.has_place(peer);
+        assert_eq!(has_place, expected, "{all} places that do not give way, {own} of this address");
+        assert_eq!(held(door, true), keys, "a key lost its place");
+        if has_place {
+            let task = tokio::spawn(std::future::pending::<()>()).abort_handle();
+            door.open.push(Open { peer, only_stops: false, proven: Arc::default(), task });
+        }
+        let [all, own] = held(door, false);
+        assert!(all <= door.places.total && own <= door.places.each);
     }
 
     #[test]

@@ -114,24 +114,31 @@ impl<'a> Exchange<'a> {
         self.bell.doorbell()
     }
 
-    /// Forwards what waits, at most a bounded number of messages, then serves registrations and answers. Returns
-    /// whether there was anything to do; never waits.
+    /// [`Exchange::turn_by`] with a clock that stands still at `now_ns`.
     pub fn turn(&mut self, now_ns: u64, report: &mut dyn FnMut(BrokerEvent)) -> bool {
-        self.now = now_ns;
+        self.turn_by(&|| now_ns, report)
+    }
+
+    /// Forwards what waits, at most a bounded number of messages, then serves registrations and answers. Returns
+    /// whether there was anything to do; never waits. `clock` is read again for each message: what came while a turn goes
+    /// on would be from the future by the time at which the turn began.
+    pub fn turn_by(&mut self, clock: &dyn Fn() -> u64, report: &mut dyn FnMut(BrokerEvent)) -> bool {
+        self.now = clock();
         let mut busy = false;
         for _ in 0..AT_ONCE {
-            if !self.forward_next(report) {
+            if !self.forward_next(clock, report) {
                 break;
             }
             busy = true;
         }
         for _ in 0..AT_ONCE {
-            let (registered, asked) = (self.serve_queue(report), self.serve_stream(report));
+            let (registered, asked) = (self.serve_queue(report), self.serve_question(report));
             if !(registered || asked) {
                 break;
             }
             busy = true;
         }
+        self.now = clock();
         // Answers have made room for what waits behind.
         for _ in 0..AT_ONCE {
             let Some(queued) = self.pending.next_in_line() else { break };
@@ -165,17 +172,19 @@ impl<'a> Exchange<'a> {
     }
 
     /// Forwards the most urgent message; false if none waits.
-    fn forward_next(&mut self, report: &mut dyn FnMut(BrokerEvent)) -> bool {
+    fn forward_next(&mut self, clock: &dyn Fn() -> u64, report: &mut dyn FnMut(BrokerEvent)) -> bool {
         for class in 0..Priority::ALL.len() {
             if let Some(bytes) = self.publish[class].receive() {
                 let mut bytes = bytes.to_vec();
                 let token = Message::parse(&bytes).map_or(0, |m| m.stamp.origin);
+                self.now = clock();
                 // A number of a stream cannot come out of a queue.
                 self.forward(token & (FIRST_STREAM - 1), class, &mut bytes, report);
                 return true;
             }
-            if let Ok((token, mut bytes)) = self.inlet.publish[class].try_recv() {
-                self.forward(token, class, &mut bytes, report);
+            if let Ok(request) = self.inlet.publish[class].try_recv() {
+                self.now = clock();
+                self.serve_stream(request, report);
                 return true;
             }
         }

@@ -8,12 +8,11 @@ use tokio::sync::oneshot;
 
 use crate::members::Outgoing;
 
-/// A command's way into the broker: number of the connection and message. It is answered on the connection.
-pub(crate) type Publication = (u32, Vec<u8>);
-
-/// Requests of a connection other than commands, each with the sequence of its frame.
+/// What a connection hands in, most of it with the sequence of its frame. It is answered on the connection.
 #[allow(missing_docs, reason = "fields are the token of a connection and the contents of its frame")]
 pub enum Request {
+    /// A command that came as one of this class.
+    Command { token: u32, class: Priority, bytes: Vec<u8> },
     /// The client said who it is.
     Join { token: u32, name: String, may: u32, out: Outgoing, done: oneshot::Sender<()> },
     /// Sets the domains of a client.
@@ -50,8 +49,8 @@ pub enum BrokerTable {
 /// Where the broker finds what connections hand in. How much that is, is limited by what each of them may have
 /// unanswered.
 pub struct Inlet {
-    /// Commands by class.
-    pub publish: [queue::Receiver<Publication>; 3],
+    /// Commands by class; among those of class Normal, in the order in which they came, what commands depend on.
+    pub publish: [queue::Receiver<Request>; 3],
     /// Everything else.
     pub requests: queue::Receiver<Request>,
 }
@@ -59,7 +58,7 @@ pub struct Inlet {
 /// The other end, for the connections.
 #[derive(Clone)]
 pub struct Gate {
-    publish: [queue::Sender<Publication>; 3],
+    publish: [queue::Sender<Request>; 3],
     requests: queue::Sender<Request>,
     doorbell: Option<Doorbell>,
 }
@@ -79,12 +78,23 @@ impl Gate {
     }
 
     pub(crate) fn publish(&self, token: u32, priority: Priority, bytes: &[u8]) {
-        let _ = self.publish[priority as usize].send((token, bytes.to_vec()));
+        let command = Request::Command { token, class: priority, bytes: bytes.to_vec() };
+        let _ = self.publish[priority as usize].send(command);
         self.ring();
     }
 
+    /// Hands in what is no command. Who may command, and what becomes a command, keeps its place among the commands; whoever
+    /// only asks waits behind them.
     pub(crate) fn ask(&self, request: Request) {
-        let _ = self.requests.send(request);
+        let queue = match request {
+            Request::Join { .. }
+            | Request::Set { .. }
+            | Request::Alive { .. }
+            | Request::TakeLease { .. }
+            | Request::GiveLease { .. } => &self.publish[Priority::Normal as usize],
+            _ => &self.requests,
+        };
+        let _ = queue.send(request);
         self.ring();
     }
 

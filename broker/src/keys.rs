@@ -155,8 +155,12 @@ fn mac(key: &Secret, parts: &[&[u8]]) -> Hmac<Sha256> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+
+    pub(crate) fn key() -> Key {
+        parse(&format!("k all {}", "a".repeat(64))).expect("a key")
+    }
 
     fn halves(digit: char) -> [Half; 2] {
         let key = parse(&format!("k all {}", digit.to_string().repeat(64))).expect("a key");

@@ -2,7 +2,7 @@
 
 mod harness;
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use broker::Client;
 use broker::exchange::{BrokerEvent, Exchange};
@@ -186,6 +186,42 @@ fn a_command_that_the_broker_itself_refuses_is_reported_with_its_reason() {
     });
     // Somebody else holds the lease; there is no watchdog.
     assert_eq!(denied, [(3, 2, velocity(2), 9), (2, 3, Command::Reset, 10)]);
+}
+
+/// A turn that took longer than a millisecond refused what came meanwhile as from the future: 118 of 1234 of an operator's,
+/// while strangers asked for the parameters. The clock of this test goes on by 3 ms with each reading, and a command is
+/// sent just before it is read.
+#[test]
+fn what_comes_while_a_turn_goes_on_is_not_from_the_future() {
+    const STEP: u64 = 3_000_000;
+    let system = System::without_broker("long");
+    let mut exchange = exchange(&system.space);
+    let mut hand = ByHand::new(&system.space);
+    hand.register();
+    let begun = now();
+    exchange.turn(begun, &mut |_| {});
+    // The first reading is the turn's beginning.
+    for n in 1..=30 {
+        let stamp = Stamp { origin: 3, sequence: n, sent_ns: begun + n * STEP, grant: 0 };
+        let mut buffer = [0; MAX_BYTES];
+        let bytes = write_command(&velocity(n as u32), Priority::Normal, &stamp, &mut buffer).unwrap();
+        assert!(hand.publish[Priority::Normal as usize].send(bytes));
+    }
+    let readings = Cell::new(0);
+    let clock = || begun + readings.replace(readings.get() + 1) * STEP;
+    let mut denied = Vec::new();
+    exchange.turn_by(&clock, &mut |report| denied.push(report));
+    assert_eq!(denied, []);
+    assert_eq!(hand.heard(), (1..=30).map(velocity).collect::<Vec<_>>());
+    // Whose clock is ahead is still refused, by more than a millisecond.
+    for (n, lead, passes) in [(31, 900_000, true), (32, 1_100_000, false)] {
+        let stamp = Stamp { origin: 3, sequence: n, sent_ns: clock() + STEP + lead, grant: 0 };
+        let mut buffer = [0; MAX_BYTES];
+        let bytes = write_command(&Command::Stand, Priority::Normal, &stamp, &mut buffer).unwrap();
+        assert!(hand.publish[Priority::Normal as usize].send(bytes));
+        exchange.turn(stamp.sent_ns - lead, &mut |_| {});
+        assert_eq!(hand.heard().len(), usize::from(passes), "{lead} ns ahead");
+    }
 }
 
 /// A control cycle that does not look for a while loses what has no room, and still gets the emergency stop first.

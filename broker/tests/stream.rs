@@ -1,6 +1,10 @@
 //! A real broker process and hostile, slow, many and ordinary clients on streams.
 
+#[path = "stream/crowd.rs"]
+mod crowd;
 mod harness;
+#[path = "stream/lease.rs"]
+mod lease;
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -9,7 +13,7 @@ use std::time::Duration;
 
 use broker::doors::{RESERVE, SOCKET, SOCKET_PLACES, TCP_PLACES};
 use broker::keys::{self, Key};
-use broker::message::{MAX_BYTES, VERSION, schema, service, service_message, write_command};
+use broker::message::{MAX_BYTES, Message, VERSION, schema, service, service_message, write_command};
 use broker::stream_client::News;
 use broker::{Client, StreamClient};
 use harness::{System, pause, play_role, wait_for};
@@ -60,6 +64,31 @@ fn command(command: &Command, sequence: u64, sent_ns: u64) -> Vec<u8> {
 fn hello(version: u16, schema: u64) -> Vec<u8> {
     let payload = [&version.to_le_bytes()[..], &schema.to_le_bytes(), &[0; 16], b"test"].concat();
     frame(&service_message(service::HELLO, 1, now(), &payload))
+}
+
+/// The next message on a stream.
+fn message(stream: &mut impl Read) -> Vec<u8> {
+    let mut length = [0; 4];
+    stream.read_exact(&mut length).unwrap();
+    let mut message = vec![0; u32::from_le_bytes(length) as usize];
+    stream.read_exact(&mut message).unwrap();
+    message
+}
+
+/// Code of the answer to the frame `sequence`, 0 if it is accepted; news before it are passed over.
+fn answer(stream: &mut impl Read, sequence: u64) -> u8 {
+    loop {
+        let bytes = message(stream);
+        let message = Message::parse(&bytes).unwrap();
+        match message.id {
+            service::ACCEPTED if message.stamp.sequence == sequence => return 0,
+            service::LEASE | service::LINE => {}
+            _ => {
+                assert_eq!(message.stamp.sequence, sequence, "{message:?}");
+                return message.payload[0];
+            }
+        }
+    }
 }
 
 fn socket(system: &System) -> UnixStream {
@@ -252,13 +281,7 @@ fn a_payload_that_is_no_command_is_refused() {
     let system = System::start("payload");
     let mut stream = socket(&system);
     stream.write_all(&hello(VERSION, schema())).unwrap();
-    let next = |stream: &mut UnixStream| {
-        let mut length = [0; 4];
-        stream.read_exact(&mut length).unwrap();
-        let mut answer = vec![0; u32::from_le_bytes(length) as usize];
-        stream.read_exact(&mut answer).unwrap();
-        String::from_utf8_lossy(&answer[32..]).into_owned()
-    };
+    let next = |stream: &mut UnixStream| String::from_utf8_lossy(&message(stream)[32..]).into_owned();
     next(&mut stream);
     let whole = command(&velocity(0.1), 2, now());
     for n in 0..28 {
@@ -388,7 +411,7 @@ fn too_many_connections_leave_room_for_an_emergency_stop() {
     let mut watchdog = system.client("watchdog", &[Domain::System]);
     let mut first = system.stream();
     let crowd: Vec<_> = (0..SOCKET_PLACES.total + 2 * RESERVE).map(|_| socket(&system)).collect();
-    let refused = StreamClient::connect(system.dir(), "late").err().unwrap();
+    let refused = StreamClient::connect(system.dir(), "late").unwrap().statistics().unwrap_err();
     assert!(refused.contains("too many connections"), "{refused}");
     let mut late = socket(&system);
     late.write_all(&command(&Command::EmergencyStop, 1, now())).unwrap();
@@ -396,7 +419,9 @@ fn too_many_connections_leave_room_for_an_emergency_stop() {
     // Who was there before is served on.
     assert!(first.statistics().is_ok());
     // Those who say nothing are sent away, and there is room again.
-    wait_for("room", || StreamClient::connect(system.dir(), "late").is_ok());
+    wait_for("room", || {
+        StreamClient::connect(system.dir(), "late").is_ok_and(|mut late| late.statistics().is_ok())
+    });
     drop(crowd);
 }
 
@@ -417,7 +442,7 @@ fn one_flooding_client_is_held_back() {
     let mut flood = system.stream();
     let mut refused = 0;
     for _ in 0..100 {
-        let sent: Vec<u64> = (0..60).map(|_| flood.send(&Command::Stop).unwrap()).collect();
+        let sent: Vec<u64> = (0..60).map(|_| flood.send(&velocity(0.1)).unwrap()).collect();
         let answers: Vec<_> = sent.into_iter().map(|n| flood.answer(n).unwrap()).collect();
         refused += answers.iter().filter(|a| a.text.contains("send more slowly")).count();
     }

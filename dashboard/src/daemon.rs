@@ -168,7 +168,9 @@ impl House {
             doors.push((listener, foxglove::door::router(ViewerDoor { admission, lobby })));
         }
         ready(&addresses);
+        let beats = hall.beats.clone();
         runtime.block_on(async {
+            tokio::spawn(async move { beats.keep().await });
             for (listener, router) in doors {
                 tokio::spawn(door::serve(listener, router));
             }

@@ -1,5 +1,6 @@
 //! HTTP: the page, the book, the robot's outlines, and the door to the socket. On the loopback interface, for requests that name this server.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -15,14 +16,16 @@ use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use tokio::net::TcpListener;
-use tokio::sync::{Semaphore, watch};
+use tokio::sync::watch;
+use tokio::task::JoinHandle;
 
 use crate::admission::Admission;
 use crate::book::{self, BookAnswer};
 use crate::description::RobotFiles;
+use crate::impatient::Impatient;
 use crate::page;
 use crate::requests::LONGEST;
-use crate::socket::{self, Hall, MOST_SOCKETS};
+use crate::socket::{self, Hall, MOST_SOCKETS, PATIENCE};
 
 /// Connections at once that have not become sockets.
 const MOST_CONNECTIONS: usize = 128;
@@ -60,25 +63,32 @@ pub fn router(door: Door) -> Router {
     Router::new().route("/socket", get(enter)).fallback(get(file)).layer(guard).with_state(door)
 }
 
-/// Serves connections for ever.
+/// Serves connections for ever. If there are too many, the oldest one goes that is no socket: it has had the longest time for its
+/// answer, and a page that comes is not locked out by those that only stay.
 pub async fn serve(listener: TcpListener, router: Router) {
-    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    let mut open = VecDeque::new();
     loop {
         // No descriptor free: somebody must end first.
         let Ok((stream, _)) = listener.accept().await else {
             tokio::time::sleep(Duration::from_millis(100)).await;
             continue;
         };
-        let Ok(place) = places.clone().try_acquire_owned() else { continue };
+        open.retain(|connection: &JoinHandle<()>| !connection.is_finished());
+        if open.len() == MOST_CONNECTIONS
+            && let Some(oldest) = open.pop_front()
+        {
+            oldest.abort();
+        }
         let _ = stream.set_nodelay(true);
+        let stream = TokioIo::new(Impatient::new(stream, PATIENCE));
         let service = TowerToHyperService::new(router.clone());
-        tokio::spawn(async move {
+        // Ends when it becomes a socket.
+        open.push_back(tokio::spawn(async move {
             let mut http = http1::Builder::new();
             http.timer(TokioTimer::new()).header_read_timeout(HEAD_TIME).max_buf_size(16 << 10);
             // What goes wrong here went wrong for that connection.
-            let _ = http.serve_connection(TokioIo::new(stream), service).with_upgrades().await;
-            drop(place);
-        });
+            let _ = http.serve_connection(stream, service).with_upgrades().await;
+        }));
     }
 }
 
@@ -163,4 +173,42 @@ async fn enter(
         .write_buffer_size(0)
         .max_write_buffer_size(WRITE_BUFFER)
         .on_upgrade(move |socket| socket::serve(socket, hall, place))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use axum::body::Bytes;
+    use tokio::io::{AsyncReadExt, AsyncWriteExt};
+    use tokio::net::TcpStream;
+
+    /// More than the kernel keeps for a client that does not read.
+    const LENGTH: usize = 32 << 20;
+
+    /// As many clients as there are places ask for something long and do not read it; no page came in any more.
+    #[tokio::test]
+    async fn clients_that_do_not_read_lock_nobody_out() {
+        let body = Bytes::from(vec![0; LENGTH]);
+        let router = Router::new().fallback(move || std::future::ready(body.clone()));
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        tokio::spawn(serve(listener, router));
+        let ask = async || {
+            let mut stream = TcpStream::connect(address).await.unwrap();
+            stream.write_all(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n").await.unwrap();
+            let mut first = [0; 15];
+            stream.read_exact(&mut first).await.map(|_| (first, stream))
+        };
+        let mut silent = Vec::new();
+        for _ in 0..MOST_CONNECTIONS {
+            silent.push(ask().await.unwrap().1);
+        }
+        let (first, page) = ask().await.expect("the page is served");
+        assert_eq!(&first, b"HTTP/1.1 200 OK");
+        // The oldest has made room.
+        let mut rest = Vec::new();
+        let _ = silent[0].read_to_end(&mut rest).await;
+        assert!(rest.len() < LENGTH, "{} bytes", rest.len());
+        drop(page);
+    }
 }

@@ -3,7 +3,8 @@
 //! | module | what |
 //! |---|---|
 //! | [`daemon`] | the process: threads, address, token |
-//! | [`door`], [`socket`], [`admission`] | HTTP on the loopback interface, one WebSocket per page, who may come in |
+//! | [`door`], [`socket`], [`admission`], `impatient` | HTTP on the loopback interface, one WebSocket per page, who may come in, who reads |
+//! | [`arrival`] | how long what a socket says may have waited in a server that stood still |
 //! | [`observer`] | thread that reads the topics of the robot and gives every page its frames; waits for the next robot |
 //! | [`replay`] | the same out of a log in place of a robot |
 //! | [`description`], [`picture`], [`state`], [`belief`], [`plotting`], [`health`] | what a page is told: once, at 60 Hz, as samples, about processes |
@@ -19,6 +20,7 @@
 //! whoever started it allows that.
 
 pub mod admission;
+pub mod arrival;
 pub mod belief;
 pub mod book;
 pub mod catalogue;
@@ -28,6 +30,7 @@ pub mod door;
 pub mod foxglove;
 pub mod guests;
 pub mod health;
+mod impatient;
 pub mod observer;
 pub mod operator;
 mod page;

@@ -13,6 +13,7 @@ use broker::stream_client::News;
 use realtime::clock::{SECOND, now};
 use serde_json::json;
 
+use crate::arrival::too_old;
 use crate::guests::Outbox;
 use crate::observer::Notice;
 use crate::requests::Order;
@@ -51,7 +52,7 @@ pub fn answer(outbox: &Outbox, id: u64, result: &Result<String, String>) {
 /// The way to an operator. Dropping it ends its connection.
 #[derive(Debug)]
 pub struct Operator {
-    orders: Sender<Order>,
+    orders: Sender<(Order, u64)>,
 }
 
 impl Operator {
@@ -68,10 +69,10 @@ impl Operator {
         Ok(Self { orders })
     }
 
-    /// Gives an order; it is answered.
-    pub fn give(&self, order: Order) {
+    /// Gives an order that may have waited since then \[ns\]; it is answered.
+    pub fn give(&self, order: Order, since: u64) {
         // The thread ends only after this.
-        let _ = self.orders.send(order);
+        let _ = self.orders.send((order, since));
     }
 }
 
@@ -88,14 +89,14 @@ struct Desk {
 }
 
 impl Desk {
-    fn run(mut self, orders: &Receiver<Order>) {
+    fn run(mut self, orders: &Receiver<(Order, u64)>) {
         loop {
             let wait = if self.awaited.is_empty() { LOOK } else { AWAIT };
             match orders.recv_timeout(wait) {
-                Ok(order) => {
-                    self.carry_out(order);
-                    while let Ok(order) = orders.try_recv() {
-                        self.carry_out(order);
+                Ok((order, since)) => {
+                    self.carry_out(order, since);
+                    while let Ok((order, since)) = orders.try_recv() {
+                        self.carry_out(order, since);
                     }
                 }
                 Err(RecvTimeoutError::Timeout) => {}
@@ -107,19 +108,28 @@ impl Desk {
         }
     }
 
-    /// Sends an order to the broker, over a new connection if there is none.
-    fn carry_out(&mut self, order: Order) {
+    /// Sends an order to the broker, over a new connection if there is none. The broker takes it for one of now: what is old by then
+    /// must not come so far.
+    fn carry_out(&mut self, order: Order, since: u64) {
+        if !order.only_stops()
+            && let Some(why) = too_old(since)
+        {
+            // A pulse of that time is no sign of life any more.
+            return order.id().map_or((), |id| (self.answers)(id, &Err(why)));
+        }
         let Some(id) = order.id() else { return self.live() };
         if let Order::Command(_, Err(why)) = &order {
             return (self.answers)(id, &Err(why.clone()));
         }
-        // The first order of a page makes it a client of the broker.
-        let client = match &mut self.client {
-            Some(client) => client,
-            None => match StreamClient::connect(&self.dir, &self.name) {
-                Ok(client) => self.client.insert(client),
-                Err(why) => return (self.answers)(id, &Err(why)),
-            },
+        let Some(client) = &mut self.client else {
+            // The first order of a page makes it a client of the broker, which may take its time.
+            return match StreamClient::connect(&self.dir, &self.name) {
+                Ok(client) => {
+                    self.client = Some(client);
+                    self.carry_out(order, since);
+                }
+                Err(why) => (self.answers)(id, &Err(why)),
+            };
         };
         let sent = match order {
             Order::Command(_, Ok(command)) => client.send(&command),
@@ -218,6 +228,50 @@ fn watch_one_broker(dir: &Path, observer: &Sender<Notice>, told: &mut Option<Str
         if now() > next_ping {
             next_ping = now() + SILENCE;
             client.ping()?;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use messages::Command;
+    use messages::command::VelocityCommand;
+
+    /// She walked by an order that had waited for 4 s in a server that stood still, because the broker was told of it as one of now.
+    #[test]
+    fn what_waited_too_long_is_refused_and_stops_are_not() {
+        let (answers, answered) = channel();
+        let answers: Answers = Box::new(move |id, result| answers.send((id, result.clone())).unwrap());
+        let (dir, name) = (PathBuf::from("/nonexistent"), "test".to_owned());
+        let mut desk = Desk { dir, name, answers, client: None, awaited: BTreeMap::new(), last: 0 };
+        let velocity = |forward| Command::Velocity(VelocityCommand { forward, left: 0.0, turn: 0.0 });
+        let moves = [
+            Order::Command(1, Ok(velocity(0.3))),
+            Order::Command(1, Ok(Command::Stand)),
+            Order::Set(1, "planner.swing_height".into(), 0.06),
+            Order::TakeLease(1, true),
+        ];
+        let stops = [
+            Order::Command(1, Ok(velocity(0.0))),
+            Order::Command(1, Ok(Command::Stop)),
+            Order::Command(1, Ok(Command::EmergencyStop)),
+            Order::GiveLease(1),
+        ];
+        // No broker is there; who asks for it has passed.
+        let mut passes = |order: &Order, since| {
+            desk.carry_out(order.clone(), since);
+            let (_, result) = answered.try_recv().unwrap();
+            let why = result.unwrap_err();
+            assert!(why.contains("stood still") != why.contains("no broker"), "{why}");
+            why.contains("no broker")
+        };
+        for order in moves {
+            assert!(!passes(&order, 0), "{order:?}");
+            assert!(passes(&order, now()), "{order:?}");
+        }
+        for order in stops {
+            assert!(passes(&order, 0), "{order:?}");
         }
     }
 }

@@ -83,6 +83,17 @@ impl Order {
             Self::Pulse => None,
         }
     }
+
+    /// Whether it can only bring the robot to rest, however old it is. A stop of one's own walk is a velocity of zero, too.
+    pub fn only_stops(&self) -> bool {
+        match self {
+            Self::Command(_, Ok(command)) => {
+                command.always_passes() || matches!(command, Command::Velocity(_)) && !command.is_unbounded()
+            }
+            Self::GiveLease(_) => true,
+            _ => false,
+        }
+    }
 }
 
 impl PageRequest {

@@ -13,6 +13,7 @@ use realtime::clock::{SECOND, now};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc};
 use tokio::time::timeout;
 
+use crate::arrival::{Arrivals, Beats, too_old};
 use crate::guests::Outbox;
 use crate::observer::Notice;
 use crate::operator::{self, Answers, Operator, answer};
@@ -25,8 +26,8 @@ pub const MOST_SOCKETS: usize = 64;
 const MOST_OPERATORS: usize = 32;
 /// Messages of a page per second, and at once.
 const MOST_MESSAGES: u64 = 200;
-/// Time in which a page must take a message.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// Time in which a page must take a message, or something of an answer.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Answer to everything that would move a robot.
 pub const RECORDING: &str = "this is a recording: there is no robot to command";
@@ -42,6 +43,8 @@ pub struct Hall {
     pub stops: Sender<(u64, Outbox)>,
     /// Starter of runs; none: nobody allowed them.
     pub starter: Option<Starter>,
+    /// Beats of the thread that reads the sockets.
+    pub beats: Arc<Beats>,
     /// Places for sockets.
     pub places: Arc<Semaphore>,
     /// Places for those that command.
@@ -60,7 +63,8 @@ impl Hall {
     ) -> Self {
         let places = Arc::new(Semaphore::new(MOST_SOCKETS));
         let desks = Arc::new(Semaphore::new(MOST_OPERATORS));
-        Self { dir, observer, stops, starter, places, desks, pages: AtomicU64::new(0) }
+        let beats = Arc::new(Beats::new(now()));
+        Self { dir, observer, stops, starter, beats, places, desks, pages: AtomicU64::new(0) }
     }
 
     /// An operator of this name, with the place that he takes.
@@ -88,7 +92,7 @@ pub async fn serve(socket: WebSocket, hall: Arc<Hall>, _place: OwnedSemaphorePer
         return;
     }
     let (sink, stream) = socket.split();
-    let mut page = Page { number, outbox: outbox.clone(), operator: None, hall: hall.clone() };
+    let mut page = Page { number, outbox: outbox.clone(), operator: None, hall: hall.clone(), since: 0 };
     let left = || _ = hall.observer.send(Notice::Left(number));
     // With the page goes its operator, and the command lease.
     converse(sink, fed, &outbox, async move { page.listen(stream).await }, left).await;
@@ -170,14 +174,19 @@ struct Page {
     outbox: Outbox,
     operator: Option<Commanding>,
     hall: Arc<Hall>,
+    /// Time since when the message that is taken may have waited \[ns\].
+    since: u64,
 }
 
 impl Page {
     /// Takes the page's messages until it goes, or is to go for a reason.
-    async fn listen(&mut self, mut stream: SplitStream<WebSocket>) -> Closing {
+    async fn listen(&mut self, stream: SplitStream<WebSocket>) -> Closing {
         let mut budget = Budget::new();
+        let mut arrivals = Arrivals::new(stream, self.hall.beats.clone());
         loop {
-            let text = match stream.next().await? {
+            let (message, since) = arrivals.next().await?;
+            self.since = since;
+            let text = match message {
                 Ok(Message::Text(text)) => text,
                 Ok(Message::Binary(_)) => return Some((close_code::POLICY, "a frame is no text".into())),
                 Ok(Message::Ping(_) | Message::Pong(_)) => "".into(),
@@ -221,10 +230,13 @@ impl Page {
 
     /// Gives a task to the starter; none: the server ends.
     fn run(&self, id: u64, task: Result<RunTask, String>) -> Option<()> {
+        // She walks by a start, too; an end only brings her to rest.
+        let old = if matches!(task, Ok(RunTask::Start(_))) { too_old(self.since) } else { None };
         let refused = match (&self.hall.starter, task) {
-            (Some(starter), Ok(task)) => {
-                return starter.call(StarterCall::Page(id, self.outbox.clone(), task));
-            }
+            (Some(starter), Ok(task)) => match old {
+                None => return starter.call(StarterCall::Page(id, self.outbox.clone(), task)),
+                Some(why) => why,
+            },
             (Some(_), Err(why)) => why,
             (None, _) if self.hall.dir.is_none() => RECORDING.into(),
             (None, _) => NO_STARTER.into(),
@@ -246,7 +258,7 @@ impl Page {
             }
         }
         if let Some((operator, _)) = &self.operator {
-            operator.give(order);
+            operator.give(order, self.since);
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::wire::Datagram;
 pub const SESSION: u64 = SECOND;
 /// Age of a stamp from which on its answer is refused \[ns\].
 pub const MAX_AGE: u64 = SECOND / 2;
-/// Datagrams per second of a session in the long run.
+/// Datagrams per second of a session in the long run; as many velocities of zero besides.
 pub const RATE: u64 = 100;
 /// Datagrams at once.
 pub const BURST: u64 = 50;
@@ -34,14 +34,31 @@ struct Session {
     last: u64,
 }
 
+/// Time that has been saved for datagrams \[ns\], and when that was counted.
+#[derive(Debug)]
+struct Bucket(u64, u64);
+
+impl Bucket {
+    const FULL: Self = Self(SAVED, 0);
+
+    /// Takes the time of one datagram; false: there is none left.
+    fn take(&mut self, now: u64) -> bool {
+        let saved = (self.0 + (now - self.1)).min(SAVED);
+        let left = saved.checked_sub(COST);
+        *self = Self(left.unwrap_or(saved), now);
+        left.is_some()
+    }
+}
+
 /// The gate.
 #[derive(Debug)]
 pub struct Gate {
     session: Option<Session>,
     /// Stamps of triggers that may still be answered \[ns\].
     stamps: VecDeque<u64>,
-    /// Time that has been saved for datagrams \[ns\], and when that was counted.
-    saved: (u64, u64),
+    /// For velocities of zero, and for everything else: a stop comes through, whatever came too often.
+    zeros: Bucket,
+    others: Bucket,
     /// Datagrams that were accepted.
     pub accepted: u64,
     /// Datagrams that were refused, by [`Cause`].
@@ -51,7 +68,8 @@ pub struct Gate {
 impl Default for Gate {
     /// Nobody has been heard.
     fn default() -> Self {
-        Self { session: None, stamps: VecDeque::new(), saved: (SAVED, 0), accepted: 0, refused: [0; _] }
+        let (zeros, others) = (Bucket::FULL, Bucket::FULL);
+        Self { session: None, stamps: VecDeque::new(), zeros, others, accepted: 0, refused: [0; _] }
     }
 }
 
@@ -95,15 +113,14 @@ impl Gate {
         if session.is_some_and(|s| datagram.sequence <= s.sequence) {
             return Err(Cause::Order);
         }
-        let (saved, counted) = self.saved;
-        let saved = (saved + (now - counted)).min(SAVED);
-        self.saved = (saved, now);
-        if saved < COST {
+        let command = datagram.command;
+        let is_zero = matches!(command, Command::Velocity(_)) && !command.is_unbounded();
+        let bucket = if is_zero { &mut self.zeros } else { &mut self.others };
+        if !bucket.take(now) {
             return Err(Cause::Rate);
         }
-        self.saved.0 -= COST;
         self.session = Some(Session { who, sequence: datagram.sequence, last: now });
-        Ok(datagram.command)
+        Ok(command)
     }
 }
 
@@ -113,6 +130,7 @@ mod tests {
     use messages::command::VelocityCommand;
 
     const WALK: Command = Command::Velocity(VelocityCommand { forward: 0.3, left: 0.0, turn: 0.0 });
+    const ZERO: Command = Command::Velocity(VelocityCommand { forward: 0.0, left: 0.0, turn: 0.0 });
     const STAMP: u64 = 10 * SECOND;
 
     fn at(port: u16) -> SocketAddr {
@@ -127,7 +145,17 @@ mod tests {
 
     /// Offers a datagram of a sender at the port 1.
     fn offer(gate: &mut Gate, sequence: u64, stamp: u64, now: u64) -> Result<Command, Cause> {
-        let datagram = Datagram { sender: 5, sequence, stamp, command: WALK };
+        tell(gate, WALK, sequence, stamp, now)
+    }
+
+    fn tell(
+        gate: &mut Gate,
+        command: Command,
+        sequence: u64,
+        stamp: u64,
+        now: u64,
+    ) -> Result<Command, Cause> {
+        let datagram = Datagram { sender: 5, sequence, stamp, command };
         gate.admit(&datagram.encode().unwrap(), at(1), now)
     }
 
@@ -198,5 +226,23 @@ mod tests {
             assert_eq!(gate.admit(&datagram.encode().unwrap(), at(2), now), Err(Cause::Sender));
         }
         assert_eq!(offer(&mut gate, sequence + 1, now, now), Ok(WALK));
+    }
+
+    /// 32 boxes with each trigger used up the rate, and every zero after them was refused.
+    #[test]
+    fn a_zero_passes_after_a_flood_of_anything_else() {
+        let mut gate = gate();
+        let mut sequence = 0;
+        let mut next = || {
+            sequence += 1;
+            sequence
+        };
+        while offer(&mut gate, next(), STAMP, STAMP).is_ok() {}
+        assert_eq!(gate.refused[Cause::Rate as usize], 1);
+        // As many as of anything else, so that a flood of them does not reach the broker either.
+        for _ in 0..BURST {
+            assert_eq!(tell(&mut gate, ZERO, next(), STAMP, STAMP), Ok(ZERO));
+        }
+        assert_eq!(tell(&mut gate, ZERO, next(), STAMP, STAMP), Err(Cause::Rate));
     }
 }

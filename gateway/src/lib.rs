@@ -9,6 +9,7 @@
 //! | `cause` | why one is refused |
 //! | `owner` | which user of this machine it comes from |
 //! | `gate` | whose, how old, in order, how many |
+//! | `steering` | which commands are passed on, and when a stop holds |
 //! | `link` | client of the broker: commands out, answers and lease back |
 //! | `sight` | pose and odometry from sensors and stabilizer |
 //! | `observer` | these of a running robot |
@@ -20,11 +21,12 @@ mod link;
 mod observer;
 pub mod owner;
 pub mod sight;
+mod steering;
 pub mod trigger;
 pub mod wire;
 
 use std::fmt::Write;
-use std::io::ErrorKind;
+use std::io::{Error, ErrorKind};
 use std::net::{SocketAddr, UdpSocket};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -38,9 +40,10 @@ use realtime::clock::{SECOND, now};
 pub use cause::Cause;
 use gate::Gate;
 use link::Link;
-pub use link::SILENCE;
 use observer::Observer;
 use sight::Sight;
+pub use steering::SILENCE;
+use steering::Steering;
 use trigger::{Frames, Odometry, Trigger, flag};
 
 /// Between two looks for a robot, and between two lines about refusals \[ns\].
@@ -75,6 +78,8 @@ struct Robot {
     observer: Observer,
     /// As the newest trigger told of it.
     sight: Option<Sight>,
+    /// Outlives the link: a stop holds when the broker is started again.
+    steering: Steering,
     /// None: the broker is not there.
     link: Option<Link>,
 }
@@ -92,6 +97,8 @@ struct Gateway<'a> {
     said: String,
     /// Counts of refusals that were told.
     told: [u64; Cause::ALL.len()],
+    /// Last line about triggers that cannot be sent.
+    unsent: String,
     sequence: u64,
     next_search: u64,
     next_line: u64,
@@ -115,6 +122,7 @@ pub fn run(options: &Options, stop: &Stop, say: Say) -> Result<(), String> {
         say,
         said: String::new(),
         told: [0; _],
+        unsent: String::new(),
         sequence: 0,
         next_search: 0,
         next_line: 0,
@@ -164,9 +172,9 @@ impl Gateway<'_> {
 
     /// Passes a command on to the robot, if there is one.
     fn give(&mut self, command: &Command) {
-        let given = self.robot.as_mut().and_then(|Robot { link, sight, .. }| {
+        let given = self.robot.as_mut().and_then(|Robot { link, steering, sight, .. }| {
             let command = sight.map_or(*command, |sight| sight.command(command));
-            link.as_mut().map(|link| link.give(&command, now()))
+            link.as_mut().map(|link| link.give(steering, &command, now()))
         });
         match given {
             None => self.gate.count(Cause::Robot),
@@ -185,9 +193,9 @@ impl Gateway<'_> {
             self.search();
             self.next_search = now() + SEARCH;
         }
-        if let Some(link) = self.robot.as_mut().and_then(|robot| robot.link.as_mut()) {
+        if let Some(Robot { link: Some(link), steering, .. }) = &mut self.robot {
             let say = self.say;
-            match link.look(now(), &mut |line| say(&line)) {
+            match link.look(steering, now(), &mut |line| say(&line)) {
                 Ok(refused) => (0..refused).for_each(|_| self.gate.count(Cause::Robot)),
                 Err(why) => self.lose(&why),
             }
@@ -224,7 +232,13 @@ impl Gateway<'_> {
             }
             (Some(supervisor), None) => match self.open() {
                 Ok(observer) => {
-                    self.robot = Some(Robot { supervisor, observer, sight: None, link: None });
+                    self.robot = Some(Robot {
+                        supervisor,
+                        observer,
+                        sight: None,
+                        steering: Steering::default(),
+                        link: None,
+                    });
                     return self.search();
                 }
                 Err(why) => format!("the robot in {dir} cannot be observed: {why}"),
@@ -244,10 +258,12 @@ impl Gateway<'_> {
 
     /// The connection to the broker is over; with it went the lease.
     fn lose(&mut self, why: &str) {
+        let say = self.say;
+        say(why);
         if let Some(robot) = &mut self.robot {
             robot.link = None;
+            robot.steering.disconnected(&mut |line| say(&line));
         }
-        (self.say)(why);
         self.said.clear();
     }
 
@@ -266,9 +282,9 @@ impl Gateway<'_> {
     fn trigger(&mut self) {
         self.sequence += 1;
         let stamp = now();
-        let link = self.robot.as_ref().and_then(|robot| robot.link.as_ref());
-        let lease = if link.is_some_and(Link::has_lease) { flag::LEASE } else { 0 };
-        let held = if link.is_some_and(Link::is_held) { flag::HELD } else { 0 };
+        let steering = self.robot.as_ref().map(|robot| &robot.steering);
+        let lease = if steering.is_some_and(Steering::has_lease) { flag::LEASE } else { 0 };
+        let held = if steering.is_some_and(Steering::is_held) { flag::HELD } else { 0 };
         // What is answered is meant as it was seen now.
         let sight = self.robot.as_mut().and_then(|robot| {
             robot.sight = robot.observer.look();
@@ -288,6 +304,25 @@ impl Gateway<'_> {
             refused: self.gate.refused,
         };
         self.gate.triggered(stamp);
-        let _ = self.socket.send_to(&trigger.encode(), self.options.to);
+        if let Err(e) = self.socket.send_to(&trigger.encode(), self.options.to)
+            && e.kind() != ErrorKind::WouldBlock
+        {
+            self.tell_unsent(&e);
+        }
+    }
+
+    /// A trigger that cannot even be sent has a reason that lasts, mostly an address; each is said once.
+    fn tell_unsent(&mut self, why: &Error) {
+        let to = self.options.to;
+        let port = self.listen.port();
+        let any = if to.is_ipv4() { format!("0.0.0.0:{port}") } else { format!("[::]:{port}") };
+        let line = format!(
+            "triggers cannot be sent from {} to {to}: {why}; --listen must be an address with a way there, such as {any}",
+            self.listen
+        );
+        if self.unsent != line {
+            (self.say)(&line);
+            self.unsent = line;
+        }
     }
 }

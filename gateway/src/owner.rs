@@ -1,7 +1,8 @@
-//! Owner of a socket of this machine, by the kernel's tables of UDP sockets: on the loopback interface everybody can send.
+//! Owner of a socket of this machine, by the kernel's tables of UDP sockets: from its own addresses every user can send.
 
 use std::fs;
-use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+use std::io::ErrorKind;
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 
 /// Tables of IPv4 and IPv6 sockets.
 const TABLES: [&str; 2] = ["/proc/net/udp", "/proc/net/udp6"];
@@ -13,7 +14,7 @@ const USER: usize = 7;
 ///
 /// An address is somebody's while his socket is open; of several sockets with one address each has to be trusted.
 pub fn is_trusted(from: SocketAddr, own: SocketAddr) -> bool {
-    if !from.ip().to_canonical().is_loopback() {
+    if !is_here(from) {
         return true;
     }
     let tables = TABLES.map(|table| fs::read_to_string(table).unwrap_or_default());
@@ -21,6 +22,12 @@ pub fn is_trusted(from: SocketAddr, own: SocketAddr) -> bool {
     let (senders, mine) = (users(from), users(own));
     !senders.is_empty()
         && senders.iter().all(|user| *user == Some(0) || user.is_some() && mine.contains(user))
+}
+
+/// True of an address of this machine, on whatever interface: a socket can be bound to those, and to no other.
+fn is_here(mut at: SocketAddr) -> bool {
+    at.set_port(0);
+    UdpSocket::bind(at).map_or_else(|e| e.kind() != ErrorKind::AddrNotAvailable, |_| true)
 }
 
 /// Users of the sockets of a table that send from `at`; none of a line that is not understood.
@@ -56,7 +63,6 @@ fn address(digits: &str) -> Option<IpAddr> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::net::UdpSocket;
 
     #[cfg(target_endian = "little")]
     #[test]
@@ -79,15 +85,26 @@ mod tests {
         assert_eq!(users("127.0.0.1:0"), []);
     }
 
+    /// Address of an interface that leads to other machines, if there is one. Nothing is sent.
+    fn outward() -> Option<IpAddr> {
+        let socket = UdpSocket::bind("0.0.0.0:0").ok()?;
+        socket.connect("198.51.100.1:9").ok()?;
+        socket.local_addr().ok().map(|at| at.ip())
+    }
+
+    /// `--to` may be any address of this machine: on those besides the loopback interface nobody was asked for his user.
     #[test]
     fn a_socket_is_trusted_while_it_is_open() {
-        for host in ["127.0.0.1", "::1"] {
+        let loopback = ["127.0.0.1", "::1"].map(|host| host.parse().unwrap());
+        for host in loopback.into_iter().chain(outward()) {
             let [from, own] = [0; 2].map(|_| UdpSocket::bind((host, 0)).unwrap());
             let [at, by] = [&from, &own].map(|socket| socket.local_addr().unwrap());
             assert!(is_trusted(at, by), "{at}");
             drop(from);
             assert!(!is_trusted(at, by), "nobody's");
-            assert!(is_trusted("192.0.2.1:1".parse().unwrap(), by), "another machine's");
+            for other in ["203.0.113.1:1", "[2001:db8::1]:1"] {
+                assert!(is_trusted(other.parse().unwrap(), by), "another machine's");
+            }
         }
     }
 }

@@ -35,8 +35,8 @@ const PATIENCE: u64 = 3 * SECOND;
 const EDGE: u64 = SECOND * 15 / 100;
 /// States per second.
 const RATE: u16 = 10;
-/// Answers of the protocol after which a velocity is sent again: no answer in time, too old.
-const AGAIN: [u8; 2] = [11, 20];
+/// Answers of the protocol after which a velocity is sent again: no answer in time, too old, from the future.
+const AGAIN: [u8; 3] = [11, 20, 21];
 
 /// Sink of lines for the operator.
 pub type Say = fn(&str);
@@ -395,5 +395,19 @@ impl Robot {
 
     fn await_answer(&mut self, name: &'static str, sequence: u64) {
         self.awaited.insert(sequence, (name, now() + PATIENCE));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use messages::Reason;
+
+    /// The hands still hold it: a velocity is not forgotten because of when it came to the broker.
+    #[test]
+    fn a_velocity_of_the_wrong_time_is_sent_again() {
+        for reason in [Reason::TooOld { age_ns: 0 }, Reason::FromTheFuture { lead_ns: 0 }] {
+            assert!(AGAIN.contains(&reason.code()), "{reason:?}");
+        }
     }
 }

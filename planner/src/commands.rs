@@ -6,7 +6,7 @@
 use crate::steps::{ROUNDING, StepParameters};
 use config::Gait;
 use messages::command::{StepCommand, VelocityCommand};
-use messages::{Command, Reason};
+use messages::{Command, GaitState, Reason};
 
 /// Intent of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,8 +15,46 @@ pub(crate) enum Intent {
     Rest,
     /// Take the standing pose.
     Stand,
+    /// Take the standing pose, then walk.
+    StandThenWalk,
     /// Walk.
     Walk,
+}
+
+impl Intent {
+    /// Of who wants to walk: at once or, as long as the robot has yet to take the standing pose, after that.
+    ///
+    /// # Errors
+    /// It does not stand, and is not about to.
+    pub(crate) fn walking(self, gait: GaitState) -> Result<Self, Reason> {
+        match (gait, self) {
+            (GaitState::Idle, Self::Stand | Self::StandThenWalk) => Ok(Self::StandThenWalk),
+            (GaitState::Idle, Self::Rest | Self::Walk) => Err(Reason::NotNow),
+            _ => Ok(Self::Walk),
+        }
+    }
+
+    /// What a stop leaves of it: it ends the walk, not the way to standing.
+    pub(crate) fn stopped(self) -> Self {
+        match self {
+            Self::Stand | Self::StandThenWalk => Self::Stand,
+            Self::Rest | Self::Walk => Self::Rest,
+        }
+    }
+
+    /// What is left of it once the robot takes the standing pose.
+    pub(crate) fn after_standing(self) -> Self {
+        match self {
+            Self::Stand | Self::Rest => Self::Rest,
+            Self::StandThenWalk | Self::Walk => Self::Walk,
+        }
+    }
+}
+
+/// Does a command move the robot?
+pub(crate) fn walks(command: &Command) -> bool {
+    use Command::{Distance, Platform, Stand, Start, Velocity};
+    matches!(command, Stand | Start | Velocity(_) | Distance(_) | Platform(_))
 }
 
 /// `x` within its limits, or the refusal of the command's field.

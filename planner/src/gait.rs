@@ -145,7 +145,7 @@ impl Planner {
         let gait = self.gait_state(tick, state);
         let down = state.filter(|s| s.not_standing == 1).and_then(|_| not_standing(gait));
         for command in commands.iter().take(MAX_COMMANDS) {
-            let answer = match down.filter(|_| walks(command)) {
+            let answer = match down.filter(|_| commands::walks(command)) {
                 Some(reason) => {
                     self.events.push(EventCode::NotStanding, Detail::Message(command.address().1.into()));
                     Err(reason)
@@ -188,8 +188,8 @@ impl Planner {
         if state.plan_id == next.id {
             std::mem::swap(&mut self.active, &mut self.next);
             self.next.plan.id = 0;
-            if self.active.plan.state == GaitState::Standing as u64 && self.intent == Intent::Stand {
-                self.intent = Intent::Rest;
+            if self.active.plan.state == GaitState::Standing as u64 {
+                self.intent = self.intent.after_standing();
             }
         } else if state.header.tick >= next.start_tick {
             self.events.push(EventCode::PlanRefused, Detail::Plan(self.next.plan.id));
@@ -221,12 +221,12 @@ impl Planner {
         let at_rest = tick + self.margins.lead >= self.rest();
         match (gait, self.intent) {
             _ if self.next.plan.id != 0 => Move::Nothing,
-            (Idle, Intent::Stand) => Move::Stand,
-            (Standing, Intent::Stand) if at_rest => Move::Stand,
+            (Idle, Intent::Stand | Intent::StandThenWalk) => Move::Stand,
+            (Standing, Intent::Stand | Intent::StandThenWalk) if at_rest => Move::Stand,
             (Standing, Intent::Walk) if at_rest => Move::Start,
             (Standing, Intent::Rest) if at_rest && self.tasks.next.is_some() => Move::Start,
             (Starting | Walking | Stopping, Intent::Walk) => Move::Step(Walking),
-            (Starting | Walking, Intent::Rest | Intent::Stand) => Move::Step(Stopping),
+            (Starting | Walking, _) => Move::Step(Stopping),
             _ => Move::Nothing,
         }
     }
@@ -237,21 +237,15 @@ impl Planner {
             Command::Stand if matches!(gait, GaitState::Idle | GaitState::Standing) => {
                 Ok((Intent::Stand, None))
             }
-            Command::Start if gait != GaitState::Idle || self.intent == Intent::Stand => {
-                Ok((Intent::Walk, None))
-            }
-            Command::Stop | Command::End => {
-                self.tasks.stop();
-                Ok((if self.intent == Intent::Stand { Intent::Stand } else { Intent::Rest }, None))
-            }
+            Command::Start => self.intent.walking(gait).map(|intent| (intent, None)),
+            Command::Stop | Command::End => Ok((self.stop(), None)),
             // Steps may be commanded at any time; a velocity also starts and stops the walk.
             Command::Step(step) => commands::from_step(step, &self.gait).map(|p| (self.intent, Some(p))),
             Command::Velocity(v) => commands::from_velocity(v, &self.gait).and_then(|p| match p {
-                None => Ok((Intent::Rest, None)),
-                Some(_) if gait == GaitState::Idle => Err(Reason::NotNow),
-                Some(p) => Ok((Intent::Walk, Some(p))),
+                None => Ok((self.stop(), None)),
+                Some(p) => self.intent.walking(gait).map(|intent| (intent, Some(p))),
             }),
-            Command::Stand | Command::Start => Err(Reason::NotNow),
+            Command::Stand => Err(Reason::NotNow),
             Command::Distance(c) => self.give(SkillTask::Distance(*c), gait),
             Command::Platform(c) => self.give(SkillTask::Platform(*c), gait),
             Command::WalkParameter(change) => self.set(change).map(|()| (self.intent, None)),
@@ -272,7 +266,9 @@ impl Planner {
         };
         let taken = match taken {
             // Half on a platform nobody walks as he likes.
-            Ok((Intent::Walk, Some(_))) if !self.tasks.walk(gait == GaitState::Standing) => {
+            Ok((Intent::Walk | Intent::StandThenWalk, Some(_)))
+                if !self.tasks.walk(gait == GaitState::Standing) =>
+            {
                 Err(Reason::NotNow)
             }
             taken => taken,
@@ -298,6 +294,12 @@ impl Planner {
         }
     }
 
+    /// A stop, by whatever command: no skill is done to its end, and none waits any more.
+    fn stop(&mut self) -> Intent {
+        self.tasks.stop();
+        self.intent.stopped()
+    }
+
     /// A box that somebody sees, or does not see any more: the next step is planned with it.
     fn hear(&mut self, command: &Command, tick: u64) -> Result<(), Reason> {
         let cycle_s = self.builder.model.cycle_s;
@@ -306,9 +308,7 @@ impl Planner {
 
     /// A skill comes next: at once from standing, otherwise after a stop.
     fn give(&mut self, task: SkillTask, gait: GaitState) -> Result<(Intent, Option<StepParameters>), Reason> {
-        if gait == GaitState::Idle && self.intent != Intent::Stand {
-            return Err(Reason::NotNow);
-        }
+        let begin = self.intent.walking(gait)?;
         if let Err((code, detail)) = task.check(&self.gait, &self.builder.model.soles[RIGHT]) {
             self.events.push(code, detail);
             return Err(Reason::Event { code, detail });
@@ -317,7 +317,7 @@ impl Planner {
         let still = matches!(gait, GaitState::Idle | GaitState::Standing);
         let busy = self.tasks.active != Skill::Walk && !self.tasks.aborted;
         let intent = if busy { self.intent } else { Intent::Rest };
-        Ok((if still { Intent::Walk } else { intent }, None))
+        Ok((if still { begin } else { intent }, None))
     }
 
     /// Makes the plan that is due; `false` if none is, or none can be walked.
@@ -487,10 +487,4 @@ fn not_standing(gait: GaitState) -> Option<Reason> {
         GaitState::Halted => event(EventCode::SafeStop),
         GaitState::Standing | GaitState::Starting | GaitState::Walking | GaitState::Stopping => None,
     }
-}
-
-/// Does a command move the robot?
-fn walks(command: &Command) -> bool {
-    use Command::{Distance, Platform, Stand, Start, Velocity};
-    matches!(command, Stand | Start | Velocity(_) | Distance(_) | Platform(_))
 }

@@ -10,6 +10,7 @@ mod random;
 mod robot;
 mod slope;
 mod small_turns;
+mod stops;
 mod told_boxes;
 mod touchdown;
 mod vectors;

@@ -10,7 +10,8 @@
         print(robot.state(timeout=1.0).com, robot.event())
 
 While the client is open, a thread gives signs of life; so the command lease, taken with the first command that needs it,
-stays with it. When the program ends, is killed or hangs, the lease runs out within half a second and the robot stops.
+stays with it. When the program ends, is killed or stopped, or has no reference to the client any more, the lease runs out
+within half a second and the robot stops. That thread does not notice a loop that hangs: name a `deadline` for that.
 The protocol, and what each number means: docs/protocol.md.
 """
 
@@ -25,6 +26,7 @@ import struct
 import threading
 import time
 import types
+import weakref
 
 VERSION = 3
 SERVICE = 0xFFFF
@@ -68,10 +70,14 @@ def default_directory():
 
 
 class Client:
-    """One connection to the broker. Its methods may be called from any thread."""
+    """One connection to the broker. Its methods may be called from any thread.
 
-    def __init__(self, stream, name, key=None, timeout=3.0, shared_clock=True):
-        self._stream, self._timeout = stream, timeout
+    `deadline`: seconds after the last call, by whatever thread, for which there are signs of life; None: for as long as the
+    main thread lives. A program that hangs for longer loses the lease."""
+
+    def __init__(self, stream, name, key=None, timeout=3.0, shared_clock=True, deadline=None):
+        self._stream, self._timeout, self._deadline = stream, timeout, deadline
+        self._called = time.monotonic()
         self._sending = threading.Lock()
         self._changed = threading.Condition()
         self._sequence = 0
@@ -90,29 +96,32 @@ class Client:
         self.lease_holder = ""
         self.commands = {}
         stream.settimeout(None)
-        self._threads = [threading.Thread(target=run, daemon=True) for run in (self._read, self._live)]
-        self._threads[0].start()
+        # Threads that referred to the client would keep a forgotten one, and its lease, for ever.
+        weak = weakref.ref(self)
+        weakref.finalize(self, _hang_up, stream).atexit = False  # at the end of the program the kernel does it
+        self._reader = threading.Thread(target=_read, args=(stream, weak), daemon=True)
+        self._reader.start()
         try:
             self._greet(name, key)
             self.commands = {c.name: c for c in map(_command, self._ask_lines(DESCRIBE))}
         except BaseException:
             self.close()
             raise
-        self._threads[1].start()
+        threading.Thread(target=_live, args=(weak,), daemon=True).start()
 
     @classmethod
-    def local(cls, run_directory=None, name="python", timeout=3.0):
+    def local(cls, run_directory=None, name="python", timeout=3.0, deadline=None):
         """Connects to the robot of this run directory on this machine; without one, to that of `gangwerk run`."""
         stream = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         stream.connect(os.path.join(run_directory or default_directory(), "broker.sock"))
-        return cls(stream, name, timeout=timeout)
+        return cls(stream, name, timeout=timeout, deadline=deadline)
 
     @classmethod
-    def network(cls, host, port, key=None, name="python", timeout=3.0):
+    def network(cls, host, port, key=None, name="python", timeout=3.0, deadline=None):
         """Connects over TCP. `key`: a pair (name of the key, 64 hexadecimal digits); without one, only stops are taken."""
         stream = socket.create_connection((host, port), timeout)
         stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        return cls(stream, name, key, timeout, shared_clock=False)
+        return cls(stream, name, key, timeout, shared_clock=False, deadline=deadline)
 
     def __enter__(self):
         return self
@@ -241,6 +250,7 @@ class Client:
         self.wait(prove)
 
     def _send(self, domain, ident, payload, priority=LOW):
+        self._called = time.monotonic()
         with self._sending:
             return self._write(domain, ident, payload, priority)
 
@@ -269,7 +279,8 @@ class Client:
         return hmac.digest(key, struct.pack("<Q", number) + message, hashlib.sha256)[:TAG]
 
     def _wait(self, ready, timeout=None):
-        limit = time.monotonic() + (self._timeout if timeout is None else timeout)
+        self._called = time.monotonic()
+        limit = self._called + (self._timeout if timeout is None else timeout)
         with self._changed:
             while True:
                 found = ready()
@@ -294,25 +305,15 @@ class Client:
         with self._changed:
             return self._lines.pop(number, [])
 
-    def _live(self):
-        while not self._end:
-            try:
-                self._send(SERVICE, PING, b"")
-            except Lost:
-                return
-            time.sleep(0.1)
-
-    def _read(self):
-        try:
-            while True:
-                (length,) = struct.unpack("<I", self._exactly(4))
-                if not HEAD.size <= length <= MAX_MESSAGE + TAG:
-                    raise Lost(f"a frame of {length} bytes came: that is no broker of version {VERSION}")
-                message = self._authentic(self._exactly(length))
-                domain, ident, _, _, _, sequence, sent = HEAD.unpack_from(message)
-                self._take(Message(domain, ident, sequence, sent, message[HEAD.size :]))
-        except (OSError, Lost, struct.error) as error:
-            self._stop(str(error))
+    def _show_life(self):
+        """A sign of life, if the program shows one itself; False if there will be none any more."""
+        # Daemon threads outlive the main thread for as long as another thread of the program does not end.
+        if self._end or not threading.main_thread().is_alive():
+            return False
+        if self._deadline is None or time.monotonic() - self._called < self._deadline:
+            with self._sending:
+                self._write(SERVICE, PING, b"", LOW)
+        return True
 
     def _authentic(self, message):
         if not self._open:
@@ -323,16 +324,10 @@ class Client:
         self._in += 1
         return message
 
-    def _exactly(self, count):
-        data = b""
-        while len(data) < count:
-            part = self._stream.recv(count - len(data))
-            if not part:
-                raise Lost("the broker closed the connection")
-            data += part
-        return data
-
-    def _take(self, message):
+    def _take(self, frame):
+        frame = self._authentic(frame)
+        domain, ident, _, _, _, sequence, sent = HEAD.unpack_from(frame)
+        message = Message(domain, ident, sequence, sent, frame[HEAD.size :])
         with self._changed:
             if self._clock and message.domain == SERVICE:
                 self._clock = max(self._clock, (message.time, time.monotonic_ns()), key=self._reading)
@@ -371,12 +366,60 @@ class Client:
         with self._changed:
             self._end = self._end or reason
             self._changed.notify_all()
-        try:
-            self._stream.shutdown(socket.SHUT_RDWR)
-        except OSError:
-            pass
-        if threading.current_thread() is not self._threads[0]:
+        _shut(self._stream)
+        if threading.current_thread() is not self._reader:
             self._stream.close()
+
+
+# Threads of a client. Between two calls of `_of` they have no reference to it, so one that is forgotten ends with them.
+
+
+def _of(weak, method, *values):
+    """What this method of the client gives; False if there is no client any more."""
+    client = weak()
+    return client is not None and method(client, *values)
+
+
+def _live(weak):
+    try:
+        while _of(weak, Client._show_life):
+            time.sleep(0.1)
+    except Lost:
+        pass
+
+
+def _read(stream, weak):
+    try:
+        while True:
+            (length,) = struct.unpack("<I", _exactly(stream, 4))
+            if not HEAD.size <= length <= MAX_MESSAGE + TAG:
+                raise Lost(f"a frame of {length} bytes came: that is no broker of version {VERSION}")
+            _of(weak, Client._take, _exactly(stream, length))
+    except (OSError, Lost, struct.error) as error:
+        _of(weak, Client._stop, str(error))
+
+
+def _exactly(stream, count):
+    data = b""
+    while len(data) < count:
+        part = stream.recv(count - len(data))
+        if not part:
+            raise Lost("the broker closed the connection")
+        data += part
+    return data
+
+
+def _shut(stream):
+    """Ends the connection; who waits for a frame of it is woken."""
+    try:
+        stream.shutdown(socket.SHUT_RDWR)
+    except OSError:
+        pass
+
+
+def _hang_up(stream):
+    _shut(stream)
+    stream.close()
 
 
 def _command(line):

@@ -8,7 +8,7 @@ use gateway::wire::{Datagram, TRIGGER};
 use harness::{Running, Signal};
 use messages::command::{BoxCommand, VelocityCommand};
 use messages::topics::{EVENTS_PLANNER, SENSORS};
-use messages::{Command, Event, EventCode, GaitState, Sensors};
+use messages::{Command, Event, EventCode, GaitState, Process, Sensors};
 use realtime::clock;
 use std::net::{SocketAddr, UdpSocket};
 use std::time::Duration;
@@ -360,6 +360,31 @@ fn somebody_elses_stop_holds_until_the_vision_system_has_seen_it() {
     assert!(held(&eyes.seen));
 }
 
+/// The broker died after a person's stop and was started again: she walked off by the velocity that was repeated all the time.
+#[test]
+fn somebody_elses_stop_holds_when_the_broker_is_started_again() {
+    let _turn = shared_turn();
+    let site = Site::patient(super::EXE);
+    let mut robot = Robot::standing_in(&site, &PACED);
+    let (mut eyes, mut running) = Eyes::and_gateway(&site);
+    let walking = |seen: &Seen| seen.gait == GaitState::Walking as u64;
+    let held = |seen: &Seen| seen.flags & flag::HELD != 0 && seen.gait == GaitState::Standing as u64;
+    eyes.go(velocity(0.25), walking);
+    site.topic(&["pub", "walk/stop"]).well();
+    eyes.go(velocity(0.25), held);
+    robot.run.kill(Process::Broker);
+    says(&mut running, "connected", 2);
+    let before = eyes.trigger().refused[Cause::Held as usize];
+    eyes.go(velocity(0.25), |seen| seen.refused[Cause::Held as usize] > before + 10);
+    assert!(held(&eyes.seen), "{:?}", eyes.seen);
+    robot.stays();
+    // Seen.
+    eyes.catch_up();
+    eyes.trigger();
+    eyes.say(STOP);
+    eyes.go(velocity(0.25), walking);
+}
+
 /// Where the frames of a trigger are, beside those of the simulation.
 #[test]
 fn a_trigger_says_where_she_is() {
@@ -384,6 +409,15 @@ fn a_trigger_says_where_she_is() {
     assert!(error < bound, "{error} m beside, at most {bound}");
     assert!((told[2] - walked[2]).abs() < 0.01, "{told:?}, {walked:?} m");
     assert!(seen.numbers.iter().all(|x| x.is_finite()), "{seen:?}");
+}
+
+/// From 127.0.0.1, where it listens by default, there is no way to another computer: it said "10 per second" and sent nothing.
+#[test]
+fn a_gateway_whose_triggers_cannot_be_sent_says_so() {
+    let site = Site::patient(super::EXE);
+    let mut running = gateway(&site, "198.51.100.1:47201".parse().unwrap());
+    says(&mut running, "triggers cannot be sent from 127.0.0.1:", 1);
+    says(&mut running, "--listen must be", 1);
 }
 
 /// Another user of this machine, who knows all that there is to know.

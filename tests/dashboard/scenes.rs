@@ -1,4 +1,5 @@
-//! Runs that a page starts: the scenes that there are, start, walk, end, refusals, and what becomes of a run whose dashboard ends.
+//! Runs that a page starts: the scenes that there are, start, walk, end, refusals, and what becomes of a run whose dashboard ends; a page that a
+//! run brings.
 
 use crate::page::{Page, Server};
 use crate::{EXE, WAIT};
@@ -8,6 +9,7 @@ use messages::topics::CONTROLLER_STATE;
 use messages::{ControllerState, GaitState, Process};
 use realtime::clock;
 use serde_json::{Value, json};
+use std::net::TcpStream;
 
 fn start(scene: &str) -> Value {
     json!({"type": "start", "scene": scene})
@@ -177,4 +179,35 @@ fn a_scene_to_start_that_is_not_there_is_refused_before_anything_is_served() {
     let said = site.gangwerk(&["dashboard", "--dir", &dir, "--replay", "walk.mcap", "--start"]);
     assert!(said.code == Some(2) && said.err.contains("--start"), "{said:#?}");
     assert!(!site.run_dir().exists(), "it leaves nothing");
+}
+
+/// `gangwerk run --desk`: the page is there with the run, and goes with it, ended or killed.
+#[test]
+fn the_page_of_a_run_goes_with_it() {
+    let _turn = shared_turn();
+    for signal in [Signal::INT, Signal::KILL] {
+        let site = Site::patient(EXE);
+        site.scene("desk", 2.0, WAIT);
+        let mut run = site.run("desk", &["--lockstep", "--paced", "--no-log", "--stay", "--desk"]);
+        drop(run.space());
+        let file = site.run_dir().join(dashboard::daemon::URL_FILE);
+        let read = || std::fs::read_to_string(&file).unwrap_or_default();
+        let within = |seconds: f64, done: &dyn Fn() -> bool| {
+            let begun = clock::now();
+            while !done() && clock::now() - begun < (seconds * 1e9) as u64 {
+                doze(0.02);
+            }
+            assert!(done(), "within {seconds} s, {signal:?}; {}: {}", file.display(), read());
+        };
+        within(10.0, &|| read().ends_with('\n'));
+        let url = read();
+        let host = url.trim_start_matches("http://").split('/').next().unwrap();
+        assert!(TcpStream::connect(host).is_ok(), "{url}");
+        // Beyond the scene's end both are there.
+        doze(3.0);
+        assert!(run.is_alive() && TcpStream::connect(host).is_ok());
+        run.signal_supervisor(signal);
+        within(20.0, &|| TcpStream::connect(host).is_err());
+        drop(run);
+    }
 }

@@ -1,10 +1,10 @@
 //! Clients that come, ask, hold the lease and go.
 
 use messages::command::Domain;
-use messages::{Reason, Stamp};
+use messages::{Command, Reason, Stamp};
 
 use super::{BrokerEvent, Exchange, FIRST_STREAM, LEASE_ROUND, MAX_PROCESSES, SILENCE};
-use crate::admission::Sender;
+use crate::admission::{self, Denied, Sender};
 use crate::inlet::{BrokerTable, Request};
 use crate::members::{Member, MemberExit, Watch};
 use crate::message::{Message, client_queue, describe, domain_mask, service, service_message, split_u32};
@@ -12,10 +12,18 @@ use crate::observation::Observation;
 use crate::refusal::Refusal;
 
 impl Exchange<'_> {
-    /// Serves one request of a stream; false if none waits.
-    pub(super) fn serve_stream(&mut self, report: &mut dyn FnMut(BrokerEvent)) -> bool {
-        let Ok(request) = self.inlet.requests.try_recv() else { return false };
+    /// Serves one request that need not keep its place among the commands; false if none waits.
+    pub(super) fn serve_question(&mut self, report: &mut dyn FnMut(BrokerEvent)) -> bool {
+        let request = self.inlet.requests.try_recv();
+        request.map(|request| self.serve_stream(request, report)).is_ok()
+    }
+
+    /// Serves what a stream handed in.
+    pub(super) fn serve_stream(&mut self, request: Request, report: &mut dyn FnMut(BrokerEvent)) {
         match request {
+            Request::Command { token, class, mut bytes } => {
+                self.forward(token, class as usize, &mut bytes, report);
+            }
             Request::Join { token, name, may, out, done } => {
                 // HELLO sent twice must not make two members of one connection.
                 self.members.retain(|m| m.sender.token != token);
@@ -58,7 +66,7 @@ impl Exchange<'_> {
             // The lease: renewed by a heartbeat, taken, given back; a closing link gives it up.
             Request::Alive { token, sent_ns } => self.lease.renew(token, sent_ns, self.now),
             Request::TakeLease { token, sequence, sent_ns, over } => {
-                self.take_lease(token, sequence, sent_ns, over);
+                self.take_lease(&Stamp { origin: token, sequence, sent_ns, grant: 0 }, over);
             }
             Request::GiveLease { token, sequence } => {
                 self.give_back(token);
@@ -67,32 +75,45 @@ impl Exchange<'_> {
             Request::Closing { token } => self.end_of_commands(token),
             Request::Leave { token } => self.leave(token),
         }
-        true
     }
 
-    fn take_lease(&mut self, token: u32, sequence: u64, sent_ns: u64, over: bool) {
-        let may = self.members.iter().any(|m| m.sender.token == token && m.sender.may != 0);
-        if !may {
-            let refusal = Refusal::NoAccess("this connection may not hold the command lease".into());
-            return self.answer(token, refusal.to_message(sequence, self.now));
-        }
-        let former = self.lease.holder(self.now).filter(|&h| h != token);
-        if let Some(former) = former.filter(|_| !over) {
-            let refusal = Refusal::LeaseHeld(self.name(former));
-            return self.answer(token, refusal.to_message(sequence, self.now));
-        }
-        match self.lease.take_over(token, sent_ns, self.now) {
-            Some(former) => {
+    fn take_lease(&mut self, stamp: &Stamp, over: bool) {
+        let token = stamp.origin;
+        let known = self.members.iter().find(|m| m.sender.token == token).ok_or(Denied::NoAccess);
+        let taken =
+            known.and_then(|m| admission::take_lease(&m.sender, &mut self.lease, stamp, over, self.now));
+        match taken {
+            Ok(Some(former)) => {
                 tracing::warn!(
                     "{} takes the command lease over from {}",
                     self.name(token),
                     self.name(former)
                 );
             }
-            None => tracing::info!("{} has the command lease", self.name(token)),
+            Ok(None) => tracing::info!("{} has the command lease", self.name(token)),
+            Err(denied) => {
+                let refusal = self.no_lease(denied, over);
+                return self.answer(token, refusal.to_message(stamp.sequence, self.now));
+            }
         }
         self.tell_lease();
-        self.accept(token, sequence, "");
+        self.accept(token, stamp.sequence, "");
+    }
+
+    /// Why a request for the lease is refused.
+    fn no_lease(&self, denied: Denied, over: bool) -> Refusal {
+        match denied {
+            // The text of an age is the same for every command.
+            Denied::Reason(reason) => {
+                Refusal::Reason(reason, "request for the command lease", reason.text(&Command::Stop))
+            }
+            Denied::NoAccess => Refusal::NoAccess("this connection may not hold the command lease".into()),
+            Denied::LeaseHeld(holder) if over => Refusal::NoAccess(format!(
+                "{} holds the command lease; only a connection that may command `walk` takes it over",
+                self.name(holder)
+            )),
+            Denied::LeaseHeld(holder) => Refusal::LeaseHeld(self.name(holder)),
+        }
     }
 
     fn give_back(&mut self, token: u32) {

@@ -10,6 +10,7 @@ use futures_util::StreamExt;
 use futures_util::stream::SplitStream;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
+use crate::arrival::Arrivals;
 use crate::foxglove::replies::StatusLevel;
 use crate::foxglove::requests::{ENCODING, OwnChannel, VELOCITY, ViewerRequest, published, velocity};
 use crate::foxglove::viewer::Setting;
@@ -62,6 +63,7 @@ pub async fn serve(socket: WebSocket, lobby: &Lobby, may_command: bool, _place: 
         channels: BTreeMap::new(),
         operator: None,
         orders: 0,
+        since: 0,
     };
     let left = || _ = watcher.send(ViewerNotice::Left(number));
     // With the viewer goes its operator, and the command lease.
@@ -79,14 +81,19 @@ struct ViewerSocket {
     operator: Option<Commanding>,
     /// Number of the last order.
     orders: u64,
+    /// Time since when the message that is taken may have waited \[ns\].
+    since: u64,
 }
 
 impl ViewerSocket {
     /// Takes the viewer's messages until it goes, or is to go for a reason.
-    async fn listen(&mut self, mut stream: SplitStream<WebSocket>) -> Closing {
+    async fn listen(&mut self, stream: SplitStream<WebSocket>) -> Closing {
         let mut budget = Budget::new();
+        let mut arrivals = Arrivals::new(stream, self.hall.beats.clone());
         loop {
-            let message = match stream.next().await? {
+            let (message, since) = arrivals.next().await?;
+            self.since = since;
+            let message = match message {
                 Ok(Message::Close(_)) => return None,
                 Ok(message) => message,
                 Err(e) => return unreadable(&e),
@@ -187,7 +194,7 @@ impl ViewerSocket {
             }
         }
         if let Some((operator, _)) = &self.operator {
-            operator.give(order);
+            operator.give(order, self.since);
         }
         Some(())
     }
