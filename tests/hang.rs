@@ -8,10 +8,10 @@ use messages::topics::{
 };
 use messages::{ControllerState, CycleStats, GaitState, Power, Process, SimState};
 use realtime::clock;
-use rustix::process::Signal;
+use rustix::process::{Pid, Resource, Rlimit, Signal, getrlimit, prlimit};
 use std::fs::{self, File};
 use std::io::{Read, Write};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 
 const EXE: &str = harness::executable!();
 
@@ -36,6 +36,16 @@ fn wait_for(run: &mut Running, what: &str, mut done: impl FnMut() -> bool) {
     while !done() {
         assert!(run.is_alive(), "the run ended before {what}: {}", run.err());
         assert!(clock::now() < begun + 30 * clock::SECOND, "{what}: {}", run.err());
+        doze(0.005);
+    }
+}
+
+/// Waits until the run has said this.
+#[track_caller]
+fn wait_until_said(run: &mut Running, words: &str) {
+    let begun = clock::now();
+    while !run.err().contains(words) {
+        assert!(run.is_alive() && clock::now() < begun + 30 * clock::SECOND, "{words}: {}", run.err());
         doze(0.005);
     }
 }
@@ -117,6 +127,141 @@ fn broker_and_logger_are_started_again_while_the_robot_goes_on() {
     for named in ["broker died during the run: signal 9", "logger hung during the run"] {
         assert!(said.err.contains(named), "{named}: {}", said.err);
     }
+}
+
+/// Waits until an operator is answered.
+#[track_caller]
+fn wait_for_an_answer(site: &Site, run: &mut Running) {
+    let config = site.config("");
+    wait_for(run, "an answer", || {
+        let mut publish = Command::new(EXE);
+        publish.args(["topic", "pub", "head/rest", "--dir"]).arg(site.run_dir()).arg("--config").arg(&config);
+        publish.output().unwrap().status.success()
+    });
+}
+
+/// The executable was replaced while she walked: the next death of the broker ended the run in mid-step.
+#[test]
+fn a_program_that_was_removed_starts_its_broker_again() {
+    let _turn = turn();
+    let copy = std::env::temp_dir().join(format!("gangwerk-copy-{}", std::process::id()));
+    fs::copy(EXE, &copy).unwrap();
+    let site = Site::patient(copy.to_str().unwrap());
+    site.scene("hang", 1000.0, WAIT);
+    let mut run = site.run("hang", &["--no-log"]);
+    let space = run.space();
+    until(&mut run, &space, 1.0);
+    fs::remove_file(&copy).unwrap();
+    run.kill(Process::Broker);
+    wait_for_an_answer(&site, &mut run);
+}
+
+/// So did a machine that had no descriptor, thread or memory for another broker at that moment.
+#[test]
+fn a_broker_that_cannot_be_started_now_is_started_later() {
+    let _turn = turn();
+    let (site, mut run, space) = start(WAIT, &["--no-log"]);
+    until(&mut run, &space, 1.0);
+    let supervisor = Pid::from_raw(run.id() as i32);
+    let few = Rlimit { current: Some(16), ..getrlimit(Resource::Nofile) };
+    let enough = prlimit(supervisor, Resource::Nofile, few).unwrap();
+    run.kill(Process::Broker);
+    wait_until_said(&mut run, "broker does not start: Too many open files");
+    prlimit(supervisor, Resource::Nofile, enough).unwrap();
+    wait_for_an_answer(&site, &mut run);
+}
+
+/// Somebody who traces a process and does not look. To its parent it is one that SIGKILL does not end, as one that waits for a disk.
+struct Tracer(Child);
+
+impl Tracer {
+    /// None: this user may trace nobody.
+    fn of(pid: u32) -> Option<Self> {
+        // PTRACE_SEIZE
+        let script = "import ctypes, sys, time\n\
+            done = ctypes.CDLL(None).ptrace(0x4206, int(sys.argv[1]), None, None)\n\
+            print(done, flush=True)\n\
+            time.sleep(1000)";
+        let mut python = Command::new("python3");
+        python.args(["-c", script, &pid.to_string()]).stdout(Stdio::piped());
+        let mut tracer = Self(python.spawn().expect("python3 is there"));
+        let mut done = [0];
+        tracer.0.stdout.as_mut().unwrap().read_exact(&mut done).unwrap();
+        if done != *b"0" {
+            harness::left_out("a process that cannot be killed: ptrace is refused");
+            return None;
+        }
+        Some(tracer)
+    }
+}
+
+impl Drop for Tracer {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// The supervisor waited for a killed logger, which waited for its disk, and heard no Ctrl-C meanwhile.
+#[test]
+fn a_process_that_cannot_be_killed_holds_nobody_up() {
+    let _turn = turn();
+    let (_site, mut run, space) = start(WAIT, &[]);
+    until(&mut run, &space, 1.0);
+    drop(space);
+    let Some(_tracer) = Tracer::of(run.pid(Process::Logger)) else { return };
+    run.signal(Process::Logger, Signal::STOP);
+    wait_until_said(&mut run, "logger hung during the run");
+    run.interrupt();
+    let said = run.end();
+    assert_eq!(said.code, Some(1), "{said:#?}");
+    assert!(said.err.contains("asked to end: the robot stops and stands first"), "{}", said.err);
+}
+
+/// Nor did such a run end.
+#[test]
+fn a_process_that_cannot_be_killed_is_left_behind_at_the_end() {
+    let _turn = turn();
+    let (_site, mut run, space) = start(WAIT, &[]);
+    until(&mut run, &space, 1.0);
+    drop(space);
+    let Some(_tracer) = Tracer::of(run.pid(Process::Logger)) else { return };
+    run.signal(Process::Logger, Signal::STOP);
+    run.interrupt();
+    doze(0.2);
+    run.interrupt();
+    let said = run.end();
+    assert_eq!(said.code, Some(1), "{said:#?}");
+    assert!(said.err.contains("logger was killed and is not gone: it is left behind"), "{}", said.err);
+}
+
+/// Ctrl-C was not heard before the robot was there: a logger that waited for its disk was given 20 s.
+#[test]
+fn ctrl_c_ends_a_run_that_is_still_starting() {
+    let _turn = shared_turn();
+    let site = Site::patient(EXE);
+    site.scene("hang", 1000.0, WAIT);
+    assert!(Command::new("mkfifo").arg(site.path("hang.mcap")).status().unwrap().success());
+    let mut run = site.run("hang", &[]);
+    wait_for(&mut run, "the logger", || site.run_dir().join("logger.lock").exists());
+    run.interrupt();
+    let said = run.end();
+    assert_eq!(said.code, Some(1), "{said:#?}");
+    assert!(said.err.contains("asked to end while starting"), "{}", said.err);
+}
+
+/// A logger that had no time for a second lost most of it, and the run was a success.
+#[test]
+fn a_log_with_missing_records_is_no_success() {
+    let _turn = turn();
+    let (site, mut run, space) = start(WAIT, &[]);
+    until(&mut run, &space, 1.0);
+    drop(space);
+    run.pause(Process::Logger, 1.0);
+    site.topic(&["pub", "system/end"]).well();
+    let said = run.end();
+    assert_eq!(said.code, Some(1), "{said:#?}");
+    assert!(said.err.contains("the log is not complete: "), "{}", said.err);
 }
 
 /// With the broker dead, Ctrl-C let the robot walk on for 8.6 s and then cut its supply in mid-step.

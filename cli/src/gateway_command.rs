@@ -9,7 +9,7 @@ use realtime::Stop;
 
 pub(crate) const HELP: &str = "\
 She walks while velocities come in: after half a second without a valid one she comes to a stand, as with the gateway killed or hung.
-On the loopback interface its own user and root are heard; from another computer who sends from the host of --to is believed: give that a network of its own.
+From an address of this machine its own user and root are heard; from another computer who sends from the host of --to is believed: give that a network of its own.
 The datagrams: docs/vision.md.";
 
 #[derive(clap::Args)]

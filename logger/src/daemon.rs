@@ -92,7 +92,7 @@ pub fn serve(space: &Space, output: LogOutput, mode: Mode, stop: &Stop) -> Resul
     for topic in TOPICS.iter().filter(|t| t.logged && t.name != EVENTS_LOGGER.name) {
         with_type(topic.name, FollowTopic { space, logging: &mut logging }).unwrap_or(Ok(()))?;
     }
-    let mut signals = Signals::open(space)?;
+    let mut signals = Signals::open(space, mode)?;
     let nap = if mode == Mode::Lockstep { NAP_LOCKSTEP } else { NAP_REAL_TIME };
     let mut flushed = clock::now();
     signals.say(EventCode::Started);
@@ -155,6 +155,7 @@ impl ForType<Result<(), IpcError>> for FollowTopic<'_> {
 
 /// Reports of the logger to others.
 struct Signals {
+    mode: Mode,
     tick: Writer<Event>,
     bell: Bell,
     events: Writer<Event>,
@@ -162,8 +163,9 @@ struct Signals {
 }
 
 impl Signals {
-    fn open(space: &Space) -> Result<Self, IpcError> {
+    fn open(space: &Space, mode: Mode) -> Result<Self, IpcError> {
         Ok(Self {
+            mode,
             tick: space.writer(&LOG_TICK)?,
             bell: space.bell(&LOG_TICK)?,
             events: space.writer(&EVENTS_LOGGER)?,
@@ -177,13 +179,34 @@ impl Signals {
 
     /// Progress and losses of the log.
     fn after(&mut self, pass: &Pass) {
-        if let Some(header) = pass.caught_up.filter(|h| self.said != Some(h.tick)) {
+        // In lockstep the joint loop waits until all is written; in real time nobody waits, and a logger that falls behind lives.
+        let progress = if self.mode == Mode::Lockstep { pass.caught_up } else { pass.newest };
+        if let Some(header) = progress.filter(|h| self.said != Some(h.tick)) {
             self.said = Some(header.tick);
             self.tick.write(&Event { header, ..Event::default() });
             self.bell.ring();
         }
         if let Some(event) = pass.lost {
             self.events.write(&event);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use messages::Header;
+
+    /// A logger that never caught up was silent, and killed as one that hangs.
+    #[test]
+    fn a_logger_that_falls_behind_shows_in_real_time_that_it_lives() {
+        let behind = Pass { newest: Some(Header { tick: 7, ..Header::default() }), ..Pass::default() };
+        for (mode, ticks) in [(Mode::RealTime, Some(7)), (Mode::Lockstep, None)] {
+            let dir = std::env::temp_dir().join(format!("gangwerk-log-tick-{}", std::process::id()));
+            let space = Space::create(&dir).unwrap();
+            Signals::open(&space, mode).unwrap().after(&behind);
+            let mut tick = space.reader::<Event>(&LOG_TICK).unwrap();
+            assert_eq!(tick.latest().map(|t| t.header.tick), ticks, "{mode:?}");
         }
     }
 }

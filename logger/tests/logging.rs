@@ -117,6 +117,29 @@ fn what_was_overwritten_is_counted_and_noted_in_the_log() {
     assert_eq!(log.records::<Sensors>(&SENSORS).unwrap()[0].header.tick, 44);
 }
 
+/// A writer that is always faster than the log.
+struct Endless(Sensors);
+
+impl Source<Sensors> for Endless {
+    fn follow(&mut self) -> Option<(u64, &Sensors)> {
+        self.0.header.tick += 1;
+        Some((self.0.header.tick, &self.0))
+    }
+    fn lost(&self) -> u64 {
+        0
+    }
+}
+
+/// A pass took up to 2048 records of a topic, two seconds of a run, and nobody heard of the logger meanwhile.
+#[test]
+fn a_pass_that_never_catches_up_ends_soon_and_says_how_far_it_came() {
+    let mut logging = Logging::new(to_file(&file("endless")));
+    logging.follow(Follower::new(&SENSORS, Endless(sensors(0))));
+    let pass = logging.pass();
+    assert_eq!((pass.caught_up, pass.newest.map(|h| h.tick)), (None, Some(pass.records)));
+    assert!(pass.records < 200, "a fifth of a second in real time: {}", pass.records);
+}
+
 #[test]
 fn an_unwritable_log_is_said_once_and_the_run_goes_on() {
     let mut logging = Logging::new(to_file(Path::new("/proc/gangwerk/walk.mcap")));

@@ -97,7 +97,11 @@ pub const FAULTS: [Fault; 40] = [
     tried("F35", "no right to real time or locked memory", "runs, and says that it is degraded"),
     tried("F36", "SIGABRT in the planner", "as F1; the run ends with exit code 1 and keeps a crash record"),
     tried("F37", "supervisor killed", "all processes end, the supply goes off"),
-    tried("F38", "broker dies as often as it is started", "later and later started; walks on"),
+    tried(
+        "F38",
+        "broker dies as often as it is started",
+        "later and later started, the last one answers; walks on",
+    ),
     tried("F39", "simulated robot dies in lockstep", "the run ends with exit code 1"),
     tried("F40", "SIGINT, SIGTERM, SIGHUP while walking", "stands, then the end; nothing left behind"),
 ];

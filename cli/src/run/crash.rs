@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use config::Setup;
 use ipc::Run;
@@ -22,6 +23,9 @@ use super::Cause;
 
 /// The attachment with the text.
 pub const TEXT: &str = "crash";
+
+/// Between two looks at what is being written.
+const LOOK: Duration = Duration::from_millis(2);
 
 /// Directory of crash records.
 pub(super) struct Crashes {
@@ -65,9 +69,16 @@ impl Crashes {
         self.writing.extend(std::thread::Builder::new().name("crash".into()).spawn(write));
     }
 
-    /// Waits until all are written.
-    pub(super) fn finish(&mut self) {
-        self.writing.drain(..).for_each(|thread| _ = thread.join());
+    /// Waits until all are written, at most so long \[ns\]: a disk may hold one up for ever.
+    pub(super) fn finish(&mut self, patience: u64) {
+        let until = clock::now() + patience;
+        while self.writing.iter().any(|thread| !thread.is_finished()) && clock::now() < until {
+            std::thread::park_timeout(LOOK);
+        }
+        let unwritten = self.writing.drain(..).filter(|thread| !thread.is_finished()).count();
+        if unwritten > 0 {
+            self.console.say(format!("{unwritten} crash records are not written: the disk takes none"));
+        }
     }
 }
 

@@ -35,7 +35,7 @@ use crate::choose::OtherMethod;
 
 pub use crash::TEXT as CRASH_TEXT;
 
-/// Open files that the supervisor needs, with room for topics to come; 1147 at the last count.
+/// Open files that the supervisor needs, with room for topics to come; 1595 at the last count.
 const OPEN_FILES: u64 = 2048;
 
 /// Options of a run.
@@ -105,7 +105,7 @@ pub struct RunOutcome {
     pub ending: Ending,
     /// Records missing from the log.
     pub missing: u64,
-    /// Whether the logger says that the log is not complete, because its disk failed.
+    /// Whether the logger ended as an error, because its disk failed.
     pub log_broken: bool,
 }
 

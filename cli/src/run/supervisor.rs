@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::fs::File;
 use std::os::unix::process::CommandExt;
+use std::path::PathBuf;
 use std::process::{Child, Command as Spawn, ExitStatus, Stdio};
 use std::time::Duration;
 
@@ -27,12 +28,14 @@ use super::{Cause, RunOutcome};
 const LOOK: Duration = Duration::from_millis(10);
 /// A process that has not reported within this time after its start does not start any more.
 const START_PATIENCE: u64 = 20 * clock::SECOND;
-/// A process that was asked to end gets this long.
+/// A process that was asked to end gets this long, and one that was killed then.
 const END_PATIENCE: u64 = 5 * clock::SECOND;
 /// Period at which ports of dead observers are removed.
 const CLEAR_EVERY: u64 = 2 * clock::SECOND;
 /// A process that hangs gets this long to say where.
 const FAREWELL: u64 = clock::SECOND / 10;
+/// A killed process has this long to be gone; one that waits for a disk in the kernel takes as long as the disk.
+const DEATH_PATIENCE: u64 = clock::SECOND / 10;
 /// Delay for the last words of a dead process to pass its pipe.
 const LAST_WORDS: Duration = Duration::from_millis(50);
 
@@ -52,7 +55,8 @@ pub(super) fn supervise(
     let mut view = View::new(&space, setup, console.clone())?;
     let mut supervisor = Supervisor {
         children: Vec::new(),
-        restarts: [(Process::Broker, Backoff::default()), (Process::Logger, Backoff::default())],
+        dying: Vec::new(),
+        restarts: [Process::Broker, Process::Logger].map(|p| (p, Backoff::new(ipc::writers(p)))),
         pulse: Pulse::default(),
         crashes: Crashes::new(setup, &run, console),
         memories: Vec::new(),
@@ -84,6 +88,8 @@ pub(super) fn supervise(
 
 struct Supervisor {
     children: Vec<(Process, Child)>,
+    /// Killed and lost, but not gone yet.
+    dying: Vec<(Process, Child)>,
     /// Processes without which the robot walks on.
     restarts: [(Process, Backoff); 2],
     pulse: Pulse,
@@ -114,6 +120,7 @@ impl Supervisor {
                 _ => true,
             };
             if wanted {
+                self.end_if_asked()?;
                 self.spawn(process)?;
                 self.wait_until_started(process, patience)?;
                 self.compare(process, setup.hash)?;
@@ -122,10 +129,17 @@ impl Supervisor {
         Ok(())
     }
 
+    /// Nobody waits for a robot that is not there yet: who asks for the end while it starts has it at once.
+    fn end_if_asked(&self) -> Result<(), Box<dyn Error>> {
+        if self.stop.asked() { Err("asked to end while starting".into()) } else { Ok(()) }
+    }
+
     fn spawn(&mut self, process: Process) -> Result<(), Box<dyn Error>> {
         let (feed, errors) = Feed::new()?;
         let memory = black_box::memory()?;
-        let mut child = Spawn::new(std::env::current_exe()?);
+        // Before the child: what fails from here on leaves none behind that nobody looks after.
+        feed.into_lines(self.console.clone())?;
+        let mut child = Spawn::new(own_program());
         ENVIRONMENT.iter().for_each(|name| _ = child.env_remove(name));
         let child = child
             .arg(process.name())
@@ -136,7 +150,6 @@ impl Supervisor {
             .stderr(errors)
             .process_group(0) // the terminal's Ctrl-C is the supervisor's to hear
             .spawn()?;
-        feed.into_lines(self.console.clone())?;
         self.children.push((process, child));
         self.memories.retain(|(p, _)| *p != process);
         self.memories.push((process, memory));
@@ -157,6 +170,7 @@ impl Supervisor {
                 let seconds = patience / clock::SECOND;
                 return Err(format!("{} did not start within {seconds} s", process.name()).into());
             }
+            self.end_if_asked()?;
             std::thread::park_timeout(LOOK / 2);
         }
         Ok(())
@@ -212,7 +226,7 @@ impl Supervisor {
                 let seen = self.kill(process);
                 self.lose(process, Cause::Hung(ns), &seen, now);
             }
-            self.restart(now)?;
+            self.restart(now);
             if now > cleared + CLEAR_EVERY {
                 self.space.clear_dead();
                 cleared = now;
@@ -284,6 +298,7 @@ impl Supervisor {
     /// Children that have ended since the last look.
     fn ended(&mut self) -> Vec<(Process, ExitStatus)> {
         let mut ended = Vec::new();
+        self.dying.retain_mut(|(_, child)| !is_gone(child));
         self.children.retain_mut(|(process, child)| match child.try_wait() {
             Ok(Some(status)) => {
                 ended.push((*process, status));
@@ -302,45 +317,49 @@ impl Supervisor {
         self.outcome.lost.push((process, cause));
         self.pulse.forget(process);
         self.course.lost(process, now);
-        if let Some((_, backoff)) = self.restarts.iter_mut().find(|(p, _)| *p == process) {
-            let text = match backoff.died(now) {
-                Some(pause) => format!("is started again in {:.1} s", pause as f64 / clock::SECOND as f64),
-                None => "is not started again: it died too often".into(),
-            };
-            self.console.say(format!("{} {text}; the robot goes on", process.name()));
-        }
+        self.back_off(process, now);
     }
 
-    /// Starts again whose pause is over.
-    fn restart(&mut self, now: u64) -> Result<(), Box<dyn Error>> {
+    /// A process without which the robot walks on is started again later, or is left dead.
+    fn back_off(&mut self, process: Process, now: u64) {
+        let Some((_, backoff)) = self.restarts.iter_mut().find(|(p, _)| *p == process) else { return };
+        let text = match backoff.died(now) {
+            Some(pause) => format!("is started again in {:.1} s", pause as f64 / clock::SECOND as f64),
+            None => "is not started again: it died too often".into(),
+        };
+        self.console.say(format!("{} {text}; the robot goes on", process.name()));
+    }
+
+    /// Starts again whose pause is over. A machine that has no room for it at the moment is no reason to end a walk.
+    fn restart(&mut self, now: u64) {
         for i in 0..self.restarts.len() {
-            if self.restarts[i].1.is_due(now) {
-                // Its ports would be in the way of its successor's.
-                self.space.clear_dead();
-                self.spawn(self.restarts[i].0)?;
+            let process = self.restarts[i].0;
+            // One that is not gone yet keeps its place.
+            if self.dying.iter().any(|(p, _)| *p == process) || !self.restarts[i].1.is_due(now) {
+                continue;
+            }
+            // Its ports would be in the way of its successor's.
+            self.space.clear_dead();
+            if let Err(error) = self.spawn(process) {
+                self.console.say(format!("{} does not start: {error}", process.name()));
+                self.back_off(process, now);
             }
         }
-        Ok(())
     }
 
     /// Ends a process that hangs; returns what was to be seen of it. Unless it is stopped, it may first say where it is.
     fn kill(&mut self, process: Process) -> String {
-        let mut seen = String::new();
-        self.children.retain_mut(|(p, child)| {
-            if *p == process {
-                seen = crash::look(child.id());
-                if !is_stopped(child.id()) {
-                    realtime::last_words::abort(child.id());
-                    let until = clock::now() + FAREWELL;
-                    while clock::now() < until && matches!(child.try_wait(), Ok(None)) {
-                        std::thread::park_timeout(LOOK / 10);
-                    }
-                }
-                let _ = child.kill();
-                let _ = child.wait();
-            }
-            *p != process
-        });
+        let Some(i) = self.children.iter().position(|(p, _)| *p == process) else { return String::new() };
+        let (process, mut child) = self.children.remove(i);
+        let seen = crash::look(child.id());
+        if !is_stopped(child.id()) {
+            realtime::last_words::abort(child.id());
+            ends_within(&mut child, FAREWELL);
+        }
+        let _ = child.kill();
+        if !ends_within(&mut child, DEATH_PATIENCE) {
+            self.dying.push((process, child));
+        }
         seen
     }
 
@@ -363,15 +382,15 @@ impl Supervisor {
             self.terminate(|p| turn_of(p) == turn);
             let begun = clock::now();
             for (process, child) in self.children.iter_mut().filter(|(p, _)| turn_of(*p) == turn) {
-                let status = loop {
-                    match child.try_wait() {
-                        Ok(None) if clock::now() - begun > END_PATIENCE => _ = child.kill(),
-                        Ok(None) => {}
-                        Ok(Some(status)) => break Some(status),
-                        Err(_) => break None,
+                let left = (begun + END_PATIENCE).saturating_sub(clock::now());
+                if !ends_within(child, left) {
+                    let _ = child.kill();
+                    if !ends_within(child, END_PATIENCE) {
+                        self.console
+                            .say(format!("{} was killed and is not gone: it is left behind", process.name()));
                     }
-                    std::thread::park_timeout(LOOK / 5);
-                };
+                }
+                let status = child.try_wait().ok().flatten();
                 let failed = *process == Process::Logger && status.is_none_or(|s| !s.success());
                 self.outcome.log_broken |= failed;
             }
@@ -381,8 +400,30 @@ impl Supervisor {
             }
         }
         self.children.clear();
-        self.crashes.finish();
+        self.crashes.finish(END_PATIENCE);
     }
+}
+
+/// This program. One that was removed or replaced since has no name any more, but the kernel still has it.
+fn own_program() -> PathBuf {
+    std::env::current_exe().ok().filter(|path| path.exists()).unwrap_or_else(|| "/proc/self/exe".into())
+}
+
+/// Whether a child has ended, or cannot be waited for.
+fn is_gone(child: &mut Child) -> bool {
+    !matches!(child.try_wait(), Ok(None))
+}
+
+/// Waits for the end of a child, at most so long \[ns\]; whether it is gone.
+fn ends_within(child: &mut Child, patience: u64) -> bool {
+    let until = clock::now() + patience;
+    while !is_gone(child) {
+        if clock::now() > until {
+            return false;
+        }
+        std::thread::park_timeout(LOOK / 5);
+    }
+    true
 }
 
 /// Whether the process was stopped by a signal, as /proc says.

@@ -31,6 +31,7 @@ pub use queue::{Doorbell, MAX_MESSAGE, QueueReceiver, QueueSender, QueueWaiter};
 pub use reader::Reader;
 pub use run::{Mode, Run};
 pub use run_dir::{CONFIG, default_dir, publish_file, withdraw_file, wrong_dir};
+pub use slot::writers;
 pub use space::{Space, owner, supervisor};
 pub use stop_line::{Asker, Datagram, StopAnswer, StopButton, StopLine, StopName};
 pub use writer::Writer;

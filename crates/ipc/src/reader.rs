@@ -1,7 +1,7 @@
 //! Readers of a topic: the newest record, or every one of them.
 
 use crate::error::{IpcError, because};
-use crate::slot::{self, HeadEntry, Numbered, RealTime, RingEntry, SLOTS, SlotHead, SlotService};
+use crate::slot::{self, HeadEntry, Numbered, RealTime, RingEntry, SlotHead, SlotService, writers};
 use iceoryx2::prelude::*;
 use messages::{Record, Topic};
 
@@ -49,7 +49,8 @@ pub struct Reader<T: Record> {
 
 impl<T: Record> Reader<T> {
     pub(crate) fn new(node: &Node<RealTime>, topic: &Topic) -> Result<Self, IpcError> {
-        let slots = (0..SLOTS).map(|k| Slot::open(node, topic, k)).collect::<Result<_, _>>()?;
+        let slots =
+            (0..writers(topic.writer)).map(|k| Slot::open(node, topic, k)).collect::<Result<_, _>>()?;
         let held = Box::new(Numbered { number: 0, record: T::empty() });
         Ok(Self { slots, slot: 0, epoch: 0, number: 0, lost: 0, missed: 0, fresh: true, held })
     }

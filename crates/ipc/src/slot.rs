@@ -1,6 +1,6 @@
 //! Layout of a topic in shared memory.
 //!
-//! A topic has [`SLOTS`] slots; each is one blackboard with the entries
+//! A topic has [`writers`] slots; each is one blackboard with the entries
 //!
 //! | key | content |
 //! |---|---|
@@ -17,10 +17,17 @@ use iceoryx2::prelude::*;
 use iceoryx2::service::builder::blackboard::BlackboardOpenError;
 use iceoryx2::service::port_factory::blackboard::PortFactory;
 use messages::topics::schema_hash;
-use messages::{Record, Topic};
+use messages::{Process, Record, Topic};
 
-/// Writers a topic can have in the life of a space, killed ones included.
-pub(crate) const SLOTS: usize = 4;
+/// Writers that each topic of a process can have in the life of a space, killed ones included: broker and logger are started again
+/// while the robot goes on, the death of another process ends the run.
+pub const fn writers(process: Process) -> usize {
+    match process {
+        Process::Broker | Process::Logger => 16,
+        _ => 4,
+    }
+}
+
 /// Key of the head entry.
 pub(crate) const HEAD: u64 = u64::MAX;
 /// Ports of one slot.
@@ -70,7 +77,7 @@ pub(crate) fn schema<T: Record>(topic: &Topic) -> String {
 
 /// Size of all slots of a topic in shared memory \[B\], rounded up.
 pub(crate) fn bytes<T: Record>(topic: &Topic) -> u64 {
-    (SLOTS * (topic.depth * (2 * size_of::<Numbered<T>>() + 256) + 16384)) as u64
+    (writers(topic.writer) * (topic.depth * (2 * size_of::<Numbered<T>>() + 256) + 16384)) as u64
 }
 
 /// Makes slot `slot` of a topic.

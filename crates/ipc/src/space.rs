@@ -7,19 +7,22 @@ use crate::place::RunPlace;
 use crate::queue::{Plane, QueueReceiver, QueueSender, QueueWaiter};
 use crate::reader::Reader;
 use crate::run_dir::RunDir;
-use crate::slot::{self, RealTime, SLOTS, SlotService};
+use crate::slot::{self, RealTime, SlotService, writers};
 use crate::writer::Writer;
 use iceoryx2::prelude::*;
 use messages::topics::{ForType, with_type};
 use messages::{Process, Record, TOPICS, Topic};
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::cell::OnceCell;
 use std::path::{Path as StdPath, PathBuf};
 use std::time::Duration;
 
 /// Name of the supervisor's lock and node.
 const SUPERVISOR: &str = "supervisor";
-/// Room kept free in shared memory for queues, bells, rings of other programs \[B\].
-const SPARE: u64 = 16 << 20;
+/// Files that a reader of all topics may need open: more than the 1024 that many systems allow a process unasked.
+const OPEN_FILES: u64 = 4096;
+/// Room kept free in shared memory for queues, bells, rings of other programs \[B\]: those of a run take 1 MiB.
+const SPARE: u64 = 8 << 20;
 /// Timeout for somebody else who clears up after dead processes.
 const CLEAR_PATIENCE: Duration = Duration::from_millis(200);
 
@@ -126,6 +129,7 @@ impl Space {
             _ => Some(Lock::take(&place.dir, process.name())?),
         };
         place.join()?;
+        allow_files();
         let node = node::<RealTime>(&place, process.name())?;
         if process == Process::Observer {
             // Observers end by Ctrl-C, without a farewell, and a topic bears only so many: each clears up after the last ones.
@@ -207,6 +211,15 @@ impl Space {
     }
 }
 
+/// Allows this process the files that its readers take, as far as it may.
+fn allow_files() {
+    let limit = getrlimit(Resource::Nofile);
+    let wanted = limit.maximum.map_or(OPEN_FILES, |most| most.min(OPEN_FILES));
+    if limit.current.is_some_and(|now| now < wanted) {
+        let _ = setrlimit(Resource::Nofile, Rlimit { current: Some(wanted), ..limit });
+    }
+}
+
 /// A node of one process, which touches no signal handler and prints errors only.
 pub(crate) fn node<S: Service>(place: &RunPlace, name: &str) -> Result<Node<S>, IpcError> {
     set_log_level(LogLevel::Error);
@@ -243,7 +256,7 @@ struct Create<'a> {
 }
 impl ForType<Result<Vec<SlotService>, IpcError>> for Create<'_> {
     fn call<T: Record>(self, topic: &'static Topic) -> Result<Vec<SlotService>, IpcError> {
-        (0..SLOTS).map(|k| slot::create::<T>(self.node, topic, k)).collect()
+        (0..writers(topic.writer)).map(|k| slot::create::<T>(self.node, topic, k)).collect()
     }
 }
 
@@ -274,7 +287,7 @@ mod tests {
         let observer = Space::open(&dir, Process::Observer).unwrap();
         let reader = observer.reader::<Sensors>(&SENSORS).unwrap();
         drop(observer.queue_receiver("x").unwrap());
-        assert!(left(&place) > TOPICS.len() * SLOTS);
+        assert!(left(&place) > TOPICS.iter().map(|topic| writers(topic.writer)).sum());
         assert!(size(&place) <= needed(TOPICS), "{} > {}", size(&place), needed(TOPICS));
         drop((reader, observer));
         drop(system);

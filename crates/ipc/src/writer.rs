@@ -1,7 +1,7 @@
 //! The one writer of a topic.
 
 use crate::error::{IpcError, because};
-use crate::slot::{self, HEAD, Numbered, RealTime, SLOTS, SlotHead, SlotService};
+use crate::slot::{self, HEAD, Numbered, RealTime, SlotHead, SlotService, writers};
 use iceoryx2::port::writer::{EntryHandleMut, EntryHandleMutError, Writer as Port, WriterCreateError};
 use iceoryx2::prelude::*;
 use messages::{Record, Topic};
@@ -24,7 +24,8 @@ struct Free {
 fn free_slot(node: &Node<RealTime>, topic: &Topic, schema: &str) -> Result<Free, IpcError> {
     let mut free = None;
     let mut newest = 0;
-    for k in 0..SLOTS {
+    let slots = writers(topic.writer);
+    for k in 0..slots {
         let (slot, _, head) = slot::open_to_read(node, topic, schema, k)?;
         let SlotHead { epoch, count } = *head.get();
         newest = newest.max(epoch);
@@ -33,7 +34,7 @@ fn free_slot(node: &Node<RealTime>, topic: &Topic, schema: &str) -> Result<Free,
             free = locked.map(|(port, head)| Free { slot, port, head, epoch: 0, count });
         }
     }
-    let free = free.ok_or_else(|| IpcError::SlotsUsedUp { topic: topic.name.into(), slots: SLOTS })?;
+    let free = free.ok_or_else(|| IpcError::SlotsUsedUp { topic: topic.name.into(), slots })?;
     Ok(Free { epoch: newest + 1, ..free })
 }
 

@@ -6,8 +6,8 @@
 mod place;
 
 use ipc::{IpcError, Reader, Space, Writer};
-use messages::topics::{PLAN, SENSORS};
-use messages::{Plan, Process, Record, Sensors, Topic, Visit};
+use messages::topics::{EVENTS_BROKER, PLAN, SENSORS};
+use messages::{Event, Plan, Process, Record, Sensors, Topic, Visit};
 use place::RunDir;
 use realtime::clock;
 use std::path::Path;
@@ -82,14 +82,23 @@ impl Sealed for Plan {
     }
 }
 
+impl Sealed for Event {
+    const TOPIC: &'static Topic = &EVENTS_BROKER;
+    const WRITER: Process = Process::Broker;
+    fn fill(&mut self, n: u64) {
+        (self.code, self.detail) = (n, n);
+    }
+}
+
 /// The writing process: this binary again, in the role that the environment names.
 #[test]
 fn writer_process() {
     let Ok(dir) = std::env::var("GANGWERK_WRITER_DIR") else { return };
-    if std::env::var("GANGWERK_WRITER_TOPIC").is_ok_and(|t| t == SENSORS.name) {
-        write_for_ever::<Sensors>(Path::new(&dir));
-    } else {
-        write_for_ever::<Plan>(Path::new(&dir));
+    let topic = std::env::var("GANGWERK_WRITER_TOPIC").unwrap_or_default();
+    match Topic::find(&topic).map(|topic| topic.writer) {
+        Some(Process::Lowlevel) => write_for_ever::<Sensors>(Path::new(&dir)),
+        Some(Process::Broker) => write_for_ever::<Event>(Path::new(&dir)),
+        _ => write_for_ever::<Plan>(Path::new(&dir)),
     }
 }
 
@@ -190,22 +199,31 @@ fn two_hundred_killed_writers() {
     assert!(read > kills, "the writers hardly wrote");
 }
 
-#[test]
-fn used_up_slots_are_named_and_a_new_space_is_clean() {
-    let dir = RunDir::new("slots");
-    let system = Space::create(dir.path()).unwrap();
-    let mut reader: Reader<Sensors> = system.reader(&SENSORS).unwrap();
-    for life in 1..=4 {
-        let mut writer = start_writer::<Sensors>(dir.path());
-        while reader.latest().is_none_or(|r| r.header.epoch < life) {}
+/// Kills as many writers of a topic as it can have; the next one is refused.
+fn use_up<T: Sealed>(system: &Space, dir: &Path) {
+    let mut reader: Reader<T> = system.reader(T::TOPIC).unwrap();
+    let slots = ipc::writers(T::WRITER);
+    for life in 1..=slots as u64 {
+        let mut writer = start_writer::<T>(dir);
+        while reader.latest().is_none_or(|r| r.header().epoch < life) {
+            assert_eq!(writer.try_wait().unwrap(), None, "writer {life} of {slots} found no slot");
+        }
         writer.kill().unwrap();
         writer.wait().unwrap();
         assert_eq!(system.clear_dead(), 1);
     }
-    let lowlevel = Space::open(dir.path(), Process::Lowlevel).unwrap();
-    let error = lowlevel.writer::<Sensors>(&SENSORS).err().unwrap();
-    assert!(matches!(error, IpcError::SlotsUsedUp { slots: 4, .. }), "{error}");
-    drop((reader, lowlevel, system));
+    let next = Space::open(dir, T::WRITER).unwrap();
+    let error = next.writer::<T>(T::TOPIC).err().unwrap();
+    assert!(matches!(error, IpcError::SlotsUsedUp { slots: s, .. } if s == slots), "{error}");
+}
+
+#[test]
+fn used_up_slots_are_named_and_a_new_space_is_clean() {
+    let dir = RunDir::new("slots");
+    let system = Space::create(dir.path()).unwrap();
+    use_up::<Sensors>(&system, dir.path());
+    use_up::<Event>(&system, dir.path());
+    drop(system);
     let _system = Space::create(dir.path()).unwrap();
     let lowlevel = Space::open(dir.path(), Process::Lowlevel).unwrap();
     assert_eq!(lowlevel.writer::<Sensors>(&SENSORS).unwrap().epoch(), 1);

@@ -5,8 +5,8 @@
 mod place;
 
 use ipc::{Reader, Space, Writer};
-use messages::topics::{PLAN, SENSORS};
-use messages::{Header, Plan, Process, Sensors};
+use messages::topics::{ForType, PLAN, SENSORS, with_type};
+use messages::{Header, Plan, Process, Record, Sensors, TOPICS, Topic};
 use place::RunDir;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
@@ -26,6 +26,37 @@ fn observer() {
     assert!(sensors.latest().is_some());
     // SAFETY: takes no memory; nothing of this process runs afterwards.
     unsafe { libc::kill(libc::getpid(), libc::SIGKILL) };
+}
+
+/// Reads a topic for as long as the process lives.
+struct Read<'a>(&'a Space);
+
+impl ForType<()> for Read<'_> {
+    fn call<T: Record>(self, topic: &'static Topic) {
+        std::mem::forget(self.0.reader::<T>(topic).unwrap());
+    }
+}
+
+/// The process that reads everything: this program again.
+#[test]
+fn reader_of_everything() {
+    let Ok(dir) = std::env::var("GANGWERK_READ") else { return };
+    let space = Space::open(Path::new(&dir), Process::Observer).unwrap();
+    TOPICS.iter().for_each(|topic| with_type(topic.name, Read(&space)).unwrap());
+}
+
+/// With room for more writers a dashboard with its second door took 1199 files, and many systems allow 1024.
+#[test]
+fn a_reader_of_everything_has_more_files_than_a_process_is_allowed_unasked() {
+    let dir = RunDir::new("files");
+    let _space = Space::create(dir.path()).unwrap();
+    let read = Command::new("sh")
+        .args(["-c", "ulimit -Sn 256 && exec \"$0\" --exact reader_of_everything"])
+        .arg(std::env::current_exe().unwrap())
+        .env("GANGWERK_READ", dir.path())
+        .output()
+        .unwrap();
+    assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stdout));
 }
 
 /// Objects in shared memory and files in the run directory, of this run.

@@ -3,15 +3,32 @@
 
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Signal of the parent's death. The kernel sends it once for each thread of the parent that had the child in turn, so it is none
 /// that somebody else sends, too.
 const PARENT_DIED: libc::c_int = libc::SIGUSR1;
 
+/// Signals that follow each other within this time \[ns\] are one request: `timeout` sends its own to the child and then to the group,
+/// kernel and shell tell in turn that a terminal was closed.
+const ECHO: u64 = crate::clock::SECOND / 20;
+
+/// Time of the last request \[ns\].
+#[derive(Default)]
+struct LastRequest(Option<u64>);
+
+impl LastRequest {
+    /// Whether a signal is another request.
+    fn is_followed_by(&mut self, signal: libc::c_int, now: u64) -> bool {
+        let another = self.0.is_none_or(|last| signal != PARENT_DIED && now > last + ECHO);
+        self.0 = if another { Some(now) } else { self.0 };
+        another
+    }
+}
+
 /// Asked to end? Cheap to copy, to be looked at once per cycle.
 #[derive(Clone, Debug, Default)]
-pub struct Stop(Arc<AtomicBool>);
+pub struct Stop(Arc<AtomicU32>);
 
 impl Stop {
     /// Blocks the signals, but SIGHUP if it is ignored, in this thread and every thread it starts from now on, and starts the
@@ -21,12 +38,12 @@ impl Stop {
         let stop = Self::default();
         let asked = stop.clone();
         std::thread::Builder::new().name("signals".into()).stack_size(64 << 10).spawn(move || {
-            let mut first = true;
+            let mut last = LastRequest::default();
             loop {
                 let mut signal = 0;
                 // SAFETY: `set` is an initialised set and `signal` a writable integer, both of this thread.
-                if unsafe { libc::sigwait(&set, &mut signal) } == 0 && (first || signal != PARENT_DIED) {
-                    first = false;
+                let taken = unsafe { libc::sigwait(&set, &mut signal) } == 0;
+                if taken && last.is_followed_by(signal, crate::clock::now()) {
                     asked.ask();
                 }
             }
@@ -36,18 +53,18 @@ impl Stop {
 
     /// Whether the process shall end.
     pub fn asked(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.0.load(Ordering::Relaxed) > 0
     }
 
-    /// Request to end since the last call, taken: the first one may be met gently, the second at once. The parent's death is no
-    /// second one.
+    /// A request to end, taken: the first one may be met gently, the second at once. Two stay two, however late somebody looks. The
+    /// parent's death is no second one.
     pub fn taken(&self) -> bool {
-        self.0.swap(false, Ordering::Relaxed)
+        self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |n| n.checked_sub(1)).is_ok()
     }
 
     /// Asks it to end.
     pub fn ask(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.fetch_add(1, Ordering::Relaxed);
     }
 
     /// From now on this process is asked to end when the thread that started it ends, killed or not.
@@ -98,4 +115,31 @@ fn is_ignored(signal: libc::c_int) -> bool {
         action
     };
     action.sa_sigaction == libc::SIG_IGN
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Who looked late took two for one: the supervisor stopped the robot gently where its emergency stop was asked for.
+    #[test]
+    fn two_requests_stay_two_however_late_somebody_looks() {
+        let stop = Stop::default();
+        stop.ask();
+        stop.ask();
+        assert!(stop.asked());
+        assert_eq!([stop.taken(), stop.taken(), stop.taken()], [true, true, false]);
+        assert!(!stop.asked());
+    }
+
+    #[test]
+    fn signals_of_one_request_are_one() {
+        let mut last = LastRequest::default();
+        let all =
+            [(libc::SIGTERM, 0), (libc::SIGHUP, ECHO), (PARENT_DIED, 9 * ECHO), (libc::SIGTERM, 9 * ECHO)];
+        assert_eq!(all.map(|(signal, now)| last.is_followed_by(signal, now)), [true, false, false, true]);
+        let mut last = LastRequest::default();
+        assert_eq!([0, ECHO + 1].map(|now| last.is_followed_by(libc::SIGINT, now)), [true, true]);
+        assert!(LastRequest::default().is_followed_by(PARENT_DIED, 0));
+    }
 }
