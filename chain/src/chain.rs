@@ -14,6 +14,7 @@ use messages::{
     Reason, Sensors, SimState, Verdict, WatchdogReset,
 };
 use planner::Planner;
+use planner::gait::MAX_COMMANDS;
 use planner::obstacles::KnownObstacles;
 use sim_backend::SimBackend;
 use sim_backend::external_plant::ExternalPlant;
@@ -265,7 +266,9 @@ impl Chain {
 
     fn make_plan(&mut self) {
         let c = &mut self.cycle;
-        take_due(&mut self.walk, self.tick, &mut self.due);
+        // As many as the process takes in a cycle; the rest is due in the next one.
+        self.due.clear();
+        self.due.extend(std::iter::from_fn(|| self.walk.due(self.tick)).take(MAX_COMMANDS));
         let seen = (self.tick > 1).then_some(&c.controller_state);
         let output = self.planner.step(self.tick, self.dt, seen, &self.due);
         c.refused += output.answers.iter().filter(|answer| answer.is_err()).count() as u64;

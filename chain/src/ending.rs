@@ -46,7 +46,7 @@ pub struct Ending {
     pub asked: bool,
     /// The robot did not come to a stand when somebody did.
     pub unfinished: bool,
-    /// Commands of the scene that were refused.
+    /// Commands of the scene that were refused, or accepted out of standing and then not to be walked.
     pub refused: u64,
     fell: Option<f64>,
     diverged: Option<f64>,
@@ -58,6 +58,7 @@ pub struct Ending {
     stop: Option<(f64, EventCode)>,
     time: f64,
     powered: bool,
+    stands: bool,
 }
 
 impl Ending {
@@ -73,6 +74,8 @@ impl Ending {
             EventCode::PowerOff => self.off = Some((time, reason)),
             // Armed again: what was before is over, but for a fall.
             EventCode::PowerOn => (self.off, self.stopped) = (None, None),
+            // Out of standing there is no plan that is kept: nothing of the command was done.
+            EventCode::PlanKept if self.stands => self.refused += 1,
             code if stops(code) => self.stop = Some((time, code)),
             _ => {}
         }
@@ -80,7 +83,7 @@ impl Ending {
 
     /// One cycle that begins at `time` \[s\]: whether the supply is measured on, and where in a walk the robot is.
     pub fn see(&mut self, time: f64, powered: bool, gait: GaitState) {
-        (self.time, self.powered) = (time, powered);
+        (self.time, self.powered, self.stands) = (time, powered, gait == GaitState::Standing);
         match gait {
             GaitState::Fallen => self.fell = self.fell.or(Some(time)),
             GaitState::Halted => {
@@ -183,6 +186,17 @@ mod tests {
         ending.see(20.0, powered, gait);
         let (end, time) = ending.end();
         (end.to_string(), time)
+    }
+
+    /// Regression: a walk that could not be planned counted as done, at 0 m/s.
+    #[test]
+    fn what_cannot_be_walked_out_of_standing_is_not_done() {
+        for (gait, refused) in [(GaitState::Standing, 1), (GaitState::Walking, 0)] {
+            let mut ending = Ending::default();
+            ending.see(3.0, true, gait);
+            ending.tell(3.001, EventCode::PlanKept, Detail::Plan(1));
+            assert_eq!(ending.refused, refused, "{gait:?}");
+        }
     }
 
     #[test]

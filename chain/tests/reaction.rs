@@ -2,8 +2,8 @@
 
 use chain::Chain;
 use config::{Setup, root};
-use messages::command::PushCommand;
-use messages::{EventCode, GaitState};
+use messages::command::{DistanceCommand, PushCommand};
+use messages::{Command, EventCode, GaitState};
 use std::f64::consts::PI;
 
 /// \[s\] Length of a push, and how long she is watched after it.
@@ -114,6 +114,33 @@ fn a_standing_robot_that_is_pushed_steps_out() {
     for x in draw(6).take(8) {
         assert_eq!(pushed(&with, 6.0, push(0.2, 2.0 * PI * x)), Some(0));
     }
+}
+
+/// Regression: after a distance that she had walked to its end she stood like a post, and fell.
+#[test]
+fn who_has_walked_a_distance_steps_out_as_well() {
+    let mut setup = setup("stand", true);
+    let distance = DistanceCommand { distance: 0.5, speed: 0.25, acceleration: 0.3 };
+    setup.scene.commands.push((4.0, Command::Distance(distance)));
+    let mass = setup.robot.total_mass;
+    for x in draw(7).take(3) {
+        let angle: f64 = (2.0 * x - 1.0) * 0.17;
+        let impulse = [angle.cos(), angle.sin()].map(|share| share * 0.55 * mass);
+        assert!(pushed(&setup, 14.0 + x, impulse).is_some_and(|steps| steps > 0), "{angle}");
+    }
+}
+
+/// More commands in a cycle than the planner takes in one: all are answered, as by its process.
+#[test]
+fn commands_beyond_those_of_a_cycle_are_taken_in_the_next_one() {
+    let setup = setup("stand", true);
+    let mut chain = Chain::new(&setup).unwrap();
+    (0..(4.0 / chain.cycle()) as u64).for_each(|_| _ = chain.step());
+    (0..40).for_each(|_| chain.command(&Command::Stop));
+    let answered: usize = (0..3)
+        .map(|_| chain.step().answers.iter().filter(|(command, _)| *command == Command::Stop).count())
+        .sum();
+    assert_eq!(answered, 40);
 }
 
 /// Nobody pushes: bit for bit the same walk, whether she would react or not. Ideal and erring sensors, types 1 and 3.

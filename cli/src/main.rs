@@ -224,8 +224,8 @@ enum GangwerkTask {
     /// Time that it takes to tell another process something, over topics, raw iceoryx2, the operating system, the broker.
     Latency {
         /// Rounds of all ways; each takes about 12 s.
-        #[arg(long, default_value_t = 3)]
-        rounds: usize,
+        #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=1000))]
+        rounds: u64,
         /// Picture of the distributions.
         #[arg(long, value_name = "PNG")]
         png: Option<PathBuf>,
@@ -385,7 +385,9 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             cli::fit_friction::main(&file, out, json)?;
             Ok(ExitCode::SUCCESS)
         }
-        GangwerkTask::Latency { rounds, png, json } => cli::latency::main(rounds, png.as_deref(), json),
+        GangwerkTask::Latency { rounds, png, json } => {
+            cli::latency::main(rounds as usize, png.as_deref(), json)
+        }
         GangwerkTask::LatencyEnd { way, dir, core } => {
             cli::latency::answer(&way, &dir, &core)?;
             Ok(ExitCode::SUCCESS)

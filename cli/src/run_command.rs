@@ -113,10 +113,17 @@ pub(crate) fn main(arguments: RunArguments, config: PathBuf) -> Result<ExitCode,
         }
     }
     let mode = if lockstep { Mode::Lockstep } else { Mode::RealTime };
+    // Before there is a place for its log.
+    Setup::load(&config, &scene)?;
     let log = match no_log {
         true => None,
         false => Some(place(out)?.join(format!("{}.mcap", config::scenes::name(&scene)))),
     };
+    if let Some(log) = log.as_ref().filter(|log| recording::is_being_written(log)) {
+        return Err(
+            format!("{}: another run writes it; choose another place with --out", log.display()).into()
+        );
+    }
     let order = RunOptions {
         mode,
         paced,

@@ -32,7 +32,7 @@ pub(crate) enum TopicTask {
         #[arg(long)]
         csv: bool,
         /// End after so many records.
-        #[arg(short = 'n', long, value_name = "RECORDS")]
+        #[arg(short = 'n', long, value_name = "RECORDS", value_parser = clap::value_parser!(u64).range(1..))]
         count: Option<u64>,
         /// Only one.
         #[arg(long, conflicts_with = "count")]
@@ -59,7 +59,7 @@ pub(crate) enum TopicTask {
         #[arg(long, value_name = "HZ", conflicts_with = "seconds")]
         rate: Option<f64>,
         /// Send it so many times, once per second without --rate.
-        #[arg(long, value_name = "COUNT", conflicts_with = "seconds")]
+        #[arg(long, value_name = "COUNT", conflicts_with = "seconds", value_parser = clap::value_parser!(u64).range(1..))]
         times: Option<u64>,
         /// Send it once and end with its answer; a walk without an end stops then.
         #[arg(short = '1', long, conflicts_with_all = ["seconds", "rate", "times"])]

@@ -120,6 +120,23 @@ pub(crate) fn names(directory: &Path, ending: &str) -> Option<Vec<String>> {
     Some(names)
 }
 
+/// Names of the folders in a directory, in alphabetical order.
+pub(crate) fn folders(directory: &Path) -> Vec<String> {
+    let paths: Vec<PathBuf> = match directory.strip_prefix(BUILT_IN) {
+        // Of files two levels below.
+        Ok(within) => {
+            let parents = embedded().iter().filter_map(|(file, _)| file.parent());
+            parents.filter(|folder| folder.parent() == Some(within)).map(Path::to_owned).collect()
+        }
+        Err(_) => {
+            let entries = std::fs::read_dir(directory).into_iter().flatten().flatten();
+            entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect()
+        }
+    };
+    let names = paths.iter().filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()));
+    names.collect::<std::collections::BTreeSet<String>>().into_iter().collect()
+}
+
 fn unreadable(path: &Path, e: &io::Error) -> ConfigError {
     let hint = if e.kind() == io::ErrorKind::NotFound { neighbours(path) } else { String::new() };
     ConfigError::of_file(path, format!("cannot be read: {e}{hint}"))

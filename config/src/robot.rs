@@ -134,6 +134,20 @@ impl Robot {
 
     pub(crate) fn load_hashed(directory: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
         let path = directory.join("robot.toml");
+        if !file::exists(&path)
+            && let Some(robots) = directory.parent()
+        {
+            let known = file::folders(robots);
+            let hint = if known.is_empty() {
+                "check --config".into()
+            } else {
+                format!("there is {}", known.join(", "))
+            };
+            return Err(ConfigError::of_file(
+                directory,
+                format!("no robot, for it has no robot.toml; {hint}"),
+            ));
+        }
         let text = file::text(&path, hash)?;
         let name = directory.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let (mut robot, can) = section::read(&path, &text, |top| (Self::build(top, name), Can::build(top)))?;

@@ -13,6 +13,7 @@ mod friction_ramp;
 mod johnnie;
 mod legs;
 mod lola;
+mod names;
 mod pattern;
 mod robot;
 mod sensors;

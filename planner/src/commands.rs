@@ -51,6 +51,9 @@ impl Intent {
     }
 }
 
+/// What an accepted command leaves: what is wanted from now on, and other steps.
+pub(crate) type Taken = (Intent, Option<StepParameters>);
+
 /// Does a command move the robot?
 pub(crate) fn walks(command: &Command) -> bool {
     use Command::{Distance, Platform, Stand, Start, Velocity};

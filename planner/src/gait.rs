@@ -1,6 +1,6 @@
 //! Gait coordination: standing, starting, walking, stopping (thesis 4.2, figure 4.5), and the planner itself.
 
-use crate::commands::{self, Intent};
+use crate::commands::{self, Intent, Taken};
 use crate::foot_rollover::FootRollover;
 use crate::footsteps::StepDemand;
 use crate::obstacles::KnownObstacles;
@@ -134,7 +134,11 @@ impl Planner {
                 self.forget();
             }
             self.confirm(state);
-            // A skill knows the heights of its ground.
+            // A skill is over when the robot stands again.
+            if tick >= self.rest() && self.next.plan.id == 0 {
+                (self.tasks.active, self.tasks.aborted) = (Skill::Walk, false);
+            }
+            // It knows the heights of its ground.
             let walks = self.tasks.active == Skill::Walk;
             self.builder.footsteps.slope = if walks { state.ground_slope } else { [0.0; 2] };
         }
@@ -237,13 +241,13 @@ impl Planner {
             Command::Stand if matches!(gait, GaitState::Idle | GaitState::Standing) => {
                 Ok((Intent::Stand, None))
             }
-            Command::Start => self.intent.walking(gait).map(|intent| (intent, None)),
+            Command::Start => self.intent.walking(gait).and_then(|intent| self.free(intent, gait, None)),
             Command::Stop | Command::End => Ok((self.stop(), None)),
             // Steps may be commanded at any time; a velocity also starts and stops the walk.
             Command::Step(step) => commands::from_step(step, &self.gait).map(|p| (self.intent, Some(p))),
             Command::Velocity(v) => commands::from_velocity(v, &self.gait).and_then(|p| match p {
                 None => Ok((self.stop(), None)),
-                Some(p) => self.intent.walking(gait).map(|intent| (intent, Some(p))),
+                Some(p) => self.intent.walking(gait).and_then(|intent| self.free(intent, gait, Some(p))),
             }),
             Command::Stand => Err(Reason::NotNow),
             Command::Distance(c) => self.give(SkillTask::Distance(*c), gait),
@@ -263,15 +267,6 @@ impl Planner {
             | Command::Home
             | Command::ZeroForce
             | Command::Lower(_) => return Ok(()),
-        };
-        let taken = match taken {
-            // Half on a platform nobody walks as he likes.
-            Ok((Intent::Walk | Intent::StandThenWalk, Some(_)))
-                if !self.tasks.walk(gait == GaitState::Standing) =>
-            {
-                Err(Reason::NotNow)
-            }
-            taken => taken,
         };
         // A refusal changes nothing.
         match taken {
@@ -294,6 +289,11 @@ impl Planner {
         }
     }
 
+    /// To walk as one likes, which ends a skill. Half on a platform nobody does.
+    fn free(&mut self, to: Intent, gait: GaitState, with: Option<StepParameters>) -> Result<Taken, Reason> {
+        self.tasks.walk(gait == GaitState::Standing).then_some((to, with)).ok_or(Reason::NotNow)
+    }
+
     /// A stop, by whatever command: no skill is done to its end, and none waits any more.
     fn stop(&mut self) -> Intent {
         self.tasks.stop();
@@ -307,8 +307,13 @@ impl Planner {
     }
 
     /// A skill comes next: at once from standing, otherwise after a stop.
-    fn give(&mut self, task: SkillTask, gait: GaitState) -> Result<(Intent, Option<StepParameters>), Reason> {
+    fn give(&mut self, task: SkillTask, gait: GaitState) -> Result<Taken, Reason> {
         let begin = self.intent.walking(gait)?;
+        // One waits at most: who was told that it was accepted finds it done.
+        if self.tasks.next.is_some() {
+            return Err(Reason::NotNow);
+        }
+        task.check_speed(&self.gait)?;
         if let Err((code, detail)) = task.check(&self.gait, &self.builder.model.soles[RIGHT]) {
             self.events.push(code, detail);
             return Err(Reason::Event { code, detail });

@@ -18,7 +18,7 @@ use crate::steps::{StepParameters, Stride};
 use crate::verdict::Blocked;
 use config::Gait;
 use messages::command::{DistanceCommand, PlatformCommand, VelocityCommand};
-use messages::{Detail, EventCode};
+use messages::{Detail, EventCode, Reason};
 
 /// \[m\] Remaining distance treated as zero.
 const NOTHING: f64 = 1e-6;
@@ -99,6 +99,9 @@ pub enum Skill {
     },
 }
 
+/// Place of the speed among the fields of a distance.
+const SPEED: u8 = 1;
+
 /// Task to begin with from standing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SkillTask {
@@ -109,6 +112,21 @@ pub(crate) enum SkillTask {
 }
 
 impl SkillTask {
+    /// Checks that the gait is as fast as it asks.
+    ///
+    /// # Errors
+    /// The limit of its speed, forward or back.
+    pub(crate) fn check_speed(&self, gait: &Gait) -> Result<(), Reason> {
+        let Self::Distance(d) = self else { return Ok(()) };
+        match cruise(d, gait) {
+            Err(Reason::Limit { low, high, .. }) => {
+                let high = if d.distance < 0.0 { -low } else { high };
+                Err(Reason::Limit { field: SPEED, low: 0.0, high })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Checks that the robot can do it; otherwise code and detail of an event.
     ///
     /// # Errors
@@ -117,7 +135,7 @@ impl SkillTask {
         let no = |code, x: f64| Err((code, Detail::Millimetres((x.abs() * 1e3).round() as u64)));
         match self {
             Self::Distance(d) => match cruise(d, gait) {
-                Some(_) if d.distance.is_finite() && d.acceleration > 0.0 => Ok(()),
+                Ok(Some(_)) if d.distance.is_finite() && d.acceleration > 0.0 => Ok(()),
                 _ => no(EventCode::NoFoothold, d.distance),
             },
             Self::Platform(p) => {
@@ -145,7 +163,7 @@ impl SkillTask {
         let begin = from.frame.compose(&middle);
         match self {
             Self::Distance(d) => {
-                let cruise = cruise(d, gait)?;
+                let cruise = cruise(d, gait).ok()??;
                 let change = gait.step.change[0].min(d.acceleration * cruise.duration * cruise.duration);
                 Some(Skill::Distance(SkillCourse { begin, length: d.distance, cruise, change }))
             }
@@ -224,9 +242,9 @@ impl Tasks {
 }
 
 /// Steps with which the distance is walked.
-fn cruise(d: &DistanceCommand, gait: &Gait) -> Option<StepParameters> {
+fn cruise(d: &DistanceCommand, gait: &Gait) -> Result<Option<StepParameters>, Reason> {
     let forward = d.speed.copysign(d.distance);
-    commands::from_velocity(&VelocityCommand { forward, left: 0.0, turn: 0.0 }, gait).ok().flatten()
+    commands::from_velocity(&VelocityCommand { forward, left: 0.0, turn: 0.0 }, gait)
 }
 
 impl SkillCourse {

@@ -261,14 +261,22 @@ fn what_no_skill_can_do_is_refused_and_named() {
         (platform(0.5, f64::NAN), EventCode::ObstacleTooHigh),
         (platform(0.03, 0.1), EventCode::NoFoothold),
         (platform(f64::NAN, 0.1), EventCode::NoFoothold),
-        (distance(1.0, 5.0), EventCode::NoFoothold),
         (distance(f64::NAN, 0.3), EventCode::NoFoothold),
-        (distance(-1.0, 0.8), EventCode::NoFoothold),
     ] {
         r.events.clear();
         r.step(&[command]);
         let codes: Vec<_> = r.events.iter().map(|e| e.1).collect();
         assert_eq!(codes, [code, EventCode::CommandRefused], "{command:?}");
+    }
+    // Too fast is told with the answer.
+    for command in [distance(1.0, 5.0), distance(-1.0, 0.8)] {
+        r.events.clear();
+        r.step(&[command]);
+        assert_eq!(
+            r.events.iter().map(|e| e.1).collect::<Vec<_>>(),
+            [EventCode::CommandRefused],
+            "{command:?}"
+        );
     }
     r.run(3.0);
     assert_eq!(r.plans.len(), before);

@@ -169,3 +169,56 @@ fn a_stop_before_she_stands_leaves_the_standing() {
         }
     }
 }
+
+/// Regression: of two distances that were accepted one was walked.
+#[test]
+fn a_distance_that_waits_is_not_replaced() {
+    for wait in [0, 1, 50] {
+        let mut r = Robot::with_cycle(&robot::gait(), CYCLE);
+        r.stand();
+        let refused = |r: &Robot| r.events.iter().filter(|e| e.1 == EventCode::CommandRefused).count();
+        if wait == 0 {
+            r.step(&[distance(0.6), distance(0.2)]);
+        } else {
+            // One is walked, one waits for its end, and the third is refused.
+            r.step(&[distance(0.2)]);
+            r.run(3.0);
+            r.step(&[distance(0.6)]);
+            assert_eq!(refused(&r), 0);
+            r.run(wait as f64 * CYCLE);
+            r.step(&[distance(0.2)]);
+        }
+        assert_eq!(refused(&r), 1, "{wait} cycles later");
+    }
+}
+
+/// Regression: steps that were told during a distance made it a walk without an end.
+#[test]
+fn other_steps_do_not_end_a_distance_and_a_start_does() {
+    let step = Command::Step(StepCommand { length: 0.2, side: 0.0, turn: 0.0, duration: 0.8 });
+    for (command, walks) in [(step, false), (Command::Start, true), (SLOW, true)] {
+        let mut r = Robot::with_cycle(&robot::gait(), CYCLE);
+        r.stand();
+        r.step(&[distance(1.0)]);
+        r.run(2.0);
+        r.step(&[command]);
+        r.run(20.0);
+        assert_eq!(r.active.state == GaitState::Walking as u64, walks, "{command:?}");
+    }
+}
+
+/// Regression: a distance faster than the gait was refused for a foothold that was missing on an empty floor.
+#[test]
+fn a_distance_that_is_too_fast_is_refused_with_the_limit() {
+    let gait = robot::gait();
+    for (metres, speed) in [(1.0, 3.0), (-1.0, 1.5)] {
+        let mut r = Robot::with_cycle(&gait, CYCLE);
+        r.stand();
+        let command = Command::Distance(DistanceCommand { distance: metres, speed, acceleration: 0.3 });
+        let output = r.planner.step(r.tick + 1, CYCLE, Some(&r.state), &[command]);
+        let [Err(messages::Reason::Limit { field: 1, low, high })] = output.answers[..] else {
+            panic!("{:?}", output.answers);
+        };
+        assert!(low == 0.0 && high > 0.05 && high < speed, "{high}");
+    }
+}

@@ -89,7 +89,7 @@ impl Page {
                 self.wrong_length += 1;
                 println!("{text}  {name}: {} bytes, but its message has {len}", frame.len);
             }
-            Meaning::Known(name, signals) => print!("{text}  {name}\n{signals}"),
+            Meaning::Known(name, signals) => println!("{text}  {name}\n{}", signals.trim_end()),
         }
     }
 }

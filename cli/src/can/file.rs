@@ -106,6 +106,15 @@ impl RecordingWriter {
         if is_mcap(path) {
             return Ok(Self::Mcap(Box::new(TrafficWriter::create(path)?)));
         }
+        // Readers go by these endings.
+        let other = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase);
+        if let Some(ending @ ("asc" | "trc" | "blf")) = other.as_deref() {
+            let path = path.display();
+            return Err(format!(
+                "{path}: files .{ending} are read, not written; take .log (candump) or .mcap"
+            )
+            .into());
+        }
         let file = File::create(path).map_err(|e| {
             format!("{}: cannot make it: {e}; choose a directory that exists and is writable", path.display())
         })?;
