@@ -30,8 +30,11 @@ pub enum GroundKind {
     Payload,
 }
 
+/// A kind, as [`TABLE`] has it.
+type KindRow = (GroundKind, &'static str, &'static str, f64, &'static [f64], f64);
+
 /// All kinds, what one is called in a table, and its size: unit, times of that in SI, sizes tried by default, largest one.
-const TABLE: &[(GroundKind, &str, &str, f64, &[f64], f64)] = &[
+const TABLE: &[KindRow] = &[
     (GroundKind::StepUp, "step up", "m", 1.0, &[0.02, 0.04], 1.0),
     (GroundKind::StepDown, "step down", "m", 1.0, &[0.04, 0.08], 1.0),
     (GroundKind::Board, "board", "m", 1.0, &[0.02, 0.04], 1.0),
@@ -51,7 +54,7 @@ impl GroundKind {
         TABLE.iter().map(|row| row.0)
     }
 
-    fn row(self) -> &'static (Self, &'static str, &'static str, f64, &'static [f64], f64) {
+    fn row(self) -> &'static KindRow {
         TABLE.iter().find(|row| row.0 == self).expect("every kind has its row")
     }
 
