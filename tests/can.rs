@@ -73,9 +73,9 @@ fn recorded_traffic_gives_the_sensors_of_the_log_and_its_targets_the_traffic() {
     let said = walk.check(&walk.traffic).well();
     // Lola on CAN FD: what is sent in each of 3000 cycles; the answer to the last one comes after its end.
     let lines = walk.text().lines().count() as u64;
-    assert!(said.out.starts_with("3000 cycles: "), "{}", said.out);
+    assert!(said.out.starts_with("3000 of the log's 3000 cycles: "), "{}", said.out);
     let numbers: Vec<u64> = said.out.split_whitespace().filter_map(|word| word.parse().ok()).collect();
-    let (answers, told) = (numbers[1], numbers[2]);
+    let (answers, told) = (numbers[2], numbers[3]);
     assert_eq!(answers / 3000 * 3001 + told, lines, "every frame was compared, but the last answers");
     let mcap = walk.site.path("traffic.mcap").display().to_string();
     walk.can(&["convert", &walk.traffic, &mcap]).well();

@@ -8,7 +8,7 @@ use chain::ending::{Ending, WalkEnd};
 pub const HELP: &str = "\
 Exit codes:
   0    the scene was done, or ended in order by system/end
-  1    an error; a process died or hung; the log is not complete; the simulation diverged
+  1    an error; a process died or hung; the log is not complete because its disk failed; the simulation diverged
   2    the command line is wrong
   3    the robot fell, whatever came before
   4    the motor supply was lost, the joints were stopped, or a command of the scene was refused

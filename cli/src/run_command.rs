@@ -247,8 +247,7 @@ fn run_on(
     } else if outcome.missing > 0 {
         console.say(format!("the log is not complete: {} records are missing", outcome.missing));
     }
-    let incomplete = outcome.log_broken || outcome.missing > 0;
-    let failed = !outcome.lost.is_empty() || incomplete || !told;
+    let failed = !outcome.lost.is_empty() || outcome.log_broken || !told;
     let exit = if failed { Exit::Error } else { Exit::of(&outcome.ending, outcome.interrupted) };
     if matches!(exit, Exit::Fell | Exit::NotDone) {
         let (by, at) = outcome.ending.end();
