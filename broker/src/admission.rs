@@ -38,7 +38,7 @@ impl Sender {
         self.commands(command.address().0)
     }
 
-    /// Whether there is a command for which it would need the lease.
+    /// Right to some command that needs the lease.
     fn may_hold_lease(&self) -> bool {
         let commands = COMMANDS.iter().map(|info| info.example());
         commands.filter(Command::needs_lease).any(|command| self.may_command(&command))

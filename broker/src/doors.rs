@@ -242,7 +242,7 @@ impl Door {
         self.token = if self.token >= last { self.places.first } else { self.token + 1 };
     }
 
-    /// Whether there is a place for one more connection of this peer. If there is none, and keys are shown here, the oldest one
+    /// Place for one more connection of this peer. If there is none, and keys are shown here, the oldest one
     /// that has not proved any is closed for it: whoever has a key would be locked out by a crowd of those who have none.
     fn has_place(&mut self, peer: Peer) -> bool {
         let each = match peer {

@@ -8,7 +8,7 @@ use tokio::sync::oneshot;
 
 use crate::members::Outgoing;
 
-/// What a connection hands in, most of it with the sequence of its frame. It is answered on the connection.
+/// Request of a connection, mostly with the sequence of its frame. It is answered on the connection.
 #[allow(missing_docs, reason = "fields are the token of a connection and the contents of its frame")]
 pub enum Request {
     /// A command that came as one of this class.

@@ -184,6 +184,7 @@ impl Page {
         let mut budget = Budget::new();
         let mut arrivals = Arrivals::new(stream, self.hall.beats.clone());
         loop {
+            // How old it may be goes with whatever comes of it.
             let (message, since) = arrivals.next().await?;
             self.since = since;
             let text = match message {

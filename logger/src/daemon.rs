@@ -92,6 +92,7 @@ pub fn serve(space: &Space, output: LogOutput, mode: Mode, stop: &Stop) -> Resul
     for topic in TOPICS.iter().filter(|t| t.logged && t.name != EVENTS_LOGGER.name) {
         with_type(topic.name, FollowTopic { space, logging: &mut logging }).unwrap_or(Ok(()))?;
     }
+    // Until asked to stop: a pass over all rings, and the disk now and then.
     let mut signals = Signals::open(space, mode)?;
     let nap = if mode == Mode::Lockstep { NAP_LOCKSTEP } else { NAP_REAL_TIME };
     let mut flushed = clock::now();

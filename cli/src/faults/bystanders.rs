@@ -175,7 +175,7 @@ fn no_broker(robot: &mut RobotUnderTest, _: &Lab) -> Result<FaultObservation, St
     Ok(seen.demand(answers, "it answers an operator"))
 }
 
-/// Whether a broker that was started again answers an operator before long.
+/// Answer to an operator by a broker that was started again, before long.
 fn answers(robot: &mut RobotUnderTest) -> Result<bool, String> {
     for _ in 0..10 {
         if robot.publish(&["head/rest"])?.code == Some(0) {

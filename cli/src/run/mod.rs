@@ -105,7 +105,7 @@ pub struct RunOutcome {
     pub ending: Ending,
     /// Records missing from the log.
     pub missing: u64,
-    /// Whether the logger ended as an error, because its disk failed.
+    /// True if the logger ended as an error, because its disk failed.
     pub log_broken: bool,
 }
 

@@ -409,7 +409,7 @@ fn own_program() -> PathBuf {
     std::env::current_exe().ok().filter(|path| path.exists()).unwrap_or_else(|| "/proc/self/exe".into())
 }
 
-/// Whether a child has ended, or cannot be waited for.
+/// True of a child that has ended, or cannot be waited for.
 fn is_gone(child: &mut Child) -> bool {
     !matches!(child.try_wait(), Ok(None))
 }

@@ -18,7 +18,7 @@ const ECHO: u64 = crate::clock::SECOND / 20;
 struct LastRequest(Option<u64>);
 
 impl LastRequest {
-    /// Whether a signal is another request.
+    /// True of a signal that is another request.
     fn is_followed_by(&mut self, signal: libc::c_int, now: u64) -> bool {
         let another = self.0.is_none_or(|last| signal != PARENT_DIED && now > last + ECHO);
         self.0 = if another { Some(now) } else { self.0 };

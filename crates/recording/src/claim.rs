@@ -32,7 +32,7 @@ pub(crate) fn claim(file: &File, path: &Path) -> Result<(), RecordingError> {
     }
 }
 
-/// Whether somebody writes this log now. To open a pipe would wait for who writes it.
+/// True of a log that somebody writes now. To open a pipe would wait for who writes it.
 pub fn is_being_written(path: &Path) -> bool {
     path.is_file()
         && File::open(path).is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))

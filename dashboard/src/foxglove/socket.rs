@@ -91,6 +91,7 @@ impl ViewerSocket {
         let mut budget = Budget::new();
         let mut arrivals = Arrivals::new(stream, self.hall.beats.clone());
         loop {
+            // How old it may be goes with whatever comes of it.
             let (message, since) = arrivals.next().await?;
             self.since = since;
             let message = match message {

@@ -123,6 +123,7 @@ impl Study for Exploration {
             .flat_map(|seed| self.types.iter().map(move |depth| (*depth, seed)))
             .flat_map(|(depth, seed)| self.network.iter().map(move |network| (depth, *network, seed)))
             .collect();
+        // Each room of each type and network by itself, on all cores.
         let done = AtomicUsize::new(0);
         let explored = parallel::map(cases.len(), |k| {
             let (depth, network, seed) = cases[k];

@@ -74,6 +74,7 @@ impl Room {
         let inside = [[-BEHIND, -0.5 * SIDES[1]], [SIDES[0] - BEHIND, 0.5 * SIDES[1]]];
         let mut room = Self { standing: Vec::new(), objects: Vec::new(), inside };
         room.add_walls();
+        // Boxes anywhere but on the robot, then people, whose ways lead around them.
         for k in 0..boxes {
             let place = |random: &mut Random| Rectangle {
                 middle: [0, 1].map(|i| random.within([inside[0][i], inside[1][i]])),

@@ -79,6 +79,7 @@ fn walks(arguments: &Push, config: &Path) -> Result<Vec<Case>, Error> {
         let setup = Setup::load(config, scene)?;
         Ok(Case { setup, walk: scene.into(), sensors: "scene's".into(), above: 0.0, stands: false })
     };
+    // As the scenes walk, then at the speeds asked for, then standing.
     let base = arguments.scene.as_deref();
     let mut all = Vec::new();
     if arguments.speeds.is_empty() && !arguments.standing {
