@@ -176,6 +176,22 @@ fn what_is_no_run_directory_is_refused_by_every_command() {
     }
 }
 
+/// `--dir .` removed the project's `config`, and then the project.
+#[test]
+fn a_directory_that_holds_somebodys_config_is_no_run_directory() {
+    let site = Site::new(EXE);
+    let (project, run) = (site.path("project"), ["run", "stand", "--lockstep", "--no-log", "--dir"]);
+    std::fs::DirBuilder::new().mode(0o700).create(&project).unwrap();
+    std::fs::create_dir(project.join("config")).unwrap();
+    std::fs::write(project.join("config/notes"), "precious").unwrap();
+    let said = site.gangwerk(&[&run[..], &[&project.display().to_string()]].concat());
+    one_error(&said, &["is not a run directory", "`config`", "choose another one with --dir"]);
+    let said = site.gangwerk(&[&run[..], &[&site.path("").display().to_string()]].concat());
+    one_error(&said, &["lies in the run directory", "choose another --dir"]);
+    assert_eq!(std::fs::read_to_string(project.join("config/notes")).unwrap(), "precious");
+    assert_eq!(std::fs::read_dir(&project).unwrap().count(), 1, "and nothing else");
+}
+
 /// A robot in simulated time that stands on its feet.
 struct Robot {
     site: Site,

@@ -200,7 +200,7 @@ fn a_page_walks_her_and_she_stands_when_it_lives_no_more() {
     assert_eq!((&told["name"], &told["value"]), (&json!("planner.swing_height"), &json!(0.071)));
     let set = json!({"type": "set", "name": "planner.swing_height", "value": 9.0});
     assert!(!page.order(set).0);
-    // The page is hidden: it reads, but gives no sign of life.
+    // The page is hidden: it reads, but gives no heartbeat.
     page.texts.clear();
     page.pulse = false;
     let quiet = clock::now();

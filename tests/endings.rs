@@ -4,10 +4,10 @@
 //! Regression: a robot that fell, or lay without supply, was planned for and reported as walking and standing, its simulation
 //! stood still in mid-fall, and the command said 0.
 
-use harness::{Running, Said, Site, doze};
+use harness::{Running, Said, Signal, Site, doze};
 use ipc::Reader;
 use messages::topics::{CONTROLLER_STATE, EVENTS_PLANNER, SIM_STATE};
-use messages::{ControllerState, Event, EventCode, GaitState, SimState};
+use messages::{ControllerState, Event, EventCode, GaitState, Process, SimState};
 use recording::Log;
 use serde_json::Value;
 
@@ -140,6 +140,55 @@ fn who_ends_a_run_in_order_has_a_success() {
     let said = run.end().well();
     let figures: Value = serde_json::from_str(&said.out).unwrap();
     assert_eq!((&figures["ended_by"], &figures["fell"]), (&"asked".into(), &false.into()), "{figures:#}");
+}
+
+/// A run in simulated time that has come to 4 s, walking.
+fn walking(site: &Site) -> Running {
+    site.scene("walk", 600.0, harness::WALK);
+    let mut run = site.run("walk", &["--lockstep", "--no-log"]);
+    let space = run.space();
+    let mut state: Reader<SimState> = space.reader(&SIM_STATE).unwrap();
+    while state.latest().is_none_or(|s| s.time < 4.0) {
+        assert!(run.is_alive(), "{}", run.err());
+        doze(0.005);
+    }
+    run
+}
+
+/// SIGTERM to the joint loop passed for the end of the scene.
+#[test]
+fn a_joint_loop_that_is_ended_in_mid_walk_is_no_success() {
+    let site = Site::new(EXE);
+    let run = walking(&site);
+    run.signal(Process::Lowlevel, Signal::TERM);
+    let said = run.end();
+    assert_eq!(said.code, Some(1), "{said:#?}");
+    assert!(said.err.contains("lowlevel died during the run: exit status: 130"), "{}", said.err);
+}
+
+/// Ctrl-Z stopped the supervisor, and she walked on without it.
+#[test]
+fn ctrl_z_and_ctrl_backslash_end_a_run_as_ctrl_c_does() {
+    for key in [Signal::TSTP, Signal::QUIT] {
+        let site = Site::new(EXE);
+        let run = walking(&site);
+        run.signal_supervisor(key);
+        let said = run.end();
+        assert_eq!(said.code, Some(130), "{key:?}: {said:#?}");
+        assert!(said.err.contains("asked to end: the robot stops and stands first"), "{}", said.err);
+    }
+}
+
+/// SIGXFSZ ended the supervisor without a word.
+#[test]
+fn a_limit_of_the_size_of_files_is_an_error_that_is_told() {
+    let site = Site::new(EXE);
+    site.scene("walk", 600.0, harness::WALK);
+    let arguments = site.run_arguments("walk", &["--lockstep"]);
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let said = site.start_under(&["sh", "-c", "ulimit -f 64; exec \"$@\"", "sh"], &arguments).end();
+    assert_eq!(said.code, Some(1), "{said:#?}");
+    assert!(said.err.contains("error: "), "{said:#?}");
 }
 
 #[test]

@@ -406,6 +406,13 @@ fn it_works_in_simulated_time_and_names_a_robot_that_is_not_there() {
     let _turn = shared_turn();
     let mut rig = Rig::new(Site::patient(EXE), &["--lockstep", "--no-log"]);
     rig.stop();
+    // Other spellings stopped another robot, or none.
+    let dir = format!("--dir={}", rig.site.run_dir().display());
+    for words in [&["estop", &dir][..], &["--config", "/nowhere", "estop", &dir]] {
+        let said = Command::new(EXE).args(words).output().unwrap();
+        let out = String::from_utf8_lossy(&said.stdout).into_owned();
+        assert!(said.status.success() && out.contains("power was off already"), "{said:?}");
+    }
     drop(rig);
     let nowhere = Command::new(EXE).args(["estop", "--dir", "/nowhere/at/all"]).output().unwrap();
     assert_eq!(nowhere.status.code(), Some(1));

@@ -246,7 +246,7 @@ fn ctrl_c_ends_a_run_that_is_still_starting() {
     wait_for(&mut run, "the logger", || site.run_dir().join("logger.lock").exists());
     run.interrupt();
     let said = run.end();
-    assert_eq!(said.code, Some(1), "{said:#?}");
+    assert_eq!(said.code, Some(130), "{said:#?}");
     assert!(said.err.contains("asked to end while starting"), "{}", said.err);
 }
 

@@ -29,7 +29,7 @@ with Client.local(run, "first") as robot:
     print("accepted by", robot.command("walk/velocity", forward=0.2))
     refused(lambda: robot.command("walk/velocity", forward=1.9), "walk/velocity", "planner", "at most")
     refused(lambda: robot.command("walk/velocity", forward=float("nan")), "not a finite number")
-    # The lease stays with who gives signs of life, longer than half a second.
+    # The lease stays with who gives heartbeats, longer than half a second.
     time.sleep(1.0)
     with Client.local(run, "second") as other:
         refused(lambda: other.command("walk/start"), "first", "holds the command lease")

@@ -23,7 +23,7 @@ impl Manager {
         Some(String::from_utf8_lossy(&said[..len]).trim().to_owned())
     }
 
-    /// How many signs of life come in some seconds; none of them may come later than the manager bears.
+    /// How many heartbeats come in some seconds; none of them may come later than the manager bears.
     fn signs(&self, seconds: f64) -> usize {
         let until = clock::now() + (seconds * 1e9) as u64;
         let mut count = 0;

@@ -192,6 +192,19 @@ fn only_realtime_may_name_clocks() {
     }
 }
 
+/// What the compiler cannot check stands in three places, whatever a file allows itself.
+#[test]
+fn unsafe_code_is_where_it_may_be() {
+    let may = ["crates/ipc/", "crates/realtime/", "crates/sercos/src/socket.rs", "tests/tidy.rs"];
+    let words = ["unsafe {", "unsafe fn", "unsafe impl", "unsafe extern", "unsafe(", "unsafe_code"];
+    for path in files(&[".rs"]) {
+        let here = path.display().to_string();
+        for word in words.iter().filter(|_| !may.iter().any(|path| here.starts_with(path))) {
+            assert!(!code(&path).contains(word), "{here} holds {word}: see CONTRIBUTING.md");
+        }
+    }
+}
+
 /// `println!` and `eprintln!` of the standard library wait for a paused terminal and panic when the reader is gone. The command
 /// has those of `crates/terminal` instead; a process says something with `tracing`.
 #[test]

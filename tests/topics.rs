@@ -161,7 +161,7 @@ fn logs_are_told_exported_and_compared() {
     let said = site.gangwerk(&["log", "info", &first]).well();
     assert!(said.out.contains("scene a, robot lola") && said.out.contains("24 joints"), "{}", said.out);
     assert!(
-        said.out.lines().any(|l| l.contains("/gangwerk/sensors") && l.contains(" 1000 ")),
+        said.out.lines().any(|l| l.contains("/gangwerk/sensors") && l.contains(" 1000    1000.0 Hz")),
         "{}",
         said.out
     );

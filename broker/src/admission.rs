@@ -60,7 +60,7 @@ pub fn admit(
     // Nothing that was sent before an emergency stop comes after it.
     let last = sender.last[class as usize].max(sender.last[Priority::High as usize]);
     sender.last[class as usize] = last.max(stamp.sequence);
-    // Whatever its holder sends is a sign of life; only what moves the robot takes a lease that is free.
+    // Whatever its holder sends is a heartbeat; only what moves the robot takes a lease that is free.
     lease.renew(sender.token, stamp.sent_ns, now_ns);
     // Ending all processes is no matter of old or new, but of who may.
     let ends = *command == Command::End && !sender.may_command(command);
@@ -97,7 +97,7 @@ pub fn take_lease(
     }
     // A lease that begins long ago would be over at once, and with it the walk of the former holder.
     stamp.check_age(now_ns).map_err(Denied::Reason)?;
-    // Who takes a walk over must be able to end it.
+    // Taking over a walk takes the right to end it.
     let over = over && sender.commands(Domain::Walk);
     match lease.holder(now_ns).filter(|holder| *holder != sender.token) {
         Some(holder) if !over => Err(Denied::LeaseHeld(holder)),

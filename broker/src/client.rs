@@ -17,6 +17,7 @@ use std::time::Duration;
 
 use ipc::{Doorbell, QueueReceiver, QueueSender, QueueWaiter, Space};
 use messages::command::{Domain, Priority};
+use messages::command_answer::code;
 use messages::{Command, CommandSource, Lease, Live, Reason, Stamp, Verdict};
 use realtime::clock::{SECOND, now};
 use rtrb::{Consumer, Producer, RingBuffer};
@@ -393,8 +394,8 @@ fn hear(message: &Message<'_>, shared: &ConnectionState, answers: &mut Producer<
         }
         service::ACCEPTED | service::REFUSED if sequence != 0 => {
             let refused = message.id == service::REFUSED;
-            let code = if refused { message.payload.first().copied().unwrap_or(1) } else { 0 };
-            // Who does not ask for answers lets the ring run full.
+            let code = if refused { message.payload.first().copied().unwrap_or(code::MALFORMED) } else { 0 };
+            // A caller that does not ask for answers lets the ring run full.
             let _ = answers.push(Answered { sequence, code });
         }
         _ => {}

@@ -1,7 +1,7 @@
 //! One connection over a stream, from its first byte to its end: `docs/protocol.md`.
 //!
 //! A frame is its length as u32, little endian, and then a message as in [`crate::message`]; on a connection that has
-//! proved a key, a tag of 16 bytes follows, which the length counts. Every frame of a client but a sign of life is
+//! proved a key, a tag of 16 bytes follows, which the length counts. Every frame of a client but a heartbeat is
 //! answered, with the number of the frame; commands are answered when the process that decides has decided.
 //!
 //! Limits: a frame must be complete [`FRAME_TIME`] after its first byte, the first one as soon after connecting; a
@@ -16,18 +16,20 @@ use std::time::Duration;
 
 use messages::Command;
 use messages::command::Domain;
-use realtime::clock::{SECOND, now};
+use realtime::Bucket;
+use realtime::clock::now;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::sync::{Semaphore, mpsc, oneshot};
 use tokio::time::{sleep, timeout};
 
 use crate::exchange::FIRST_STREAM;
+use crate::identity::identity;
 use crate::inlet::{BrokerTable, Gate, Request};
 use crate::keys::{self, Half, Key, NONCE, TAG};
 use crate::log_gate::LogGate;
 use crate::members::Outgoing;
 use crate::message::{
-    HEAD, MAX_BYTES, Message, SERVICE, VERSION, schema, service, service_message, split_u32, split_u64,
+    HEAD, MAX_BYTES, Message, SERVICE, VERSION, frame, schema, service, service_message, split_u32, split_u64,
 };
 use crate::refusal::Refusal;
 
@@ -36,7 +38,7 @@ pub const FRAME_TIME: Duration = Duration::from_secs(2);
 /// Longest silence of a client.
 pub const IDLE_TIME: Duration = Duration::from_secs(60);
 /// Messages per second, and at once, of a connection that may command.
-pub const RATE: f64 = 2000.0;
+pub const RATE: u64 = 2000;
 /// Frames of one connection that are not answered yet.
 pub const UNANSWERED: usize = 64;
 /// Most states of the robot per second that a client gets; the broker looks a hundred times a second.
@@ -60,7 +62,7 @@ pub struct Rights {
     /// One place too many: it is heard for a stop and what clients say before one, and for nothing else.
     pub only_stops: bool,
     /// Messages per second, and as many at once.
-    pub rate: f64,
+    pub rate: u64,
     /// Keys that it may show.
     pub keys: Arc<Vec<Key>>,
 }
@@ -116,7 +118,7 @@ pub(crate) async fn serve_at_door(
     let permits = Arc::new(Semaphore::new(UNANSWERED));
     let (incoming, outgoing) = (None, Arc::new(OnceLock::new()));
     let mut speaking = std::pin::pin!(speak(write, given, subscribed, permits.clone(), outgoing.clone()));
-    let bucket = Bucket { level: rights.rate, rate: rights.rate, at_ns: now() };
+    let bucket = Bucket::full(rights.rate, rights.rate);
     let mut session = Session {
         bucket,
         gate,
@@ -173,11 +175,7 @@ async fn speak(
         if half.is_none() {
             half = seal.get().cloned();
         }
-        let tag = half.as_mut().map(|half| half.seal(&message));
-        let tag = tag.as_ref().map_or(&[][..], |tag| &tag[..]);
-        let mut frame = ((message.len() + tag.len()) as u32).to_le_bytes().to_vec();
-        frame.extend_from_slice(&message);
-        frame.extend_from_slice(tag);
+        let frame = frame(&message, half.as_mut());
         if !matches!(timeout(FRAME_TIME, write.write_all(&frame)).await, Ok(Ok(()))) {
             return;
         }
@@ -219,7 +217,7 @@ impl Session {
     /// Takes from the ration what must not be refused. Beyond it this connection waits, so that a flood of stops is no quicker
     /// than any other.
     async fn hold_back(&mut self) {
-        let wait = self.bucket.owe(now());
+        let wait = Duration::from_nanos(self.bucket.owe(now()));
         if !wait.is_zero() {
             sleep(wait).await;
         }
@@ -277,7 +275,7 @@ impl Session {
 
     async fn publish(&mut self, message: &Message<'_>, bytes: &[u8]) -> Result<(), Refusal> {
         if !self.joined {
-            // Who is in a hurry stops the robot without a word of greeting.
+            // A stop is accepted before HELLO.
             let stops = message.command().is_ok_and(|c| matches!(c, Command::EmergencyStop | Command::Stop));
             if !stops {
                 return Err(Refusal::NoAccess("the first frame of a connection is HELLO".into()));
@@ -331,7 +329,7 @@ impl Session {
             return Err(Refusal::NotAuthentic);
         }
         self.rights.reads = true;
-        self.bucket.rate = RATE;
+        self.bucket.change_rate(RATE, now());
         self.proven.store(true, Relaxed);
         // From here on both directions carry tags: also what the broker sends to whoever joins.
         self.incoming = Some(to_broker);
@@ -351,7 +349,7 @@ impl Session {
     async fn join(&mut self, name: String, may: u32) -> Result<(), Refusal> {
         let (done, joined) = oneshot::channel();
         let (token, peer) = (self.token, &self.rights.peer);
-        let name = if name.is_empty() { peer.clone() } else { format!("{name} ({peer})") };
+        let name = identity(&name, peer);
         self.gate.ask(Request::Join { token, name, may, out: self.out.clone(), done });
         match timeout(FRAME_TIME, joined).await {
             Ok(Ok(())) => self.joined = true,
@@ -450,38 +448,6 @@ async fn read_frame<'a>(
 
 fn length(bytes: usize) -> String {
     format!("length {bytes}, a frame has {HEAD} to {MAX_BYTES} bytes")
-}
-
-/// A token bucket: so many per second, as many at once.
-#[derive(Clone, Copy, Debug)]
-struct Bucket {
-    level: f64,
-    rate: f64,
-    at_ns: u64,
-}
-
-impl Bucket {
-    fn take(&mut self, now_ns: u64) -> bool {
-        self.fill(now_ns);
-        let free = self.level >= 1.0;
-        if free {
-            self.level -= 1.0;
-        }
-        free
-    }
-
-    /// Takes one that may not be there yet; how long it is until it will be.
-    fn owe(&mut self, now_ns: u64) -> Duration {
-        self.fill(now_ns);
-        self.level -= 1.0;
-        Duration::from_secs_f64((-self.level).max(0.0) / self.rate)
-    }
-
-    fn fill(&mut self, now_ns: u64) {
-        let passed = now_ns.saturating_sub(self.at_ns) as f64 / SECOND as f64;
-        self.level = (self.level + self.rate * passed).min(self.rate);
-        self.at_ns = now_ns;
-    }
 }
 
 /// Writes why a connection was closed, unless there are too many such lines.

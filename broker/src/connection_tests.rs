@@ -119,34 +119,6 @@ fn answers_give_permits_back() {
     });
 }
 
-#[test]
-fn messages_are_rationed() {
-    let mut bucket = Bucket { level: 500.0, rate: 500.0, at_ns: 0 };
-    assert_eq!((0..10_000).filter(|_| bucket.take(0)).count(), 500);
-    assert_eq!((0..10_000).filter(|_| bucket.take(SECOND / 10)).count(), 50);
-}
-
-/// 40 of 40 stops of a client with too many velocities were refused. Each of them is taken now, a flood of them at the rate
-/// of everything else.
-#[test]
-fn a_stop_beyond_the_ration_waits_for_it() {
-    let mut bucket = Bucket { level: 1.5, rate: 100.0, at_ns: 0 };
-    let ms = |waits: Duration| waits.as_secs_f64() * 1e3;
-    assert_eq!((bucket.take(0), bucket.take(0)), (true, false));
-    assert!((ms(bucket.owe(0)) - 5.0).abs() < 1e-6, "half of it is there");
-    assert!((ms(bucket.owe(0)) - 15.0).abs() < 1e-6);
-    let at = SECOND / 50;
-    assert!(!bucket.take(at), "what was owed is paid first");
-    assert_eq!(bucket.owe(SECOND), Duration::ZERO);
-    // A flood of stops, each sent when the one before was taken.
-    let (mut now, mut taken) = (SECOND, 0);
-    while now < 11 * SECOND {
-        now += bucket.owe(now).as_nanos() as u64;
-        taken += 1;
-    }
-    assert!((1000..=1110).contains(&taken), "{taken} stops in 10 s at 100 per second");
-}
-
 proptest! {
     #[test]
     fn noise_never_panics(noise in prop::collection::vec(any::<u8>(), 0..2000)) {

@@ -27,6 +27,7 @@ use tokio::task::AbortHandle;
 
 use crate::connection::{self, RATE, Rights};
 use crate::exchange::FIRST_STREAM;
+use crate::identity;
 use crate::inlet::Gate;
 use crate::keys::Key;
 use crate::log_gate::LogGate;
@@ -58,7 +59,7 @@ const OTHER_USERS: usize = 4;
 /// Places at the TCP port.
 pub const TCP_PLACES: DoorPlaces = DoorPlaces { total: 32, each: 16, first: 0xc000_0000 };
 /// Messages per second, and at once, of a connection that may not command, or not yet.
-const STRANGER_RATE: f64 = 100.0;
+const STRANGER_RATE: u64 = 100;
 
 /// Peer of a new connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,9 +136,9 @@ pub(crate) fn serve_socket(listener: UnixListener, owner: u32, gate: Gate) -> Re
                     let Ok(credentials) = stream.peer_cred() else { continue };
                     let uid = credentials.uid();
                     let own = uid == owner || uid == 0;
-                    let pid = credentials.pid().map_or("?".into(), |pid| pid.to_string());
+                    let name = identity::of_process(uid, credentials.pid());
                     let (read, write) = stream.into_split();
-                    door.admit(Peer::User { uid, own }, format!("user {uid}, pid {pid}"), read, write);
+                    door.admit(Peer::User { uid, own }, name, read, write);
                 }
                 Err(e) => door.wait_for_resources(&e).await,
             }
@@ -254,7 +255,7 @@ impl Door {
         if all < self.places.total && own < each {
             return true;
         }
-        // Who has a full share gives way to itself only.
+        // A peer with a full share gives way to itself only.
         let gives_way =
             |open: &Open| !open.only_stops && !open.proven.load(Relaxed) && (own < each || open.peer == peer);
         let oldest = self.open.iter().position(gives_way).filter(|_| !self.keys.is_empty());

@@ -65,7 +65,7 @@ impl LeaseKeeper {
         Ok(self.grant)
     }
 
-    /// Sign of life of `token`, sent at `sent_ns`. One that comes after the end renews nothing.
+    /// Heartbeat of `token`, sent at `sent_ns`. One that comes after the end renews nothing.
     pub fn renew(&mut self, token: u32, sent_ns: u64, now_ns: u64) {
         if self.holder(now_ns) == Some(token)
             && let Some(holder) = &mut self.holder
@@ -120,7 +120,7 @@ mod tests {
 
     /// The broker stood still; what its clients sent meanwhile lies in its sockets.
     #[test]
-    fn a_sign_of_life_counts_from_when_it_was_sent() {
+    fn a_heartbeat_counts_from_when_it_was_sent() {
         let mut lease = LeaseKeeper::new(0);
         assert_eq!(lease.admit(1, 0, 0), Ok(1));
         let after = 3 * LEASE;

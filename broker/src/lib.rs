@@ -5,17 +5,20 @@
 //! - [`admission`], [`lease`]: whether a command may pass, and who may move the robot: pure, with time as an argument.
 //! - [`daemon`]: the process around it, `gangwerk broker --run DIR`.
 //! - [`doors`], [`connection`], [`stream_client`]: the same messages over a Unix socket in the run directory, or over TCP.
+//! - [`awaited`], [`identity`]: what such clients need besides: requests on their way, and who holds the lease.
 //! - [`observation`]: parameters, events and state of the running robot, for clients that watch.
 //! - [`message`], [`refusal`]: how a message looks in queues and in frames, and what makes it refused.
 //!
 //! What the robot does never waits for the broker: without it, publishing counts a loss and receiving finds nothing.
 
 pub mod admission;
+pub mod awaited;
 pub mod client;
 pub mod connection;
 pub mod daemon;
 pub mod doors;
 pub mod exchange;
+pub mod identity;
 pub mod inlet;
 pub mod keys;
 pub mod lease;
@@ -27,6 +30,7 @@ mod pending;
 pub mod refusal;
 pub mod stream_client;
 
+pub use awaited::Awaited;
 pub use client::Client;
 pub use members::Outgoing;
 pub use refusal::Refusal;

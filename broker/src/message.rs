@@ -16,8 +16,9 @@
 
 use messages::command::{Domain, Priority};
 use messages::command_text::COMMANDS;
-use messages::{Command, Stamp, wire};
+use messages::{Command, FNV1A, Stamp, fnv1a, wire};
 
+use crate::keys::Half;
 use crate::refusal::Refusal;
 
 /// Version of the protocol: changes with the layout of messages and with the meaning of services.
@@ -39,7 +40,7 @@ pub mod service {
     pub const SUBSCRIBE: u16 = 3;
     /// Ask for statistics, by stream.
     pub const STATISTICS: u16 = 4;
-    /// Sign of life, by stream; renews the sender's lease and is not answered.
+    /// Heartbeat, by stream; renews the sender's lease and is not answered.
     pub const PING: u16 = 5;
     /// Verdict on a command, by queue: `[token u32, origin u32, code u8, text]`; the head has the command's sequence.
     pub const VERDICT: u16 = 6;
@@ -80,11 +81,7 @@ pub mod service {
 
 /// Hash of everything that the payloads mean: names, addresses, fields and ranges of all commands (FNV-1a, 64 bits).
 pub fn schema() -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325u64;
-    for line in describe() {
-        hash = line.bytes().fold(hash, |h, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
-    }
-    hash
+    describe().iter().fold(FNV1A, |hash, line| fnv1a(hash, line.bytes()))
 }
 
 /// The table of commands for programs that learn it from the broker, one command per line:
@@ -221,6 +218,13 @@ pub fn service_message(id: u16, sequence: u64, now_ns: u64, payload: &[u8]) -> V
     write_stamp(&mut bytes, &Stamp { sequence, sent_ns: now_ns, ..Stamp::default() });
     bytes.extend_from_slice(&payload[..payload.len().min(MAX_BYTES - HEAD)]);
     bytes
+}
+
+/// A frame: length, message, and its tag on a connection that has proved a key.
+pub(crate) fn frame(message: &[u8], half: Option<&mut Half>) -> Vec<u8> {
+    let tag = half.map(|half| half.seal(message));
+    let tag = tag.as_ref().map_or(&[][..], |tag| &tag[..]);
+    [&((message.len() + tag.len()) as u32).to_le_bytes()[..], message, tag].concat()
 }
 
 /// The u32 in front, and the rest.

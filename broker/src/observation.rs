@@ -214,10 +214,10 @@ impl Observation {
 fn own() -> [ParameterEntry; 5] {
     let seconds = |ns: u64| ns as f64 / 1e9;
     [
-        ("lease", "s", seconds(LEASE), "command lease after the last sign of life of its holder"),
+        ("lease", "s", seconds(LEASE), "command lease after the last heartbeat of its holder"),
         ("max_age", "s", seconds(MAX_AGE), "age from which a command is dropped"),
         ("answer_time", "s", seconds(ANSWER_TIME), "time in which a process must answer a command"),
-        ("rate", "1/s", RATE, "frames of one connection that may command"),
+        ("rate", "1/s", RATE as f64, "frames of one connection that may command"),
         ("unanswered", "", UNANSWERED as f64, "frames of one connection that are not answered yet"),
     ]
     .map(|(name, unit, value, about)| ParameterEntry {

@@ -1,5 +1,6 @@
 //! Refusals of the broker: why a frame, a connection or a command does not go on, with its number in the protocol.
 
+use messages::command_answer::code;
 use messages::{Command, Reason};
 
 use crate::message::{VERSION, service, service_message};
@@ -51,19 +52,19 @@ impl Refusal {
     /// Number for the wire and the log.
     pub const fn code(&self) -> u8 {
         match self {
-            Self::Malformed(_) => 1,
-            Self::TimedOut(_) => 2,
-            Self::TooManyConnections(_) => 3,
-            Self::NotACommand(_) => 4,
-            Self::OutOfRange(_) => 5,
-            Self::Busy(_) => 6,
-            Self::Version { .. } => 7,
-            Self::NoAccess(_) => 8,
-            Self::LeaseHeld(_) => 9,
-            Self::NobodyListens(_) => 10,
-            Self::NoAnswer(_) => 11,
-            Self::NotAuthentic => 12,
-            Self::NoParameter(_) => 13,
+            Self::Malformed(_) => code::MALFORMED,
+            Self::TimedOut(_) => code::TIMED_OUT,
+            Self::TooManyConnections(_) => code::TOO_MANY_CONNECTIONS,
+            Self::NotACommand(_) => code::NOT_A_COMMAND,
+            Self::OutOfRange(_) => code::OUT_OF_RANGE,
+            Self::Busy(_) => code::BUSY,
+            Self::Version { .. } => code::VERSION,
+            Self::NoAccess(_) => code::NO_ACCESS,
+            Self::LeaseHeld(_) => code::LEASE_HELD,
+            Self::NobodyListens(_) => code::NOBODY_LISTENS,
+            Self::NoAnswer(_) => code::NO_ANSWER,
+            Self::NotAuthentic => code::NOT_AUTHENTIC,
+            Self::NoParameter(_) => code::NO_PARAMETER,
             Self::Reason(reason, ..) => reason.code(),
         }
     }

@@ -10,19 +10,22 @@ use std::time::Duration;
 
 use messages::command::{Domain, Priority};
 use messages::{Command, Stamp};
-use realtime::clock::now;
+use realtime::clock::{SECOND, now};
 
+use crate::awaited::PATIENCE;
 use crate::doors::SOCKET;
 use crate::keys::{Half, Key, NONCE, TAG, nonce, session};
 use crate::message::{
-    HEAD, MAX_BYTES, Message, SERVICE, VERSION, domain_mask, schema, service, service_message, split_u32,
-    split_u64, write_command,
+    HEAD, MAX_BYTES, Message, SERVICE, VERSION, domain_mask, frame, schema, service, service_message,
+    split_u32, split_u64, write_command,
 };
 
 /// Timeout for the broker's answer; a process that decides has less.
-const ANSWER_TIME: Duration = Duration::from_secs(3);
-/// Sign of life of a client that only listens, and of one that holds the lease.
+const ANSWER_TIME: Duration = Duration::from_nanos(PATIENCE);
+/// Heartbeat of a client that only listens, and of one that holds the lease.
 pub(crate) const PING_TIME: Duration = Duration::from_millis(100);
+/// Silence of a client without the lease after which it is to give a heartbeat, to keep its connection \[ns\].
+pub const IDLE: u64 = 20 * SECOND;
 
 /// Operations common to Unix and TCP streams.
 trait Stream: Read + Write + Send {
@@ -106,7 +109,8 @@ pub struct StreamClient {
     halves: Option<[Half; 2]>,
     /// Newest time of the broker and own time when it came, on a network: no clock is shared there.
     clock: Option<(u64, u64)>,
-    token: u32,
+    /// Time of the last frame to the broker \[ns\].
+    spoke: u64,
 }
 
 impl StreamClient {
@@ -143,7 +147,7 @@ impl StreamClient {
     ) -> Result<Self, String> {
         stream.set_timeouts(ANSWER_TIME, ANSWER_TIME).map_err(|e| e.to_string())?;
         let (partial, waiting) = (Vec::new(), VecDeque::new());
-        let mut client = Self { stream, partial, waiting, sequence: 0, halves: None, clock, token: 0 };
+        let mut client = Self { stream, partial, waiting, sequence: 0, halves: None, clock, spoke: 0 };
         let own = nonce()?;
         let mut hello = VERSION.to_le_bytes().to_vec();
         hello.extend(schema().to_le_bytes());
@@ -162,7 +166,6 @@ impl StreamClient {
                 None => return Err(silent()),
             }
         };
-        client.token = welcome.token;
         if let Some(key) = key {
             let halves = session(key, &own, &welcome.nonce);
             let sequence = client.request(service::PROVE, &halves[0].proof())?;
@@ -172,11 +175,6 @@ impl StreamClient {
             client.answer(sequence).map_err(wrong)?.accepted()?;
         }
         Ok(client)
-    }
-
-    /// Number of this connection at the broker.
-    pub fn token(&self) -> u32 {
-        self.token
     }
 
     /// The broker's time \[ns\]: on this machine everybody's; on a network the newest one heard and the own time since,
@@ -255,14 +253,6 @@ impl StreamClient {
         self.lines(service::STATISTICS, &[])
     }
 
-    /// Parameters of all processes, one per line (docs/protocol.md).
-    ///
-    /// # Errors
-    /// The connection may not read, or is lost.
-    pub fn parameters(&mut self) -> Result<Vec<String>, String> {
-        self.lines(service::PARAMETERS, &[])
-    }
-
     /// Watches the robot: its present state at once, and from now on at `rate` \[1/s\] and with `events` what processes
     /// report. What a STATE holds, one number or array per line.
     ///
@@ -318,7 +308,7 @@ impl StreamClient {
         self.request(service::SET, &[&value.to_le_bytes()[..], name.as_bytes()].concat())
     }
 
-    /// Sign of life: keeps the lease for 500 ms more. Not answered.
+    /// Heartbeat: keeps the lease for 500 ms more. Not answered.
     ///
     /// # Errors
     /// The connection is lost.
@@ -326,10 +316,18 @@ impl StreamClient {
         self.request(service::PING, &[]).map(drop)
     }
 
-    /// Next message; none if the timeout passes. Sends heartbeats meanwhile.
+    /// Heartbeat, unless something was sent within `pause` \[ns\]: whatever a client sends is one.
     ///
     /// # Errors
     /// The connection is lost.
+    pub fn keep_alive(&mut self, pause: u64) -> Result<(), String> {
+        if now() > self.spoke + pause { self.ping() } else { Ok(()) }
+    }
+
+    /// Next message; none if the timeout passes. Sends heartbeats meanwhile.
+    ///
+    /// # Errors
+    /// The connection is lost, or the broker closes it for this reason.
     pub fn news(&mut self, timeout: Duration) -> Result<Option<News>, String> {
         if let Some(news) = self.waiting.pop_front() {
             return Ok(Some(news));
@@ -337,30 +335,17 @@ impl StreamClient {
         let mut left = timeout;
         loop {
             let wait = left.min(PING_TIME);
-            if let Some(news) = self.frame(wait)? {
-                return Ok(Some(news));
+            match self.frame(wait)? {
+                // A reason without a number: the connection ends.
+                Some(News::Answer(answer)) if answer.sequence == 0 => return Err(answer.text),
+                Some(news) => return Ok(Some(news)),
+                None => {}
             }
             left -= wait;
             if left.is_zero() {
                 return Ok(None);
             }
             self.ping()?;
-        }
-    }
-
-    /// The next command of the domains subscribed to; other news are passed over.
-    ///
-    /// # Errors
-    /// The connection is lost.
-    pub fn receive(&mut self, timeout: Duration) -> Result<Option<Command>, String> {
-        let until = now() + timeout.as_nanos() as u64;
-        loop {
-            let left = Duration::from_nanos(until.saturating_sub(now()));
-            match self.news(left.max(Duration::from_millis(1)))? {
-                Some(News::Command(command)) => return Ok(Some(command)),
-                Some(_) => {}
-                None => return Ok(None),
-            }
         }
     }
 
@@ -376,13 +361,12 @@ impl StreamClient {
     }
 
     fn write(&mut self, message: &[u8]) -> Result<(), String> {
-        let tag = self.halves.as_mut().map(|[to_broker, _]| to_broker.seal(message));
-        let tag = tag.as_ref().map_or(&[][..], |tag| &tag[..]);
-        let mut frame = ((message.len() + tag.len()) as u32).to_le_bytes().to_vec();
-        frame.extend_from_slice(message);
-        frame.extend_from_slice(tag);
+        let frame = frame(message, self.halves.as_mut().map(|[to_broker, _]| to_broker));
         match self.stream.write_all(&frame) {
-            Ok(()) => Ok(()),
+            Ok(()) => {
+                self.spoke = now();
+                Ok(())
+            }
             // The broker closed the connection; it may have said why.
             Err(e) => Err(match self.frame(ANSWER_TIME) {
                 Ok(Some(News::Answer(answer))) if answer.code != 0 => answer.text,

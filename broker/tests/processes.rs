@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use broker::Client;
 use broker::client::Answered;
-use harness::{Killed, System, pause, play_role, wait_for};
+use harness::{Killed, Receive, System, pause, play_role, wait_for};
 use messages::command::{Domain, Priority, PushCommand, VelocityCommand};
 use messages::command_stamp::LEASE;
 use messages::topics::EVENTS_BROKER;

@@ -16,7 +16,7 @@ use broker::keys::{self, Key};
 use broker::message::{MAX_BYTES, Message, VERSION, schema, service, service_message, write_command};
 use broker::stream_client::News;
 use broker::{Client, StreamClient};
-use harness::{System, pause, play_role, wait_for};
+use harness::{Receive, System, pause, play_role, wait_for};
 use messages::command::{Domain, Priority, PushCommand, VelocityCommand};
 use messages::command_text::COMMANDS;
 use messages::topics::EVENTS_BROKER;
@@ -416,7 +416,7 @@ fn too_many_connections_leave_room_for_an_emergency_stop() {
     let mut late = socket(&system);
     late.write_all(&command(&Command::EmergencyStop, 1, now())).unwrap();
     wait_for("the emergency stop", || watchdog.received().any(|c| c == Command::EmergencyStop));
-    // Who was there before is served on.
+    // Earlier clients are served on.
     assert!(first.statistics().is_ok());
     // Those who say nothing are sent away, and there is room again.
     wait_for("room", || {

@@ -20,7 +20,7 @@ use sim_backend::SimBackend;
 use sim_backend::external_plant::ExternalPlant;
 use watchdog::{Inputs, Watchdog};
 
-/// Cycles that a simulated robot which was stopped makes good for: as many as the rings of the bus hold.
+/// Cycles that a simulated robot which was stopped catches up on: as many as the rings of the bus hold.
 const BUS_DEPTH: usize = messages::topics::BUS_TX.depth;
 
 /// Everything one cycle wrote, by topic.
@@ -213,7 +213,7 @@ impl Chain {
     }
 
     /// One bus cycle of real time in which these processes do not run, as after a SIGSTOP; the others go on with what is
-    /// there. Who runs again finds the newest records, as between processes; the simulated robot makes good for what it
+    /// there. A process that runs again finds the newest records, as between processes; the simulated robot catches up on what it
     /// missed. Ticks are counted by the joint loop and stand still without it.
     pub fn step_without(&mut self, stopped: &[Process]) -> &Cycle {
         let runs = |process: Process| !stopped.contains(&process);
@@ -307,6 +307,7 @@ impl Chain {
             // A refusal is told as an event.
             let verdict = self.joint_loop.command(command);
             if command.decided_by() == Process::Lowlevel.name() {
+                self.cycle.refused += u64::from(verdict.is_err());
                 self.cycle.answers.push((*command, verdict));
             }
         }

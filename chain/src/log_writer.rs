@@ -6,11 +6,12 @@ use std::path::Path;
 use config::Setup;
 use logger::Origin;
 use messages::topics::{
+    COMMANDS_CONTROLLER, COMMANDS_LOWLEVEL, COMMANDS_PLANNER, COMMANDS_SIM_BACKEND, COMMANDS_WATCHDOG,
     CONTROLLER_STATE, EVENTS_CONTROLLER, EVENTS_LOWLEVEL, EVENTS_PLANNER, EVENTS_SIM_BACKEND,
     EVENTS_WATCHDOG, JOINT_TARGETS, PARAMETERS_CONTROLLER, PARAMETERS_PLANNER, PLAN, POWER, SENSORS,
     SIM_STATE,
 };
-use messages::{Detail, Event, EventCode, Header, Process, Record, Topic};
+use messages::{CommandTaken, Detail, Event, EventCode, Header, Live, Process, Record, Topic};
 use recording::Recorder;
 
 use crate::{Chain, Cycle};
@@ -21,13 +22,13 @@ pub struct LogWriter {
     last: Header,
 }
 
-/// Processes of the chain whose events are logged.
-const REPORTERS: [(Process, &Topic); 5] = [
-    (Process::Watchdog, &EVENTS_WATCHDOG),
-    (Process::SimBackend, &EVENTS_SIM_BACKEND),
-    (Process::Planner, &EVENTS_PLANNER),
-    (Process::Controller, &EVENTS_CONTROLLER),
-    (Process::Lowlevel, &EVENTS_LOWLEVEL),
+/// Processes of the chain, with the topics of their events and of the commands that they decide.
+const REPORTERS: [(Process, &Topic, &Topic); 5] = [
+    (Process::Watchdog, &EVENTS_WATCHDOG, &COMMANDS_WATCHDOG),
+    (Process::SimBackend, &EVENTS_SIM_BACKEND, &COMMANDS_SIM_BACKEND),
+    (Process::Planner, &EVENTS_PLANNER, &COMMANDS_PLANNER),
+    (Process::Controller, &EVENTS_CONTROLLER, &COMMANDS_CONTROLLER),
+    (Process::Lowlevel, &EVENTS_LOWLEVEL, &COMMANDS_LOWLEVEL),
 ];
 
 impl LogWriter {
@@ -59,9 +60,15 @@ impl LogWriter {
         self.put(&JOINT_TARGETS, c.joint_targets)?;
         self.put(&POWER, c.power)?;
         self.put(&SIM_STATE, c.sim_state)?;
+        for (command, verdict) in &c.answers {
+            let decides = REPORTERS.iter().find(|(p, ..)| p.name() == command.decided_by());
+            if let Some((.., topic)) = decides {
+                let live = Live::of_scene(*command);
+                self.put(topic, CommandTaken::new(self.last, self.last.tick, &live, verdict, true))?;
+            }
+        }
         for &(process, code, detail) in &c.events {
-            let topic = REPORTERS.iter().find(|(p, _)| *p == process).map(|(_, topic)| *topic);
-            if let Some(topic) = topic {
+            if let Some((_, topic, _)) = REPORTERS.iter().find(|(p, ..)| *p == process) {
                 self.put(topic, Event::new(self.last, code, detail))?;
             }
         }
@@ -75,7 +82,7 @@ impl LogWriter {
     }
 
     fn all(&mut self, code: EventCode) -> Result<(), Box<dyn Error>> {
-        for (_, topic) in REPORTERS {
+        for (_, topic, _) in REPORTERS {
             self.put(topic, Event::new(self.last, code, Detail::Nothing))?;
         }
         Ok(())

@@ -3,6 +3,7 @@
 //! `GANGWERK_SCENES=10` makes up ten scenes instead of two.
 
 use chain::depth::{Choice, Estimate, choose, judge, trial::MethodTrial};
+use config::bus_fault::{BusFault, FaultKind};
 use config::method::Integrator::{Euler, SemiImplicit};
 use config::method::Method;
 use config::tolerance::{Output, Tolerance};
@@ -166,4 +167,21 @@ fn a_trial_that_is_cut_short_says_what_it_did_not_see() {
     let cut = chosen(&setup);
     assert!(cut.not_seen_s.is_some_and(|last| last >= 0.8 - 1e-9), "{cut:?}");
     assert!(cut.reason().contains("was not tried: tolerance.trial ends before"), "{}", cut.reason());
+    // Regression: of a fault of the bus only its begin was counted.
+    setup.scene.pushes.clear();
+    setup.scene.bus_faults = vec![BusFault::new(FaultKind::Lost, 0.3, 0.6)];
+    let cut = chosen(&setup);
+    assert!(cut.not_seen_s.is_some_and(|last| last >= 0.9 - 1e-9), "{cut:?}");
+}
+
+/// On soles eight times as stiff a step of 1 ms is refused at load, so it is none of the methods.
+#[test]
+fn what_is_chosen_is_not_refused() {
+    let mut setup = standing(0.1, &[(Output::Inclination, 0.05), (Output::Position, 0.05)]);
+    setup.scene.plant_mismatch.contact_stiffness = 8.0;
+    setup.robot.drives.clear(); // type 1 alone is left
+    let choice = chosen(&setup);
+    assert!(choice.tried.iter().all(|tried| tried.method.substeps > 1), "{}", choice.reason());
+    setup.scene.choose(choice.method);
+    chain::Chain::new(&setup).unwrap();
 }

@@ -35,7 +35,7 @@ fn both_feedback_paths_walk_alike_and_the_first_takes_the_higher_gain() {
     assert!(stiff.is_none_or(|rms| rms > 2.0 * path_1), "{stiff:?}");
 }
 
-/// Section 4.9: the soles' deformation is made good for in the trajectories or by force control.
+/// Section 4.9: the soles' deformation is compensated in the trajectories or by force control.
 #[test]
 fn both_compensations_of_the_soles_deformation_walk_alike() {
     let force = walk("walk_type3", |_| {}).expect("compensation by force control walks");

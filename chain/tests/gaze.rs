@@ -20,8 +20,7 @@ struct Truth {
 impl Truth {
     fn new(setup: &Setup) -> Self {
         let robot = &setup.robot;
-        let names: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-        let model = Model::from_urdf(&robot.urdf, &robot.torso, &names).unwrap();
+        let model = robot.model().unwrap();
         let head = robot.head.as_ref().unwrap();
         let camera = model.frame(&head.link, head.camera).unwrap();
         Self { data: Data::new(&model), camera, q: model.neutral(), model }

@@ -10,7 +10,7 @@ use messages::{Command, EventCode, Power, WatchdogReset};
 use sim_backend::power::PowerLine;
 use watchdog::{Inputs, Supply, Watchdog};
 
-/// Own cycles without a sign of life, cycles that make an edge, cycles for the relay to close: short, for a small world.
+/// Own cycles without a heartbeat, cycles that make an edge, cycles for the relay to close: short, for a small world.
 const LIMIT: u32 = 2;
 const PAUSE: u32 = 1;
 const CLOSING: u32 = 1;
@@ -244,7 +244,7 @@ fn explore(start: World) -> (usize, Option<(&'static str, usize)>) {
                         continue;
                     }
                     for relay_sees in [true, false] {
-                        // Who does not run hears nothing: too old commands are dropped before they come here.
+                        // A watchdog that does not run hears nothing: too old commands are dropped before they come here.
                         let all =
                             if matches!(dog, Dog::Runs | Dog::RunsLate) { &SAID[..] } else { &SAID[..1] };
                         for said in all {

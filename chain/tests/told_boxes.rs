@@ -88,6 +88,18 @@ fn a_box_that_is_not_told_changes_the_plans() {
     assert!(known.plans.iter().zip(&blind.plans).any(|(a, b)| a != b));
 }
 
+/// A box whose top is the ground: she walks as if nobody had told.
+#[test]
+fn a_box_under_the_ground_changes_no_plan() {
+    let mut setup = Setup::load(&root(None), "obstacle").unwrap();
+    let mut buried = told(&setup, 0.1);
+    let Command::Box(seen) = &mut buried.scene.commands[0].1 else { panic!("a box is told first") };
+    seen.base[2] = -0.1;
+    setup.scene.objects.clear();
+    buried.scene.objects.clear();
+    assert_eq!(walk(&setup).plans, walk(&buried).plans);
+}
+
 /// A box too high to be stepped over is stopped before, and she stands.
 #[test]
 fn a_high_box_is_stopped_before() {

@@ -9,7 +9,7 @@ use chain::depth::{self, Choice, Tried};
 use config::Setup;
 use config::method::{Integrator, Method};
 use indicatif::ProgressBar;
-use sim_backend::step_limit::step_limit_of_ramp;
+use sim_backend::step_limit::step_limit_of_scene;
 
 /// Steps per cycle of a scene that says none.
 const SUBSTEPS: u32 = 4;
@@ -26,7 +26,7 @@ pub struct MethodWish {
 }
 
 impl MethodWish {
-    /// The method for a scene: its own steps per cycle, or a multiple of them with which an explicit integrator is stable.
+    /// The method for a scene: its own steps per cycle, or a multiple of them with which the integrator is stable.
     ///
     /// # Errors
     /// The scene's depth is "auto" and no depth is asked for; or the robot's data do not allow the depth.
@@ -46,11 +46,9 @@ impl MethodWish {
         });
         let substeps = own.map_or(SUBSTEPS, |own| own.substeps);
         // Whole multiples stay on the grid of drives with a clock of their own.
-        let (components, pose) = (scene.components.applied(depth), &robot.poses[&scene.start_pose]);
-        let limit = match scene.force_step {
-            true => None,
-            false => step_limit_of_ramp(robot, components, pose, integrator, scene.friction_ramp)?,
-        };
+        let mut asked = scene.clone();
+        asked.choose(Method { depth, integrator, substeps });
+        let limit = if scene.force_step { None } else { step_limit_of_scene(robot, &asked)? };
         let times =
             limit.map_or(1.0, |limit| (scene.cycle / (limit.step * f64::from(substeps))).ceil().max(1.0));
         let enough = f64::from(substeps) * times;
@@ -138,6 +136,7 @@ mod tests {
         assert_eq!(told("demo", None, Some(Integrator::RungeKutta4)), "type 1, rk4 x 4");
         assert_eq!(told("walk_type5", Some(1), None), "type 1, euler x 10");
         assert_eq!(told("walk_auto", Some(2), None), "type 2, semi_implicit x 4");
+        assert_eq!(told("walk_without_currents", Some(3), None), "type 3, semi_implicit x 3");
         // Steps become as many as an explicit integrator needs; Archie's drives are sampled on a grid of 22 steps.
         for (scene, depth, own, least) in [("walk_without_currents", 3, 1, 2), ("archie_walk", 2, 22, 22)] {
             let told = told(scene, Some(depth), Some(Integrator::Euler));

@@ -4,9 +4,16 @@ use std::io;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::time::Duration;
 
+use realtime::clock;
 use rustix::process::{Pid, Signal, kill_process};
 use terminal::{Console, Feed};
+
+/// A page that was asked to end gets this long.
+const PATIENCE: u64 = 5 * clock::SECOND;
+/// Between two looks at it.
+const LOOK: Duration = Duration::from_millis(10);
 
 /// A page that is served while this lives.
 pub(crate) struct Desk(Child);
@@ -36,6 +43,27 @@ impl Desk {
 impl Drop for Desk {
     fn drop(&mut self) {
         let _ = kill_process(Pid::from_child(&self.0), Signal::TERM);
-        let _ = self.0.wait();
+        let until = clock::now() + PATIENCE;
+        while matches!(self.0.try_wait(), Ok(None)) && clock::now() < until {
+            std::thread::park_timeout(LOOK);
+        }
+        // One that is stopped or hangs holds up no run; one that has ended is not there to be killed.
+        let _ = self.0.kill();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A run never ended beside a page that was stopped.
+    #[test]
+    fn a_page_that_is_stopped_is_not_waited_for() {
+        let child = Command::new("sleep").arg("1000").spawn().unwrap();
+        kill_process(Pid::from_child(&child), Signal::STOP).unwrap();
+        let begun = clock::now();
+        drop(Desk(child));
+        let took = clock::now() - begun;
+        assert!(took < 2 * PATIENCE, "{took} ns");
     }
 }

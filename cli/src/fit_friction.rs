@@ -87,8 +87,13 @@ impl FrictionReport {
                 row.rms_error
             );
         }
-        let share = self.coupled.largest / self.cubic.largest * 100.0;
-        text + &format!("(2.61) leaves {share:.1} % of the largest error of (2.60)")
+        // A model without an error leaves no share of it.
+        if self.cubic.largest > 0.0 {
+            let share = self.coupled.largest / self.cubic.largest * 100.0;
+            text += &format!("(2.61) leaves {share:.1} % of the largest error of (2.60)\n");
+        }
+        text.truncate(text.trim_end().len());
+        text
     }
 
     /// The same as one JSON object.
@@ -166,5 +171,15 @@ mod tests {
             assert!(table.contains(part), "{part}\nis not in\n{table}");
         }
         assert!(report.json().contains("\"gamma\":0.00065"));
+    }
+
+    /// Regression: efficiencies of 1 leave no error to share, and the last line said "NaN %".
+    #[test]
+    fn no_error_leaves_no_share_of_it() {
+        let mut report = run(&config::root(None).join("gears/hfuc_25_100.toml")).unwrap();
+        assert!(report.table().ends_with("% of the largest error of (2.60)"));
+        (report.cubic.largest, report.coupled.largest) = (0.0, 0.0);
+        let table = report.table();
+        assert!(!table.contains("leaves") && !table.contains("NaN") && !table.ends_with('\n'), "{table}");
     }
 }

@@ -11,14 +11,15 @@ use recording::{Log, Repaired, repair};
 use crate::topic::{Echo, EchoTable};
 use messages::fields::{first_difference, numbers};
 
-/// Gives a log its end and index, if it lacks them.
+/// Gives a log its end and index, if it lacks them, and takes out what is damaged.
 ///
 /// # Errors
 /// The file is no log, or there is no room beside it.
 pub fn mend(path: &Path) -> Result<String, Box<dyn Error>> {
-    let Repaired { messages, found } = repair(path)?;
+    let Repaired { messages, found, original } = repair(path)?;
+    let kept = original.map_or(String::new(), |at| format!("; as it was: {}", at.display()));
     Ok(match found {
-        Some(why) => format!("{}: {why}; repaired, with {messages} messages", path.display()),
+        Some(why) => format!("{}: {why}; repaired, with {messages} messages{kept}", path.display()),
         None => format!("{}: complete, with {messages} messages; left as it is", path.display()),
     })
 }
@@ -30,34 +31,56 @@ pub fn mend(path: &Path) -> Result<String, Box<dyn Error>> {
 pub fn info(path: &Path) -> Result<(), Box<dyn Error>> {
     let log = Log::open(path)?;
     head(&log);
-    let mut channels: BTreeMap<String, u64> = BTreeMap::new();
-    // What was written before the first cycle has no time.
-    let (mut first, mut last) = (u64::MAX, 0);
+    let (mut all, mut channels) = (Traffic::default(), BTreeMap::<String, Traffic>::new());
     let end = log.each(|message| {
-        *channels.entry(message.channel.to_owned()).or_default() += 1;
-        if message.log_time_ns > 0 {
-            (first, last) = (first.min(message.log_time_ns), last.max(message.log_time_ns));
-        }
+        all.add(message.log_time_ns);
+        channels.entry(message.channel.to_owned()).or_default().add(message.log_time_ns);
     })?;
-    let seconds = last.saturating_sub(first) as f64 * 1e-9;
+    let (seconds, messages) = (all.seconds(), all.messages);
     let size = std::fs::metadata(path)?.len() as f64 * 1e-6;
-    let messages: u64 = channels.values().sum();
     println!("{seconds:.3} s, {messages} messages, {size:.1} MB, {} joints", log.robot().joints.len());
     if recording::is_being_written(path) {
         println!("it is being written: this is its beginning");
     } else if end != recording::LogEnd::Complete {
         println!("it has no end: `gangwerk log repair {}` makes it whole", path.display());
     }
-    for (channel, count) in channels {
-        let rate = if count > 1 && seconds > 0.0 {
-            format!("{:9.1} Hz", count as f64 / seconds)
-        } else {
-            String::new()
-        };
-        println!("  {channel:36} {count:8} {rate}");
+    for (channel, of) in channels {
+        let rate = of.rate().map_or(String::new(), |rate| format!("{rate:9.1} Hz"));
+        println!("  {channel:36} {:8} {rate}", of.messages);
     }
     println!("`gangwerk dashboard --replay {}` shows it in a browser", path.display());
     Ok(())
+}
+
+/// Messages of a channel, or of all of them.
+#[derive(Default)]
+struct Traffic {
+    messages: u64,
+    /// Of which have a time: what was written before the first cycle has none.
+    timed: u64,
+    /// \[ns\] First and last time.
+    span: Option<[u64; 2]>,
+}
+
+impl Traffic {
+    fn add(&mut self, time_ns: u64) {
+        self.messages += 1;
+        if time_ns > 0 {
+            self.timed += 1;
+            let [first, last] = self.span.unwrap_or([time_ns; 2]);
+            self.span = Some([first.min(time_ns), last.max(time_ns)]);
+        }
+    }
+
+    fn seconds(&self) -> f64 {
+        self.span.map_or(0.0, |[first, last]| (last - first) as f64 * 1e-9)
+    }
+
+    /// \[Hz\] Between n messages there are n - 1 periods.
+    fn rate(&self) -> Option<f64> {
+        let seconds = self.seconds();
+        (self.timed > 1 && seconds > 0.0).then(|| (self.timed - 1) as f64 / seconds)
+    }
 }
 
 /// The line about what a log is of.

@@ -39,7 +39,7 @@ pub(crate) enum LogTask {
         /// Another one.
         b: PathBuf,
     },
-    /// Give a log its end and index that the death of its logger cost: all that is whole is kept.
+    /// Give a log the end that the death of its logger cost; of a damaged one keep every whole chunk, and the original as LOG.damaged.
     Repair {
         /// An MCAP file.
         log: PathBuf,

@@ -56,25 +56,7 @@ enum GangwerkTask {
     Estop,
     /// Run a scene in one process, as fast as possible.
     #[command(after_help = cli::exit::HELP)]
-    Sim {
-        /// Name of a scene, see `gangwerk scene list`, or path of a scene file.
-        scene: String,
-        /// End with one JSON object on standard output.
-        #[arg(long)]
-        json: bool,
-        /// Write a log.
-        #[arg(long, value_name = "FILE")]
-        log: Option<PathBuf>,
-        /// Write the traffic of the bus: candump log, or MCAP if it ends in .mcap.
-        #[arg(long, value_name = "FILE")]
-        can: Option<PathBuf>,
-        /// Frames of classic CAN on the bus, instead of those of CAN FD.
-        #[arg(long)]
-        classic: bool,
-        /// Unix socket of another simulator (external plant), which has the robot instead of ours: docs/external_plant.md.
-        #[arg(long, value_name = "SOCKET")]
-        plant: Option<PathBuf>,
-    },
+    Sim(sim_command::SimArguments),
     /// Look at the topics of a running robot, or send it commands.
     Topic {
         #[command(subcommand)]
@@ -278,7 +260,7 @@ impl GangwerkTask {
         let moves = matches!(
             self,
             Run(_)
-                | Self::Sim { plant: Some(_), .. }
+                | Self::Sim(sim_command::SimArguments { plant: Some(_), .. })
                 | Faults(_)
                 | Console(_)
                 | Dashboard(_)
@@ -306,6 +288,7 @@ fn main() -> ExitCode {
         return code;
     }
     realtime::last_words::abort_at_panic();
+    realtime::ignore_sigxfsz();
     tracing_subscriber::fmt().with_writer(|| terminal::Quiet).without_time().with_target(false).init();
     let arguments = Arguments::parse();
     config::embed(cli::shipped::files());
@@ -330,11 +313,9 @@ fn perform(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         arguments.task.unwrap_or_else(|| GangwerkTask::Run(run_command::RunArguments::demonstration()));
     match task {
         GangwerkTask::Run(arguments) => run_command::main(arguments, config()?),
-        GangwerkTask::Estop => Ok(ExitCode::FAILURE), // done before the command line was parsed
-        GangwerkTask::Sim { scene, json, log, can, classic, plant } => {
-            let (log, can, plant) = (log.as_deref(), can.as_deref(), plant.as_deref());
-            sim_command::run(&config()?, &scene, json, log, can, classic, plant)
-        }
+        // Done before the command line was parsed, unless it was found only now.
+        GangwerkTask::Estop => Ok(cli::estop::run(std::iter::empty())),
+        GangwerkTask::Sim(arguments) => sim_command::run(&config()?, &arguments),
         GangwerkTask::Topic { what, dir } => done(topic_command::run(&dir, what)),
         GangwerkTask::Dashboard(arguments) => done(dashboard_command::run(arguments, asked)),
         GangwerkTask::Joystick(arguments) => done(joystick_command::run(arguments, &config()?)),
@@ -416,7 +397,12 @@ fn daemon(task: GangwerkTask) -> Result<ExitCode, Box<dyn Error>> {
         }
         GangwerkTask::Planner(p) => planner::daemon::main(&p.run, commands(Process::Planner))?,
         GangwerkTask::Controller(p) => controller::daemon::main(&p.run, commands(Process::Controller))?,
-        GangwerkTask::Lowlevel(p) => lowlevel::daemon::main(&p.run, commands(Process::Lowlevel))?,
+        GangwerkTask::Lowlevel(p) => {
+            // Asked to end before the scene was done: no success, unless it is the supervisor who asked.
+            if !lowlevel::daemon::main(&p.run, commands(Process::Lowlevel))? {
+                return Ok(cli::exit::Exit::Interrupted.into());
+            }
+        }
         _ => {}
     }
     Ok(ExitCode::SUCCESS)

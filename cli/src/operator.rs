@@ -1,7 +1,7 @@
 //! `gangwerk topic pub`: a command, its answer, and the operator's presence for as long as the robot walks by it.
 //!
 //! Whoever moves the robot holds the command lease, and a walk without an end ends with the lease. So this program stays
-//! while the robot walks, gives signs of life ten times a second, and stops the walk when it ends; if it is killed, or its
+//! while the robot walks, gives heartbeats ten times a second, and stops the walk when it ends; if it is killed, or its
 //! terminal hangs, the lease runs out and the robot stops by itself.
 
 use std::error::Error;
@@ -9,9 +9,11 @@ use std::path::Path;
 use std::time::Duration;
 
 use broker::StreamClient;
+use broker::identity::is_own;
 use broker::stream_client::News;
 use ipc::{Reader, Space};
 use messages::command::Domain;
+use messages::command_answer::code;
 use messages::topics::CONTROLLER_STATE;
 use messages::{Command, ControllerState, GaitState, Process};
 use realtime::{Stop, clock};
@@ -33,24 +35,16 @@ pub struct OperatorRequest {
     pub take_over: bool,
 }
 
+/// Name at the broker.
+const NAME: &str = "gangwerk topic pub";
 /// Tries of a command that became too old on its way, as on a machine that is busy starting up.
 const TRIES: u32 = 5;
-/// Number of that refusal in the protocol.
-const TOO_OLD: u8 = 20;
 /// Longest time until a skill begins to move the robot \[ns\].
 const BEGIN: u64 = 5 * clock::SECOND;
 /// Most commands per second; the broker refuses what is far more.
 const MOST_PER_SECOND: f64 = 100.0;
-/// Between two looks at what the robot does, and between two signs of life.
+/// Between two looks at what the robot does, and between two heartbeats.
 const LOOK: Duration = Duration::from_millis(50);
-
-/// Connects to the broker of the run in `dir`.
-///
-/// # Errors
-/// No robot runs there.
-pub fn connect(dir: &Path, name: &str) -> Result<StreamClient, String> {
-    StreamClient::connect(dir, name)
-}
 
 /// Sends a command and waits for its answer: the process that accepted it.
 ///
@@ -58,15 +52,23 @@ pub fn connect(dir: &Path, name: &str) -> Result<StreamClient, String> {
 /// The reason of the refusal.
 pub fn give(client: &mut StreamClient, command: &Command, take_over: bool) -> Result<String, String> {
     if take_over && command.needs_lease() {
-        client.take_lease(true)?;
+        accepted(client, |client| client.ask_lease(true))?;
     }
+    accepted(client, |client| client.send(command))
+}
+
+/// Who accepted a request, which is made again if it became too old on its way: it was not carried out then, and whoever waits
+/// here still wants it.
+fn accepted(
+    client: &mut StreamClient,
+    request: impl Fn(&mut StreamClient) -> Result<u64, String>,
+) -> Result<String, String> {
     let mut tries = TRIES;
     loop {
-        let sequence = client.send(command)?;
+        let sequence = request(client)?;
         let answer = client.answer(sequence)?;
         tries -= 1;
-        // It was not carried out, and whoever waits here still wants it.
-        if answer.code != TOO_OLD || tries == 0 {
+        if answer.code != code::TOO_OLD || tries == 0 {
             return answer.accepted();
         }
     }
@@ -86,7 +88,7 @@ pub fn publish(dir: &Path, order: &OperatorRequest) -> Result<(), Box<dyn Error>
             format!("--rate: a number above 0 and up to {MOST_PER_SECOND} per second is needed").into()
         );
     }
-    let mut client = connect(dir, "gangwerk topic pub")?;
+    let mut client = StreamClient::connect(dir, NAME)?;
     if matches!(command, Command::EmergencyStop) {
         // Nothing else comes first.
         println!("{} accepted by {}", command.name(), give(&mut client, &command, false)?);
@@ -125,7 +127,7 @@ fn repeat(
     let period = (1e9 / order.rate.unwrap_or(1.0)) as u64;
     let (begun, times) = (clock::now(), order.times.unwrap_or(u64::MAX));
     for n in 1..times {
-        // Signs of life between two of them: the lease does not last for long.
+        // Heartbeats between two of them: the lease does not last for long.
         while clock::now() < begun + n * period && !stop.asked() {
             client.ping()?;
             let left = (begun + n * period).saturating_sub(clock::now());
@@ -149,7 +151,6 @@ fn accompany(
     seconds: Option<f64>,
     mut done: impl FnMut() -> bool,
 ) -> Result<(), Box<dyn Error>> {
-    let me = format!("pid {})", std::process::id());
     // News of the time before this client had the lease may still be on their way.
     let mut mine = false;
     let until = seconds.map_or(u64::MAX, |s| clock::now().saturating_add((s * 1e9) as u64));
@@ -164,7 +165,7 @@ fn accompany(
                 println!("stopped by somebody else: {}", by.name());
                 return Ok(());
             }
-            Some(News::Lease(_, holder)) if holder.contains(&me) => mine = true,
+            Some(News::Lease(_, holder)) if is_own(&holder, NAME) => mine = true,
             Some(News::Lease(_, holder)) if mine => {
                 let now =
                     if holder.is_empty() { "nobody holds it".into() } else { format!("{holder} has it") };

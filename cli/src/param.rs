@@ -6,6 +6,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
+use broker::StreamClient;
 use broker::observation::Observation;
 use config::registry::{Change, ParameterEntry};
 use ipc::Space;
@@ -120,7 +121,7 @@ pub fn set(dir: &Path, wanted: &[(String, f64)], take_over: bool) -> Result<(), 
     if !wrong.is_empty() {
         return Err(wrong.join("\n       ").into());
     }
-    let mut client = crate::operator::connect(dir, "gangwerk param")?;
+    let mut client = StreamClient::connect(dir, "gangwerk param")?;
     for (entry, value, command) in commands {
         crate::operator::give(&mut client, &command, take_over)?;
         let begun = clock::now();

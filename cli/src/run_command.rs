@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use cli::choose::MethodWish;
 use cli::exit::Exit;
-use cli::run::{RunOptions, RunOutcome};
+use cli::run::{EndedWhileStarting, RunOptions, RunOutcome};
 use config::method::Integrator;
 use config::{BusAddress, Setup};
 use ipc::Mode;
@@ -56,8 +56,8 @@ pub(crate) struct RunArguments {
     #[arg(long)]
     no_log: bool,
     /// Refuse to arm if a process does not get the scheduling and the locked memory that it asks for.
-    #[arg(long, value_name = "required", value_parser = ["required"])]
-    rt: Option<String>,
+    #[arg(long, value_name = "required")]
+    rt: Option<RealTime>,
     /// Log, but draw no pictures.
     #[arg(long)]
     no_plots: bool,
@@ -70,6 +70,12 @@ pub(crate) struct RunArguments {
     /// End, as with Ctrl-C, when this process, which started it, ends.
     #[arg(long, hide = true, value_name = "PID")]
     with_parent: Option<u32>,
+}
+
+/// Demand on the scheduling of the processes. A doc line at a value would be part of the help.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum RealTime {
+    Required,
 }
 
 impl RunArguments {
@@ -135,7 +141,7 @@ pub(crate) fn main(arguments: RunArguments, config: PathBuf) -> Result<ExitCode,
         robot: !no_robot,
         dir: arguments.dir,
         log,
-        rt_required: rt.is_some(),
+        rt_required: rt == Some(RealTime::Required),
     };
     run(order, wish, Results::of(arguments.json, arguments.no_plots), desk)
 }
@@ -208,7 +214,7 @@ fn run(
         desk.then(|| Desk::open(&order.dir, &console).map_err(|e| console.say(format!("no page: {e}"))));
     let exit = run_on(&order, &setup, wanted, stop, &console).unwrap_or_else(|error| {
         console.say(format!("error: {error}"));
-        Exit::Error
+        if error.is::<EndedWhileStarting>() { Exit::Interrupted } else { Exit::Error }
     });
     drop(page);
     console.flush(LAST_WORDS);

@@ -46,7 +46,7 @@ pub(crate) enum TopicTask {
     Delay(Listen),
     /// Send a command and tell its answer, for example: walk/velocity forward=0.3
     ///
-    /// Who moves the robot holds the command lease: a walk goes on for as long as this program runs and ends with it.
+    /// A program that moves the robot holds the command lease: a walk goes on for as long as this program runs and ends with it.
     Pub {
         /// Name of the command.
         command: String,

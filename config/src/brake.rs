@@ -7,9 +7,9 @@ use crate::section::{POSITIVE, Section};
 /// A holding brake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Brake {
-    /// \[N m\] Largest torque it holds on the motor's shaft.
+    /// \[N m\] Largest torque that the brake holds on the motor's shaft.
     pub torque: f64,
-    /// \[s\] From power stage off until it holds; it opens at once.
+    /// \[s\] Time from power stage off until the brake holds; it opens at once.
     pub delay: f64,
 }
 

@@ -79,17 +79,17 @@ pub enum ContactModel {
 /// Changes that a scene makes to the components of its type.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ComponentChanges {
-    /// Another cause of the joints' motion.
+    /// How joints move: by targets or by motors.
     pub joints: Option<JointModel>,
-    /// Other elastic gears.
+    /// Elastic gears: all of those that have a spring, none, or the drives of these names.
     pub elastic: Option<Selection>,
-    /// Currents of motors, or none.
+    /// Motor currents have states of their own.
     pub currents: Option<bool>,
-    /// Friction of gears, or none.
+    /// Gears have friction.
     pub friction: Option<bool>,
-    /// Rotors that turn along, or none.
+    /// Rotors turn along with joints that follow their targets.
     pub rotors: Option<bool>,
-    /// Other contact elements.
+    /// Contact elements: points or pads, for both feet or for right and left.
     pub contact: Option<[ContactModel; 2]>,
     /// Joints that do not move.
     pub locked: Vec<String>,

@@ -18,17 +18,17 @@ use crate::section::Section;
 /// Crane with a rope that holds the robot at the start of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crane {
-    /// \[m\] Soles over the ground at the start.
+    /// \[m\] Height of the soles over the ground at the start.
     pub height: f64,
-    /// \[m\] Hook over the torso's origin; it lies above the centre of gravity of the start pose.
+    /// \[m\] Height of the hook over the torso's origin; it lies above the centre of gravity of the start pose.
     pub hook: f64,
     /// \[m\] Length of the rope without load.
     pub rope: f64,
-    /// \[N/m\] Of the rope.
+    /// \[N/m\] Stiffness of the rope.
     pub stiffness: f64,
-    /// \[N s/m\] Of the rope.
+    /// \[N s/m\] Damping of the rope.
     pub damping: f64,
-    /// \[m/s\] At which it lowers and lifts.
+    /// \[m/s\] Speed of lowering and lifting.
     pub speed: f64,
 }
 

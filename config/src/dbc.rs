@@ -31,7 +31,7 @@ use codec::layout::{BusMessage, BusSignal, Carries, FrameLayout, MAX_NODES};
 use messages::{MAX_FRAMES, nearest};
 
 use crate::error::{ConfigError, Problem};
-use crate::file::{self, Hash};
+use crate::file::{self, ConfigReader};
 
 /// The node that is lowlevel.
 const PC: &str = "PC";
@@ -41,8 +41,12 @@ const AXES: [&str; 4] = ["x", "y", "z", "w"];
 const SIDES: [&str; 2] = ["right", "left"];
 
 /// Reads a layout for a robot with these joints.
-pub(crate) fn load(path: &Path, joints: &[&str], hash: &mut Hash) -> Result<FrameLayout, ConfigError> {
-    let text = file::text(path, hash)?;
+pub(crate) fn load(
+    path: &Path,
+    joints: &[&str],
+    reader: &mut ConfigReader,
+) -> Result<FrameLayout, ConfigError> {
+    let text = file::text(path, reader)?;
     read(&text, joints).map_err(|problems| ConfigError { file: path.to_owned(), problems })
 }
 

@@ -46,11 +46,11 @@ pub enum FrameForm {
 /// A local controller: what it drives and reads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LocalController {
-    /// Its name.
+    /// Name of the controller.
     pub name: String,
-    /// Names of its joints, in the order of their frames.
+    /// Names of the controller's joints, in the order of their frames.
     pub joints: Vec<String>,
-    /// Its sensors: `right_foot`, `left_foot`, `imu`.
+    /// Sensors of the controller: `right_foot`, `left_foot`, `imu`.
     pub sensors: Vec<String>,
 }
 

@@ -58,8 +58,7 @@ fn find<'d>(document: &'d mut DocumentMut, key: &str) -> Result<&'d mut Value, S
             Some(Item::Table(table)) => table,
             Some(Item::ArrayOfTables(all)) => {
                 let (count, next) = (all.len(), keys.next().unwrap_or_default());
-                let place = next.parse().ok();
-                place.and_then(|k| all.get_mut(k)).ok_or_else(|| no_component(key, next, count))?
+                component(next).and_then(|k| all.get_mut(k)).ok_or_else(|| no_component(key, next, count))?
             }
             Some(Item::None) | None => return Err(format!("{key}: there is no `{next}`")),
         };
@@ -67,12 +66,16 @@ fn find<'d>(document: &'d mut DocumentMut, key: &str) -> Result<&'d mut Value, S
     // ... and components within it.
     for next in keys {
         let count = value.as_array().map_or(0, toml_edit::Array::len);
-        let place = next.parse::<usize>().ok();
-        value = place
+        value = component(next)
             .and_then(|k| value.as_array_mut()?.get_mut(k))
             .ok_or_else(|| no_component(key, next, count))?;
     }
     Ok(value)
+}
+
+/// Number of a component, written in one way only: `1`, neither `+1` nor `01`.
+fn component(text: &str) -> Option<usize> {
+    text.parse().ok().filter(|k: &usize| k.to_string() == text)
 }
 
 fn no_component(key: &str, next: &str, count: usize) -> String {
@@ -115,6 +118,8 @@ mod tests {
             ("step", "step: is a table; name one of its keys"),
             ("step.rows.2.0", "step.rows.2.0: `2` is no component; there are 2, counted from 0"),
             ("step.rows.x", "step.rows.x: `x` is no component; there are 2, counted from 0"),
+            ("step.rows.01.0", "step.rows.01.0: `01` is no component; there are 2, counted from 0"),
+            ("step.rows.+1.0", "step.rows.+1.0: `+1` is no component; there are 2, counted from 0"),
             ("step.rows", "step.rows: is of type array, not a number"),
             ("model.name", "model.name: is of type string, not a number"),
             ("step.width.0", "step.width.0: `0` is no component; there are 0, counted from 0"),

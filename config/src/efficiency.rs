@@ -6,7 +6,7 @@ use std::path::Path;
 use drives::fit::Efficiency;
 
 use crate::error::ConfigError;
-use crate::file::{self, Hash};
+use crate::file::{self, ConfigReader};
 use crate::section;
 
 /// A table of efficiencies.
@@ -29,7 +29,7 @@ const COLUMNS: [(&str, &str, f64); 3] =
 impl Efficiencies {
     /// Reads a table: `name`, `source`, `ratio`, and `points` of speed \[rpm\], load torque \[N m\] at the output, efficiency.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
-        let text = file::text(path, &mut Hash::default())?;
+        let text = file::text(path, &mut ConfigReader::default())?;
         section::read(path, &text, |top| {
             let ratio = top.number("ratio", "", 1.0..=1000.0);
             let rows = top.rows::<3>("points", "speed [rpm], load torque [N m] at the output, efficiency");

@@ -5,6 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use messages::{FNV1A, fnv1a};
+
 use crate::edit;
 use crate::error::ConfigError;
 
@@ -29,32 +31,31 @@ pub(crate) fn embedded() -> &'static [Embedded] {
 /// A file as it was read.
 pub(crate) type Read = (PathBuf, Vec<u8>);
 
-/// FNV-1a, 64 bits, over the bytes of all files that went into a configuration, in the order they were read; the files; and those
-/// that are read instead of what is on the disk.
-pub(crate) struct Hash(pub(crate) u64, pub(crate) Vec<Read>, Vec<Read>);
+/// Reader of the files of a configuration, which keeps what it read.
+pub(crate) struct ConfigReader {
+    /// FNV-1a, 64 bits, over the bytes of all files, in the order in which they were read.
+    pub(crate) hash: u64,
+    /// Those files.
+    pub(crate) files: Vec<Read>,
+    /// Files that are read instead of those on the disk.
+    replaced: Vec<Read>,
+}
 
-impl Default for Hash {
+impl Default for ConfigReader {
     fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325, Vec::new(), Vec::new())
+        Self::of_files(Vec::new())
     }
 }
 
-impl Hash {
-    /// That of files which were read in this order.
-    pub(crate) fn of<'a>(files: impl Iterator<Item = &'a [u8]>) -> u64 {
-        let mut hash = Self::default();
-        files.for_each(|bytes| hash.add(bytes));
-        hash.0
-    }
-
+impl ConfigReader {
     /// One that reads these files instead of those on the disk.
-    pub(crate) fn of_files(files: Vec<Read>) -> Self {
-        Self(Self::default().0, Vec::new(), files)
+    pub(crate) fn of_files(replaced: Vec<Read>) -> Self {
+        Self { hash: FNV1A, files: Vec::new(), replaced }
     }
 
     /// One of those files has other numbers at these keys.
     pub(crate) fn edit(&mut self, path: &Path, numbers: &[(String, f64)]) -> Result<(), ConfigError> {
-        let Some((_, bytes)) = self.2.iter_mut().find(|(known, _)| known == path) else {
+        let Some((_, bytes)) = self.replaced.iter_mut().find(|(known, _)| known == path) else {
             return Err(ConfigError::of_file(path, "was not read"));
         };
         let numbers = numbers.iter().map(|(key, number)| (key.as_str(), *number));
@@ -63,29 +64,31 @@ impl Hash {
         Ok(())
     }
 
-    pub(crate) fn read(&mut self, path: &Path, bytes: &[u8]) {
-        self.add(bytes);
-        self.1.push((path.into(), bytes.into()));
+    /// A file was read.
+    pub(crate) fn keep(&mut self, path: &Path, bytes: &[u8]) {
+        self.hash = fnv1a(self.hash, bytes.iter().copied());
+        self.files.push((path.into(), bytes.into()));
     }
+}
 
-    fn add(&mut self, bytes: &[u8]) {
-        self.0 = bytes.iter().fold(self.0, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3));
-    }
+/// The hash of files that were read in this order.
+pub(crate) fn hash_of<'a>(files: impl Iterator<Item = &'a [u8]>) -> u64 {
+    files.fold(FNV1A, |hash, bytes| fnv1a(hash, bytes.iter().copied()))
 }
 
 /// The text of a file; an error says what lies beside it instead.
-pub(crate) fn text(path: &Path, hash: &mut Hash) -> Result<String, ConfigError> {
-    let bytes = include(path, hash)?;
+pub(crate) fn text(path: &Path, reader: &mut ConfigReader) -> Result<String, ConfigError> {
+    let bytes = include(path, reader)?;
     String::from_utf8(bytes).map_err(|_| ConfigError::of_file(path, "cannot be read: is not UTF-8 text"))
 }
 
-/// The bytes of a file that another part makes sense of; they are added to the hash.
-pub(crate) fn include(path: &Path, hash: &mut Hash) -> Result<Vec<u8>, ConfigError> {
-    let bytes = match hash.2.iter().find(|(known, _)| known == path) {
+/// The bytes of a file that another part makes sense of.
+pub(crate) fn include(path: &Path, reader: &mut ConfigReader) -> Result<Vec<u8>, ConfigError> {
+    let bytes = match reader.replaced.iter().find(|(known, _)| known == path) {
         Some((_, bytes)) => bytes.clone(),
         None => bytes(path).map_err(|e| unreadable(path, &e))?.into_owned(),
     };
-    hash.read(path, &bytes);
+    reader.keep(path, &bytes);
     Ok(bytes)
 }
 
@@ -149,23 +152,5 @@ fn neighbours(path: &Path) -> String {
         None => format!("; {} is no directory either, so check --config", directory.display()),
         Some(names) if names.is_empty() => String::new(),
         Some(names) => format!("; there is {}", names.join(", ")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Hash;
-
-    /// Published test vectors of FNV-1a, 64 bits.
-    #[test]
-    fn hash_of_known_strings() {
-        let hash = |text: &str| {
-            let mut hash = Hash::default();
-            hash.add(text.as_bytes());
-            hash.0
-        };
-        assert_eq!(hash(""), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(hash("a"), 0xaf63_dc4c_8601_ec8c);
-        assert_eq!(hash("foobar"), 0x8594_4171_f739_67e8);
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::ConfigError;
-use crate::file::{self, Hash};
+use crate::file::{self, ConfigReader};
 use crate::pattern::Pattern;
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 
@@ -36,9 +36,9 @@ pub struct Gait {
 /// An angle that grows with the length of a step (4.29).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bend {
-    /// \[rad\] The largest one.
+    /// \[rad\] Largest bend.
     pub angle: f64,
-    /// \[m\] Lengths of a step up to which it is zero, and from which it is largest.
+    /// \[m\] Step lengths up to which the bend is zero, and from which it is largest.
     pub length: [f64; 2],
 }
 
@@ -75,9 +75,9 @@ pub struct StepSettings {
     pub double_support: f64,
     /// \[s\] Double support of the first step out of standing, and after the last one until rest.
     pub start_time: f64,
-    /// \[s\] The swing foot moves horizontally only this long after lift-off ...
+    /// \[s\] Time from lift-off until the swing foot begins to move horizontally.
     pub swing_lag: f64,
-    /// \[s\] ... and until this long before landing.
+    /// \[s\] Time from the end of the swing foot's horizontal motion to landing.
     pub swing_lead: f64,
     /// \[m\] Longest first and last step.
     pub first_length: f64,
@@ -168,15 +168,15 @@ impl CommandLimits {
 pub struct Obstacles {
     /// \[m\] Distance of a foothold from an obstacle or an edge.
     pub distance: f64,
-    /// \[m\] Height over it in passing.
+    /// \[m\] Clearance of the swing foot over the obstacle.
     pub clearance: f64,
-    /// \[m\] Highest one.
+    /// \[m\] Highest obstacle that is stepped over, and highest platform.
     pub height: f64,
-    /// \[m\] Longest step over or onto one.
+    /// \[m\] Longest step over an obstacle or onto a platform.
     pub length: f64,
     /// \[rad\] Pitch, toes down, of a foot that is lifted high while it is still far behind: its ankle bends less.
     pub tilt: f64,
-    /// \[s\] Duration of such a step.
+    /// \[s\] Duration of a step over an obstacle or onto a platform.
     pub duration: f64,
 }
 
@@ -187,9 +187,9 @@ pub struct Reaction {
     pub length: [f64; 2],
     /// \[m\] Landing to the side of the stance foot: feet do not cross.
     pub width: [f64; 2],
-    /// \[s\] Shortest swing from lift-off to landing ...
+    /// \[s\] Shortest swing from lift-off to landing.
     pub swing: f64,
-    /// \[s\] ... and shortest rest of one, whose foothold is free no more below it.
+    /// \[s\] Shortest rest of a swing in which its foothold may still be changed.
     pub rest: f64,
     /// \[s\] By how much a swing may last longer, until a body that was pushed over its stance foot comes back.
     pub wait: f64,
@@ -197,7 +197,7 @@ pub struct Reaction {
     pub speed: f64,
     /// \[m\] Least error of the divergent component to which a step reacts.
     pub error: f64,
-    /// \[m\] Errors of the divergent component at landing, forward and to the side, that the next support makes good for.
+    /// \[m\] Errors of the divergent component at landing, forward and to the side, that the next support compensates.
     pub tolerance: [f64; 2],
 }
 
@@ -206,17 +206,17 @@ pub struct Reaction {
 pub struct StabilizerGains {
     /// \[N m/rad\] K_P of the inclinations phi_x, phi_y (5.2), (5.3).
     pub inclination_p: [f64; 2],
-    /// \[N m s/rad\] K_D of the same.
+    /// \[N m s/rad\] K_D of the inclinations (5.2), (5.3).
     pub inclination_d: [f64; 2],
     /// \[N/m\] K_P of the height of the centre of gravity (5.4).
     pub height_p: f64,
-    /// \[N s/m\] K_D of the same.
+    /// \[N s/m\] K_D of the height (5.4).
     pub height_d: f64,
     /// \[1\] How much of the shift of normal force between the feet (5.14) is used; 0: moments of the feet alone.
     pub force_shift: f64,
     /// \[1/s\] K_lambda of normal force, moment about x, moment about y (5.26).
     pub force_gain: [f64; 3],
-    /// \[1\] K_lambda,FF (5.31).
+    /// \[1\] Feed-forward gain K_lambda,FF of the contact forces (5.31).
     pub force_feed_forward: f64,
     /// \[N\] Contact forces between which a foot is blended from position to force control.
     pub force_blend: [f64; 2],
@@ -224,9 +224,9 @@ pub struct StabilizerGains {
     pub position_gain: f64,
     /// \[m, rad, rad\] Limits of a modification (z, s1, s0).
     pub modification_limit: [f64; 3],
-    /// \[m/s, rad/s, rad/s\] Limits of its rate.
+    /// \[m/s, rad/s, rad/s\] Limits of the rate of a modification (z, s1, s0).
     pub modification_rate: [f64; 3],
-    /// \[1\] How much of the error of the upper body's inclination the swing foot makes good for (4.9).
+    /// \[1\] Share of the upper body's inclination error that the swing foot compensates (4.9).
     pub inclination_compensation: f64,
     /// \[1\] Share of the soles' deformation under the planned forces that is part of the foot trajectories (4.9).
     pub planned_deformation: f64,
@@ -244,11 +244,11 @@ const SPEED_TOLERANCE: f64 = 0.05;
 impl Gait {
     /// Reads a gait file.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
-        Self::load_hashed(path, &mut Hash::default())
+        Self::load_with(path, &mut ConfigReader::default())
     }
 
-    pub(crate) fn load_hashed(path: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
-        Self::of_text(path, &file::text(path, hash)?)
+    pub(crate) fn load_with(path: &Path, reader: &mut ConfigReader) -> Result<Self, ConfigError> {
+        Self::of_text(path, &file::text(path, reader)?)
     }
 
     /// The gait of a file with this text.
@@ -265,7 +265,7 @@ impl Gait {
                 reaction: top.has("reaction").then(|| top.table("reaction", Reaction::build)).flatten(),
                 control: top.table("control", StabilizerGains::build).unwrap_or_default(),
                 pattern: None,
-                arm_swing: top.has("arm_swing").then(|| top.number("arm_swing", "1", 0.0..=3.0)),
+                arm_swing: top.has("arm_swing").then(|| top.number("arm_swing", "", 0.0..=3.0)),
                 toes: bend(top, "toes"),
                 heel_strike: bend(top, "heel_strike"),
             };

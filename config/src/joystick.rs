@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::ConfigError;
-use crate::file::{self, Hash};
+use crate::file::{self, ConfigReader};
 use crate::section::{self, Section, listed};
 
 /// Name of the file in a configuration directory.
@@ -90,7 +90,7 @@ impl Joystick {
     /// # Errors
     /// Mistakes in it: key, value, what it takes.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
-        let text = file::text(path, &mut Hash::default())?;
+        let text = file::text(path, &mut ConfigReader::default())?;
         section::read(path, &text, Self::build)
     }
 

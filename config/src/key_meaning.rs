@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::error::ConfigError;
-use crate::file;
+use crate::file::{self, ConfigReader};
 use crate::key_words::KEY_WORDS;
 use crate::questions::Question;
 
@@ -25,7 +25,8 @@ impl Sources {
         }
         let mut all = BTreeMap::new();
         for name in names {
-            let text = file::text(&folder.join(&name).with_extension("rs"), &mut file::Hash::default())?;
+            let path = folder.join(&name).with_extension("rs");
+            let text = file::text(&path, &mut ConfigReader::default())?;
             let lines: Vec<String> = text.lines().map(str::to_owned).collect();
             let fields = documented(&lines);
             all.insert(name, (lines, fields));
@@ -58,13 +59,9 @@ impl Sources {
         let ident = (line.saturating_sub(5)..=line).rev().find_map(|i| assigned(&lines[i]));
         let owner = lines[..line].iter().rev().find_map(|line| line.strip_prefix("impl "));
         let owner = owner?.split([' ', '<', '{']).next()?.to_owned();
+        // Of that type alone: a field of the same name elsewhere means something else.
         let of = |field: &str| fields.get(&(owner.clone(), field.to_owned()));
-        let anywhere = |field: &str| fields.iter().find(|((_, f), _)| f == field).map(|(_, text)| text);
-        of(key)
-            .or_else(|| of(ident.as_deref()?))
-            .or_else(|| anywhere(key))
-            .or_else(|| anywhere(ident.as_deref()?))
-            .cloned()
+        of(key).or_else(|| of(ident.as_deref()?)).cloned()
     }
 }
 

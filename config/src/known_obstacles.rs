@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use environment::Pose;
-use multibody::{Data, Model};
+use multibody::Data;
 use nalgebra::Vector3;
 
 use crate::{Robot, Setup};
@@ -39,8 +39,7 @@ impl Setup {
 
 /// On the ground, in the middle between the soles of a robot whose torso stands over the origin.
 fn middle_of_soles(robot: &Robot, pose: &[f64]) -> Result<Vector3<f64>, Box<dyn Error>> {
-    let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-    let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?;
+    let model = robot.model()?;
     let mut data = Data::new(&model);
     let mut q = model.neutral();
     q[7..].copy_from_slice(pose);

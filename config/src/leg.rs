@@ -169,12 +169,11 @@ pub(crate) fn build(table: &Section<'_, '_>, joints: &[Joint], feet: &[Foot; 2])
 
 /// Whether rows and URDF are one robot: for each leg the chain of joints, the sole at zero, and each joint's axis there.
 /// A chain of turning joints is given by these (product of exponentials), so they agree in every pose.
-pub(crate) fn compare_with_urdf(robot: &Robot) -> Result<(), String> {
+pub(crate) fn compare_with_urdf(robot: &Robot, model: &Model) -> Result<(), String> {
     let Some(legs) = &robot.legs else { return Ok(()) };
     let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-    let model = Model::from_urdf(&robot.urdf, &robot.torso, &names).map_err(|e| e.to_string())?;
     for ((side, leg), foot) in ["right", "left"].into_iter().zip(legs).zip(&robot.feet) {
-        compare(leg, foot, &model, &names).map_err(|text| format!("leg.{side}.{text}"))?;
+        compare(leg, foot, model, &names).map_err(|text| format!("leg.{side}.{text}"))?;
     }
     Ok(())
 }

@@ -62,6 +62,7 @@ pub mod tables;
 pub mod terrain;
 pub mod timeline;
 pub mod tolerance;
+mod urdf;
 mod velocity;
 
 pub use acceleration::WITH_LOAD;

@@ -24,7 +24,7 @@ pub struct Head {
     pub saccade_error: f64,
     /// \[rad/s\] Fastest jump.
     pub saccade_speed: f64,
-    /// \[rad/s^2\] Largest acceleration of both.
+    /// \[rad/s^2\] Largest acceleration of jumps and pursuit.
     pub acceleration: f64,
     /// \[s\] Time after which the heading of odometry counts, not that of the inertial measurement unit.
     pub heading_time: f64,

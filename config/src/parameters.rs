@@ -50,7 +50,7 @@ pub const STABILIZER: &[Parameter<StabilizerGains>] = &[
     parameter!("drift_gain", "1/s", [0.0, 500.0], "K_x, drift compensation of the inverse kinematics", drift_gain),
     parameter!("force_filter", "s", [1e-4, 0.1], "time constant of the force sensor filter", force_filter),
     parameter!("force_shift", "", [0.0, 1.0], "share of the shift of normal force (5.14)", force_shift),
-    parameter!("inclination_compensation", "", [0.0, 1.0], "share of the inclination error the swing foot makes good for (4.9)", inclination_compensation),
+    parameter!("inclination_compensation", "", [0.0, 1.0], "share of the inclination error that the swing foot compensates (4.9)", inclination_compensation),
     parameter!("planned_deformation", "", [0.0, 1.0], "share of the soles' deformation in the foot trajectories (4.9)", planned_deformation),
 ];
 

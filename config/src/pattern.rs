@@ -18,7 +18,7 @@ pub struct Pattern {
     pub over_time: f64,
     /// \[s\] Instant `T_min` at which the torso is lowest.
     pub low_time: f64,
-    /// \[s\] Instant `T_max` at which it is highest.
+    /// \[s\] Instant `T_max` at which the torso is highest.
     pub high_time: f64,
     /// \[s\] `T_1`..`T_3`: the rear foot begins to pitch, the swinging foot has its landing angle, the front foot lies flat.
     pub pitch_times: [f64; 3],
@@ -26,7 +26,7 @@ pub struct Pattern {
     pub length: f64,
     /// \[m\] Way of the swinging ankle up to `T_o`: `l_ao`, of `2 D_s`.
     pub over_length: f64,
-    /// \[m\] Height of the ankle then: `H_ao`.
+    /// \[m\] Height of the swinging ankle at `T_o`: `H_ao`.
     pub over_height: f64,
     /// \[rad\] Pitch, toes down, with which a foot leaves the ground: `q_b`.
     pub leave: f64,
@@ -40,7 +40,7 @@ pub struct Pattern {
     pub shift: f64,
     /// \[m\] Torso in front of the stance ankle at the end of the single support: `x_ed`.
     pub end_ahead: f64,
-    /// \[m\] Torso behind the stance ankle at its begin: `x_sd`.
+    /// \[m\] Torso behind the stance ankle at the begin of the single support: `x_sd`.
     pub start_behind: f64,
     /// \[m\] Heights of the torso's origin `H_min`, `H_max`.
     pub heights: [f64; 2],
@@ -48,7 +48,7 @@ pub struct Pattern {
     pub start_height: f64,
     /// Course of the torso forward.
     pub forward: TorsoForward,
-    /// Course of its height.
+    /// Course of the torso's height.
     pub height: TorsoHeight,
     /// \[1\] Points of a stride in the tables of the drives: `N`.
     pub points: u64,

@@ -41,7 +41,7 @@ pub struct PlantMismatch {
     pub torso_mass_factor: f64,
     /// \[m\] @torso Shift of the torso's own centre of gravity.
     pub torso_cog_shift: [f64; 3],
-    /// Carried on the torso.
+    /// Payload that the torso carries.
     pub payload: Option<Payload>,
 }
 

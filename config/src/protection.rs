@@ -11,9 +11,9 @@ use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 /// `[protection]`: limits of every drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Protection {
-    /// \[rad\] Following error at rest that is a fault ...
+    /// \[rad\] Following error at rest that is a fault.
     pub following_error: f64,
-    /// \[s\] ... plus this much per rad/s of joint speed.
+    /// \[s\] Following error that is allowed in addition, per rad/s of joint speed.
     pub following_time: f64,
     /// \[1\] Current that is a fault, over the drive's current limit.
     pub over_current: f64,

@@ -5,6 +5,7 @@
 
 use messages::Command;
 use messages::command::ParameterCommand;
+use messages::command_text::number_text;
 
 use crate::Setup;
 use crate::parameters::{PLANNER, Parameter, STABILIZER};
@@ -60,7 +61,8 @@ impl ParameterEntry {
         };
         if !(value >= low && value <= high) {
             return Err(format!(
-                "{name} = {value} is outside of [{low}, {high}] {unit}; nothing was changed"
+                "{name} = {} is outside of [{low}, {high}] {unit}; nothing was changed",
+                number_text(value)
             ));
         }
         let change = ParameterCommand { number, value };
@@ -282,6 +284,9 @@ mod tests {
             let refused = command("planner.swing_height", bad).unwrap_err();
             assert!(refused.contains("outside of [0, 0.15] m"), "{refused}");
         }
+        // Regression: three hundred digits.
+        let refused = command("planner.swing_height", -1e300).unwrap_err();
+        assert!(refused.starts_with("planner.swing_height = -1e300 is outside of "), "{refused}");
         let none = find(&entries, "swing").unwrap_err();
         assert!(none.contains("did you mean planner.swing_height?"), "{none}");
     }

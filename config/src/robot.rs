@@ -7,7 +7,7 @@ use std::path::Path;
 use codec::layout::FrameLayout;
 use drives::homing::HomeSwitch;
 use messages::MAX_JOINTS;
-use multibody::Model;
+use multibody::{Model, ModelError};
 
 use crate::acceleration;
 use crate::dbc;
@@ -15,7 +15,7 @@ use crate::dbc_writer::{FrameForm, LocalController, dbc_text};
 pub use crate::drive::Drive;
 use crate::drive::drives;
 use crate::error::ConfigError;
-use crate::file::{self, Hash};
+use crate::file::{self, ConfigReader};
 pub use crate::joint::Joint;
 use crate::joint::joint_index;
 use crate::leg::{self, Leg};
@@ -23,6 +23,7 @@ use crate::limbs::{Arms, Head};
 use crate::protection::{Protection, homes};
 use crate::section::{self, POSITIVE, Section};
 use crate::tables::TableDrives;
+use crate::urdf;
 
 /// Stiffnesses up to that of steel.
 const STIFFNESS: RangeInclusive<f64> = 1e-9..=1e13;
@@ -68,7 +69,7 @@ pub struct Robot {
     pub legs: Option<[Leg; 2]>,
     /// Drives, one per joint in the joints' order; empty for a robot of ideal drives.
     pub drives: Vec<Drive>,
-    /// At what the drives fail safe by themselves; only scenes with `[drives]` need it.
+    /// Limits at which the drives fail safe by themselves; only scenes with `[drives]` need it.
     pub protection: Option<Protection>,
     /// Home switches, by joint; none for a joint with an absolute encoder.
     pub homes: Vec<Option<HomeSwitch>>,
@@ -102,11 +103,11 @@ pub struct Contact {
     pub normal_stiffness: f64,
     /// \[N/m\] Tangential stiffness of one point.
     pub tangential_stiffness: f64,
-    /// \[s\] Damping B = alpha K.
+    /// \[s\] Damping time alpha: damping B = alpha K.
     pub damping_time: f64,
     /// \[1\] Coulomb friction against the ground.
     pub friction: f64,
-    /// The same elements as blocks of rubber, for the models that resolve them.
+    /// Contact elements as blocks of rubber, for the models that resolve them.
     pub pads: Option<Pads>,
 }
 
@@ -123,16 +124,13 @@ pub struct Pads {
     pub poisson: f64,
 }
 
-/// \[kg\] Tolerance between the URDF's masses and the robot's total mass.
-const MASS_TOLERANCE: f64 = 1e-3;
-
 impl Robot {
     /// Reads `robot.toml` in a robot's directory, and the URDF it names.
     pub fn load(directory: &Path) -> Result<Self, ConfigError> {
-        Self::load_hashed(directory, &mut Hash::default())
+        Self::load_with(directory, &mut ConfigReader::default())
     }
 
-    pub(crate) fn load_hashed(directory: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
+    pub(crate) fn load_with(directory: &Path, reader: &mut ConfigReader) -> Result<Self, ConfigError> {
         let path = directory.join("robot.toml");
         if !file::exists(&path)
             && let Some(robots) = directory.parent()
@@ -148,7 +146,7 @@ impl Robot {
                 format!("no robot, for it has no robot.toml; {hint}"),
             ));
         }
-        let text = file::text(&path, hash)?;
+        let text = file::text(&path, reader)?;
         let name = directory.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let (mut robot, can) = section::read(&path, &text, |top| (Self::build(top, name), Can::build(top)))?;
         let limits = acceleration::least(&robot.drives, &robot.joints);
@@ -157,30 +155,21 @@ impl Robot {
         // Frames: a file counts before what the local controllers would give.
         let of_robot = |text| ConfigError::of_file(&path, text);
         robot.layout = match &can.fd {
-            Some(file) => dbc::load(&directory.join(file), &joints, hash)?,
+            Some(file) => dbc::load(&directory.join(file), &joints, reader)?,
             None => written(&robot.name, &can, FrameForm::Fd, &joints).map_err(of_robot)?,
         };
         robot.classic = match &can.classic {
-            Some(file) => dbc::load(&directory.join(file), &joints, hash).map(Ok)?,
+            Some(file) => dbc::load(&directory.join(file), &joints, reader).map(Ok)?,
             None => written(&robot.name, &can, FrameForm::Classic, &joints),
         };
         if let Some(tables) = &can.tables {
-            robot.table_layout = dbc::load(&directory.join(&tables.file), &joints, hash)?;
+            robot.table_layout = dbc::load(&directory.join(&tables.file), &joints, reader)?;
         }
         robot.spare = spare(&robot.layout, &can.spare).map_err(of_robot)?;
         robot.can = can;
-        // Models are built elsewhere; here the masses are compared.
         let urdf_path = directory.join(&robot.urdf);
-        robot.urdf = file::text(&urdf_path, hash)?;
-        let masses =
-            Model::urdf_mass(&robot.urdf).map_err(|e| ConfigError::of_file(&urdf_path, e.to_string()))?;
-        if (masses - robot.total_mass).abs() > MASS_TOLERANCE {
-            let wanted = robot.total_mass;
-            let text =
-                format!("its masses sum to {masses:.3} kg, but total_mass in robot.toml is {wanted} kg");
-            return Err(ConfigError::of_file(urdf_path, text));
-        }
-        leg::compare_with_urdf(&robot).map_err(of_robot)?;
+        robot.urdf = file::text(&urdf_path, reader)?;
+        urdf::compare(&robot, &path, &urdf_path)?;
         Ok(robot)
     }
 
@@ -203,6 +192,15 @@ impl Robot {
         self.classic = Ok(self.table_layout.clone());
         self.tables = Some(tables);
         Ok(())
+    }
+
+    /// Rigid bodies of the URDF, with the joints in the robot's order.
+    ///
+    /// # Errors
+    /// The URDF is no tree of these joints on the torso.
+    pub fn model(&self) -> Result<Model, ModelError> {
+        let order: Vec<&str> = self.joints.iter().map(|joint| joint.name.as_str()).collect();
+        Model::from_urdf(&self.urdf, &self.torso, &order)
     }
 
     /// Index of a joint in every array of joints.
@@ -381,7 +379,7 @@ pub struct Can {
     pub classic: Option<String>,
     /// DBC file of CAN FD.
     pub fd: Option<String>,
-    /// The local controllers, in the order of their lines; needed where there is no file.
+    /// Local controllers, in the order of their lines; needed where there is no file.
     pub nodes: Vec<LocalController>,
     /// The drives report the motor side, too.
     pub motor_side: bool,

@@ -11,7 +11,7 @@ use crate::bus_fault::BusFault;
 use crate::components::{ComponentChanges, Components, JointModel};
 use crate::crane::{Crane, DriveStart};
 use crate::error::ConfigError;
-use crate::file::{self, Hash};
+use crate::file::{self, ConfigReader};
 use crate::joint_control;
 use crate::method::{Integrator, Method};
 use crate::plant_mismatch::PlantMismatch;
@@ -51,7 +51,7 @@ pub struct Scene {
     pub integrator: Integrator,
     /// \[1\] Integration steps per bus cycle.
     pub substeps: u32,
-    /// Explicit steps that are longer than the stable ones are taken all the same.
+    /// Steps that are longer than the stable ones are taken all the same.
     pub force_step: bool,
     /// \[1\] Error of a step of the adaptive integrator, relative and absolute; the others have none.
     pub tolerance: Option<f64>,
@@ -92,15 +92,19 @@ impl Scene {
     /// Reads a scene file.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
         let root = path.parent().and_then(Path::parent).unwrap_or(Path::new("."));
-        Self::load_hashed(path, root, &mut Hash::default())
+        Self::load_with(path, root, &mut ConfigReader::default())
     }
 
     /// A scene file that may lie outside of the configuration directory `root`, in which its objects are.
-    pub(crate) fn load_hashed(path: &Path, root: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
-        let text = file::text(path, hash)?;
+    pub(crate) fn load_with(
+        path: &Path,
+        root: &Path,
+        reader: &mut ConfigReader,
+    ) -> Result<Self, ConfigError> {
+        let text = file::text(path, reader)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut scene = section::read(path, &text, |top| Self::build(top, name))?;
-        terrain::find(&mut scene.objects, root, hash)?;
+        terrain::find(&mut scene.objects, root, reader)?;
         Ok(scene)
     }
 

@@ -19,11 +19,11 @@ use crate::section::Section;
 /// `[sensors]` of a scene. The default measures exactly.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensorErrors {
-    /// Which encoders the joint angles and speeds of the record come from.
+    /// Encoders that the joint angles and speeds of the record come from.
     pub side: EncoderSide,
-    /// Link side; resolution per turn of the joint.
+    /// Encoders on the link side; resolution per turn of the joint.
     pub encoder: EncoderErrors,
-    /// Motor side; resolution per turn of the joint: counts of the motor times gear ratio.
+    /// Encoders on the motor side; resolution per turn of the joint: counts of the motor times gear ratio.
     pub motor_encoder: EncoderErrors,
     /// Both feet.
     pub force_torque: ForceTorqueErrors,
@@ -59,9 +59,9 @@ pub struct EncoderErrors {
 pub struct ForceTorqueErrors {
     /// Weight and inertia of the bodies below the sensor are measured, too.
     pub inertia: bool,
-    /// Set to zero while hanging with level feet.
+    /// Sensors are set to zero while the robot hangs with level feet.
     pub bias_compensation: bool,
-    /// \[N, N m\] Read too much in each direction until the sensors are set to zero.
+    /// \[N, N m\] Offset that is read too much in each direction until the sensors are set to zero.
     pub offset: [f64; 2],
     /// \[s\] Time constant of the anti-aliasing filter.
     pub filter_time: f64,
@@ -106,7 +106,7 @@ pub struct ImuErrors {
     pub rate: SignalErrors,
     /// Of the specific force \[m/s^2\].
     pub acceleration: SignalErrors,
-    /// \[s\] Between two readings, in whole cycles; 0: one in every cycle.
+    /// \[s\] Time between two readings, in whole cycles; 0: one in every cycle.
     pub period: f64,
     /// \[s\] Dead time.
     pub delay: f64,

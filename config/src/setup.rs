@@ -6,7 +6,7 @@ use std::sync::Arc;
 use messages::{Command, nearest};
 
 use crate::error::{ConfigError, Problem};
-use crate::file::{self, Hash};
+use crate::file::{self, ConfigReader};
 use crate::method::Method;
 use crate::section::listed;
 use crate::{Gait, Robot, Scene, System, scenes};
@@ -57,12 +57,17 @@ impl SetupFiles {
     /// A file cannot be read, or is wrong by itself.
     pub fn read(root: &Path, scene: &str) -> Result<Self, ConfigError> {
         let path = scenes::locate(root, scene)?;
-        let (mut hash, mut robot_hash) = (Hash::default(), Hash::default());
-        let scene = Scene::load_hashed(&path, root, &mut hash)?;
-        let robot = Robot::load_hashed(&root.join("robots").join(&scene.robot), &mut robot_hash)?;
-        Gait::load_hashed(&gait_path(root, &scene.gait), &mut hash)?;
-        System::load_hashed(&root.join("system.toml"), &mut hash)?;
-        Ok(Self { root: root.into(), path, files: hash.1, robot, robot_files: robot_hash.1 })
+        let (mut reader, mut robot_reader) = (ConfigReader::default(), ConfigReader::default());
+        let scene = Scene::load_with(&path, root, &mut reader)?;
+        let robot = Robot::load_with(&root.join("robots").join(&scene.robot), &mut robot_reader)?;
+        Gait::load_with(&gait_path(root, &scene.gait), &mut reader)?;
+        System::load_with(&root.join("system.toml"), &mut reader)?;
+        Ok(Self { root: root.into(), path, files: reader.files, robot, robot_files: robot_reader.files })
+    }
+
+    /// The scene's file.
+    pub fn scene_path(&self) -> &Path {
+        &self.path
     }
 
     /// What they say with other numbers, each in the place of one that stands there.
@@ -71,11 +76,11 @@ impl SetupFiles {
     /// A file has no such number, or is wrong with it, or does not fit the others.
     pub fn setup(&self, numbers: &SetupNumbers) -> Result<Setup, ConfigError> {
         let (root, path) = (&self.root, &self.path);
-        let mut hash = Hash::of_files(self.files.clone());
-        hash.edit(path, &numbers.scene)?;
-        let scene = Scene::load_hashed(path, root, &mut hash)?;
+        let mut reader = ConfigReader::of_files(self.files.clone());
+        reader.edit(path, &numbers.scene)?;
+        let scene = Scene::load_with(path, root, &mut reader)?;
         // The robot, and what the scene makes of it.
-        self.robot_files.iter().for_each(|(path, bytes)| hash.read(path, bytes));
+        self.robot_files.iter().for_each(|(path, bytes)| reader.keep(path, bytes));
         let mut robot = self.robot.clone();
         if let Some(control) = scene.joint_control {
             robot.drives.iter_mut().for_each(|drive| drive.set_control(control));
@@ -84,18 +89,21 @@ impl SetupFiles {
             robot.play_tables().map_err(|text| ConfigError::of_file(path, format!("points: {text}")))?;
         }
         let gait = gait_path(root, &scene.gait);
-        hash.edit(&gait, &numbers.gait)?;
-        let gait = Gait::load_hashed(&gait, &mut hash)?;
-        let system = System::load_hashed(&root.join("system.toml"), &mut hash)?;
+        reader.edit(&gait, &numbers.gait)?;
+        let gait = Gait::load_with(&gait, &mut reader)?;
+        let system = System::load_with(&root.join("system.toml"), &mut reader)?;
         // Names as in the configuration directory, from wherever the scene is.
         let name = |file: &Path| match file.strip_prefix(root) {
             Err(_) if file == path => format!("scenes/{}.toml", scene.name),
             inside => inside.unwrap_or(file).display().to_string(),
         };
-        let files = hash.1.into_iter().map(|(path, bytes)| (name(&path), bytes)).collect();
-        Setup { scene, robot, gait, system, hash: hash.0, files }.checked(path.clone())
+        let files = reader.files.into_iter().map(|(path, bytes)| (name(&path), bytes)).collect();
+        Setup { scene, robot, gait, system, hash: reader.hash, files }.checked(path.clone())
     }
 }
+
+/// Sink of problems: key and text.
+type Note<'a> = &'a mut dyn FnMut(String, String);
 
 /// File of the gait with this name, which may have dots.
 pub fn gait_path(root: &Path, name: &str) -> PathBuf {
@@ -132,7 +140,7 @@ impl Setup {
             (file.clone(), if *file == name { text.as_bytes().to_vec() } else { old.clone() })
         };
         self.files = self.files.iter().map(bytes).collect();
-        self.hash = Hash::of(self.files.iter().map(|(_, bytes)| bytes.as_slice()));
+        self.hash = file::hash_of(self.files.iter().map(|(_, bytes)| bytes.as_slice()));
         self.checked(name.into())
     }
 
@@ -170,9 +178,23 @@ impl Setup {
 
     /// What the scene says that robot or gait cannot do.
     fn problems(&self) -> Vec<Problem> {
-        let (scene, poses) = (&self.scene, &self.robot.poses);
         let mut problems = Vec::new();
-        let mut note = |key: String, text: String| problems.push(Problem { line: 0, key, text });
+        let note = &mut |key: String, text: String| problems.push(Problem { line: 0, key, text });
+        self.check_start_pose(note);
+        self.check_points(note);
+        self.check_commands(note);
+        self.check_sensors(note);
+        self.check_parts(note);
+        self.check_components(note);
+        self.check_drives(note);
+        self.check_plant_mismatch(note);
+        self.check_bus_faults(note);
+        problems
+    }
+
+    /// The robot has the pose.
+    fn check_start_pose(&self, note: Note<'_>) {
+        let (scene, poses) = (&self.scene, &self.robot.poses);
         if !poses.contains_key(&scene.start_pose) {
             let names: Vec<&str> = poses.keys().map(String::as_str).collect();
             let (pose, robot) = (&scene.start_pose, &scene.robot);
@@ -181,30 +203,44 @@ impl Setup {
             let text = format!("robot {robot} has no pose `{pose}`{near}; there is {}", listed(&names));
             note("start_pose".to_owned(), text);
         }
-        // Tables come from plans that need no correction.
-        if let Some(tables) = &self.robot.tables {
-            match &self.gait.pattern {
-                None => note(
-                    "points".to_owned(),
-                    format!("gait {} has no [pattern] to make tables of", scene.gait),
-                ),
-                Some(pattern) => {
-                    if let Some((key, text)) = tables.problem(pattern, scene.cycle) {
-                        note("points".to_owned(), format!("gait {}, pattern.{key} = {text}", scene.gait));
-                    }
+    }
+
+    /// Tables come from plans that need no correction.
+    fn check_points(&self, note: Note<'_>) {
+        let scene = &self.scene;
+        let Some(tables) = &self.robot.tables else { return };
+        match &self.gait.pattern {
+            None => {
+                note("points".to_owned(), format!("gait {} has no [pattern] to make tables of", scene.gait));
+            }
+            Some(pattern) => {
+                if let Some((key, text)) = tables.problem(pattern, scene.cycle) {
+                    note("points".to_owned(), format!("gait {}, pattern.{key} = {text}", scene.gait));
                 }
             }
         }
-        // Commands within the gait, and to parts that the robot and the scene have.
+    }
+
+    /// Commands lie within the gait.
+    fn check_commands(&self, note: Note<'_>) {
+        let scene = &self.scene;
         for (i, (time, command)) in scene.commands.iter().enumerate() {
             if let Some(text) = self.beyond_gait(command) {
                 note(format!("command[{i}]"), format!("at {time} s: {text} of gait {}", scene.gait));
             }
         }
-        let joints: Vec<&str> = self.robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-        for (key, text) in scene.sensors.unknown_joints(&scene.robot, &joints) {
+    }
+
+    /// Sensors name joints of the robot.
+    fn check_sensors(&self, note: Note<'_>) {
+        for (key, text) in self.scene.sensors.unknown_joints(&self.scene.robot, &self.joint_names()) {
             note(key, text);
         }
+    }
+
+    /// Commands and gait are to parts that the robot and the scene have: head, arms, crane.
+    fn check_parts(&self, note: Note<'_>) {
+        let scene = &self.scene;
         let to_head = |c: &Command| c.address().0 == messages::command::Domain::Head;
         if let Some(i) = scene.commands.iter().position(|(_, c)| to_head(c) && self.robot.head.is_none()) {
             let name = scene.commands[i].1.name();
@@ -218,10 +254,19 @@ impl Setup {
         if let Some(i) = scene.commands.iter().position(|(_, c)| lowers(c)) {
             note(format!("command[{i}]"), "sim/lower: the scene has no [crane]".to_owned());
         }
+    }
+
+    /// Components are those of the robot, and fit together.
+    fn check_components(&self, note: Note<'_>) {
+        let scene = &self.scene;
         if let Some((key, text)) = scene.components.problem(scene.depth, &self.robot) {
             note(format!("components.{key}"), text);
         }
-        // State of the drives at the start, and what it needs of the robot.
+    }
+
+    /// State of the drives at the start, and what it needs of the robot.
+    fn check_drives(&self, note: Note<'_>) {
+        let scene = &self.scene;
         if scene.drives.is_some() && self.robot.protection.is_none() {
             note("drives".to_owned(), format!("robot {} has no [protection]", scene.robot));
         }
@@ -230,8 +275,11 @@ impl Setup {
             let text = format!("robot {} has no [home.JOINT]: every joint knows its angle", scene.robot);
             note("drives.homing".to_owned(), text);
         }
-        // Names of joints and local controllers in plant mismatch and bus faults.
-        let mismatch = &scene.plant_mismatch;
+    }
+
+    /// Plant mismatch names joints of the robot.
+    fn check_plant_mismatch(&self, note: Note<'_>) {
+        let (robot, mismatch, joints) = (&self.scene.robot, &self.scene.plant_mismatch, self.joint_names());
         let named = [
             ("joint_offset_rad", &mismatch.joint_offset),
             ("drive_clock_ppm", &mismatch.drive_clock),
@@ -240,22 +288,27 @@ impl Setup {
         for (key, (name, _)) in named.iter().flat_map(|(key, of)| of.own.iter().map(move |own| (key, own))) {
             if !joints.contains(&name.as_str()) {
                 let near = nearest(name, &joints).unwrap_or("none");
-                let text = format!("robot {} has no joint `{name}`; the nearest is `{near}`", scene.robot);
+                let text = format!("robot {robot} has no joint `{name}`; the nearest is `{near}`");
                 note(format!("plant_mismatch.{key}"), text);
             }
         }
+    }
+
+    /// Bus faults name local controllers of the robot.
+    fn check_bus_faults(&self, note: Note<'_>) {
+        let robot = &self.scene.robot;
         let nodes: Vec<&str> = self.robot.layout.nodes.iter().map(String::as_str).collect();
-        for (i, fault) in scene.bus_faults.iter().enumerate() {
+        for (i, fault) in self.scene.bus_faults.iter().enumerate() {
             if let Some(name) = fault.node.as_deref().filter(|name| !nodes.contains(name)) {
                 let near = nearest(name, &nodes).unwrap_or("none");
-                let text = format!(
-                    "robot {} has no local controller `{name}`; the nearest is `{near}`",
-                    scene.robot
-                );
+                let text = format!("robot {robot} has no local controller `{name}`; the nearest is `{near}`");
                 note(format!("bus_fault[{i}].node"), text);
             }
         }
-        problems
+    }
+
+    fn joint_names(&self) -> Vec<&str> {
+        self.robot.joints.iter().map(|joint| joint.name.as_str()).collect()
     }
 
     /// Why the gait would refuse a command.
@@ -272,16 +325,15 @@ impl Setup {
                 .or_else(|| outside("duration", step.duration, limits.duration)),
             Command::Velocity(v) => {
                 let most = self.gait.step.by_speed.last().map_or(0.0, |row| row[0]);
-                // No component is faster than the largest step in the shortest time.
-                let rate = |name: &str, x: f64, limit: [f64; 2], unit: &str| {
-                    let [lo, hi] = limit.map(|x| x / limits.duration[0]);
+                let rate = |name: &str, x: f64, [lo, hi]: [f64; 2], unit: &str| {
                     (x < lo || x > hi).then(|| format!("{name} = {x} lies outside of [{lo}, {hi}] {unit}"))
                 };
+                let [forward, left, turn] = self.gait.fastest();
                 (v.forward.abs() > most)
                     .then(|| format!("forward = {} is beyond by_speed's {most} m/s", v.forward))
-                    .or_else(|| rate("forward", v.forward, limits.length, "m/s"))
-                    .or_else(|| rate("left", v.left, limits.side, "m/s"))
-                    .or_else(|| rate("turn", v.turn, limits.turn, "rad/s"))
+                    .or_else(|| rate("forward", v.forward, forward, "m/s"))
+                    .or_else(|| rate("left", v.left, left, "m/s"))
+                    .or_else(|| rate("turn", v.turn, turn, "rad/s"))
             }
             Command::Platform(p) => {
                 let most = self.gait.obstacles.map_or(0.0, |o| o.height);
@@ -289,8 +341,9 @@ impl Setup {
                     .then(|| format!("height = {} is beyond obstacles.height = {most} m", p.height))
             }
             Command::Distance(d) => {
-                let most = self.gait.step.by_speed.last().map_or(0.0, |row| row[0]);
-                (d.speed > most).then(|| format!("speed = {} is beyond by_speed's {most} m/s", d.speed))
+                let [back, forward] = self.gait.fastest()[0];
+                let (most, way) = if d.distance < 0.0 { (-back, "backward") } else { (forward, "forward") };
+                (d.speed > most).then(|| format!("speed = {} is beyond the {most:.4} m/s {way}", d.speed))
             }
             _ => None,
         }

@@ -13,7 +13,7 @@
 //! key = "scene.push.0.time"
 //! range = [9.0, 11.4] # without a count: each seed draws one, the same in all combinations
 //!
-//! [survived] # optional, beside to the end and nothing refused: figures within these bounds
+//! [survived] # optional, beside to the end, nothing refused and no doubt about the simulation: figures within these bounds
 //! distance_m = [-0.2, 0.2]
 //!
 //! [map] # optional
@@ -25,7 +25,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::ConfigError;
-use crate::file::{self, Hash};
+use crate::file::{self, ConfigReader};
 use crate::section::{self, Section};
 use crate::setup::SetupNumbers;
 
@@ -90,9 +90,9 @@ impl Sweep {
     /// # Errors
     /// It cannot be read, or says something wrong.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
-        let mut hash = Hash::default();
-        let text = file::text(path, &mut hash)?;
-        let sweep = section::read(path, &text, |top| Self::build(top, path, hash.0))?;
+        let mut reader = ConfigReader::default();
+        let text = file::text(path, &mut reader)?;
+        let sweep = section::read(path, &text, |top| Self::build(top, path, reader.hash))?;
         match sweep.combinations().and_then(|n| n.checked_mul(sweep.seeds)) {
             Some(walks) if walks <= MOST_WALKS => Ok(sweep),
             _ => Err(ConfigError::of_file(path, format!("asks for more than {MOST_WALKS} walks"))),
@@ -164,6 +164,17 @@ impl SweptNumber {
                 None => SweptValues::Drawn(range),
             }
         };
+        // The same walks twice would count as independent ones.
+        if let SweptValues::Each(all) = &values
+            && table.is_sound()
+        {
+            let mut sorted = all.clone();
+            sorted.sort_by(f64::total_cmp);
+            if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+                let key = if listed { "values" } else { "count" };
+                table.problem(key, format!("{} is there twice", twice[0]));
+            }
+        }
         Self { key, values }
     }
 
@@ -217,7 +228,7 @@ mod tests {
     fn sweep(text: &str) -> Result<Sweep, String> {
         let dir = std::env::temp_dir().join(format!("gangwerk-sweep-{}", std::process::id()));
         std::fs::create_dir_all(&dir).unwrap();
-        let path = dir.join(format!("{:x}.toml", Hash::of([text.as_bytes()].into_iter())));
+        let path = dir.join(format!("{:x}.toml", file::hash_of([text.as_bytes()].into_iter())));
         std::fs::write(&path, text).unwrap();
         Sweep::load(&path).map_err(|e| e.to_string())
     }
@@ -251,6 +262,11 @@ mod tests {
             (number("key = \"robot.x\"\nvalues = [1]"), "line 4: number[0].key: `robot.x` begins neither"),
             (number("key = \"gait.x\"\nvalues = []"), "line 5: number[0].values: is empty"),
             (number("key = \"gait.x\"\nvalues = [nan]"), "line 5: number[0].values[0]: NaN is not allowed"),
+            (
+                number("key = \"gait.x\"\nvalues = [8000, 1, 8000.0]"),
+                "line 5: number[0].values: 8000 is there twice",
+            ),
+            (number("key = \"gait.x\"\nvalues = [0.0, -0.0]"), "line 5: number[0].values: -0 is there twice"),
             (number("key = \"gait.x\"\nrange = [2, 1]"), "line 5: number[0].range: its lower end 2"),
             (number("key = \"gait.x\"\nrange = [1, 2]\ncount = 1"), "line 6: number[0].count: 1 is not"),
             (

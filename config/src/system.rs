@@ -6,7 +6,7 @@ use std::path::Path;
 use messages::Process;
 
 use crate::error::ConfigError;
-use crate::file::{self, Hash};
+use crate::file::{self, ConfigReader};
 use crate::section::{self, NOT_NEGATIVE, POSITIVE, Section};
 
 /// `system.toml`.
@@ -25,9 +25,9 @@ pub struct System {
     pub targets_missed: u32,
     /// Leaky bucket of overruns: +1 per overrun, -1 per good cycle; full means controlled stop.
     pub overrun_bucket: u32,
-    /// \[rad\] Following error at rest that trips the motor supply ...
+    /// \[rad\] Following error at rest that trips the motor supply.
     pub following_error: f64,
-    /// \[s\] ... plus this much per rad/s of joint speed.
+    /// \[s\] Following error that is allowed in addition, per rad/s of joint speed.
     pub following_time: f64,
     /// Address and port on which the broker serves TCP; port 0: one that the system chooses; none: no TCP.
     pub tcp_listen: Option<SocketAddr>,
@@ -37,7 +37,7 @@ pub struct System {
     pub peer_timeout: f64,
     /// Tolerances of lowlevel for bus faults.
     pub bus: BusLimits,
-    /// The watchdog's thread that listens for the emergency stop.
+    /// Thread of the watchdog that listens for the emergency stop.
     pub emergency_stop: ThreadRow,
 }
 
@@ -57,11 +57,11 @@ pub struct BusLimits {
     pub carried_on: u32,
     /// \[1\] Cycles without a node's frames after which a controlled stop begins.
     pub missed: u32,
-    /// \[rad\] A joint angle that jumps further than this ...
+    /// \[rad\] Jump of a joint angle from one reading to the next that is no reading, of a joint at rest.
     pub jump: f64,
-    /// \[1\] ... plus the joint's speed limit times this and the time since it was read last, is no reading.
+    /// \[1\] Jump that is allowed in addition, over the joint's speed limit times the time since it was read last.
     pub jump_speed: f64,
-    /// \[1\] Nor is a force of which one component alone changes by more than this times the robot's weight in one cycle.
+    /// \[1\] Change of one component of a force alone in one cycle that is no reading, over the robot's weight.
     pub jump_force: f64,
 }
 
@@ -81,11 +81,11 @@ pub struct ProcessRow {
 impl System {
     /// Reads `system.toml`.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
-        Self::load_hashed(path, &mut Hash::default())
+        Self::load_with(path, &mut ConfigReader::default())
     }
 
-    pub(crate) fn load_hashed(path: &Path, hash: &mut Hash) -> Result<Self, ConfigError> {
-        let text = file::text(path, hash)?;
+    pub(crate) fn load_with(path: &Path, reader: &mut ConfigReader) -> Result<Self, ConfigError> {
+        let text = file::text(path, reader)?;
         section::read(path, &text, Self::build)
     }
 

@@ -29,11 +29,11 @@ pub enum Playback {
 /// Drives that play tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableDrives {
-    /// DBC file of their frames, beside `robot.toml`.
+    /// DBC file of the drives' frames, beside `robot.toml`.
     pub file: String,
-    /// \[us\] Sampling period T_s of their position controllers.
+    /// \[us\] Sampling period T_s of the drives' position controllers.
     pub sampling_us: u32,
-    /// Their clock.
+    /// Clock by which the drives play.
     pub playback: Playback,
 }
 

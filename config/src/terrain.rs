@@ -7,7 +7,7 @@ use std::sync::Arc;
 use environment::Mesh;
 
 use crate::error::ConfigError;
-use crate::file::{self, Hash};
+use crate::file::{self, ConfigReader};
 use crate::section::{NOT_NEGATIVE, POSITIVE, Section};
 
 /// One `[[object]]` of a scene.
@@ -141,12 +141,16 @@ fn pose(row: &Section<'_, '_>) -> TerrainPose {
     TerrainPose { position: row.numbers("position", "m", PLACE), rotation: rotation.map(f64::to_radians) }
 }
 
-/// Reads the files of meshes in `objects/` of the configuration directory `root`, and adds their bytes to `hash`.
-pub(crate) fn find(objects: &mut [TerrainObject], root: &Path, hash: &mut Hash) -> Result<(), ConfigError> {
+/// Reads the files of meshes in `objects/` of the configuration directory `root`, with `reader`.
+pub(crate) fn find(
+    objects: &mut [TerrainObject],
+    root: &Path,
+    reader: &mut ConfigReader,
+) -> Result<(), ConfigError> {
     for object in objects {
         if let ObjectShape::Mesh { file, bytes, .. } = &mut object.shape {
             *file = root.join("objects").join(&*file);
-            *bytes = file::include(file, hash)?.into();
+            *bytes = file::include(file, reader)?.into();
         }
     }
     Ok(())

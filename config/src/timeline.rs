@@ -31,9 +31,9 @@ impl Timeline {
         Self { entries, next: 0, domains }
     }
 
-    /// For a process that was started again: what lies before `tick` has been done, or shall not be done late.
-    pub fn skip_before(&mut self, tick: u64) {
-        self.next = self.entries.partition_point(|(t, _)| *t < tick);
+    /// Drops what is still to come: of a process that was started again, which does nothing late, or because a person has taken over.
+    pub fn drop_rest(&mut self) {
+        self.next = self.entries.len();
     }
 
     /// A live command comes in between, if the process takes it: due at once, behind those that came before it.

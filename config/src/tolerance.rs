@@ -27,7 +27,7 @@ pub enum Output {
     JointTorque,
     /// \[A\] Motor currents: largest difference over time and motors.
     MotorCurrent,
-    /// \[m\] Position of the torso at the end.
+    /// \[m\] Position of the torso at the end of the trial.
     Position,
 }
 

@@ -8,16 +8,23 @@ use crate::Gait;
 pub const VELOCITY_STEPS: f64 = 100.0;
 
 impl Gait {
-    /// Ranges of `walk/velocity`, forward, left \[m/s\] and turn \[rad/s\]: those of the longest step in its shortest time, within the
-    /// command's own, in whole steps ([`VELOCITY_STEPS`]). Forward at most the last speed of the gait's table.
-    pub fn velocities(&self) -> [[f64; 2]; 3] {
+    /// Fastest velocities that are accepted, forward, left \[m/s\] and turn \[rad/s\], each with its lower and its upper limit: those of
+    /// the largest step in the shortest time. Forward and backward at most the last speed of the gait's table.
+    pub fn fastest(&self) -> [[f64; 2]; 3] {
         let limits = &self.limits;
         let mut all =
             [limits.length, limits.side, limits.turn].map(|range| range.map(|x| x / limits.duration[0]));
+        let most = self.step.by_speed.last().map_or(0.0, |row| row[0]);
+        all[0] = [all[0][0].max(-most), all[0][1].min(most)];
+        all
+    }
+
+    /// Ranges of `walk/velocity`, forward, left \[m/s\] and turn \[rad/s\]: the [`fastest`](Self::fastest), within the command's own, in
+    /// whole steps ([`VELOCITY_STEPS`]).
+    pub fn velocities(&self) -> [[f64; 2]; 3] {
+        let mut all = self.fastest();
         // To the side only every other step goes far: the mean is half of it.
         all[1] = all[1].map(|x| x / 2.0);
-        let fastest = self.step.by_speed.last().map_or(0.0, |row| row[0]);
-        all[0] = [all[0][0].max(-fastest), all[0][1].min(fastest)];
         let fields = CommandInfo::find("walk/velocity").map_or(&[][..], |command| command.fields);
         for (range, field) in all.iter_mut().zip(fields) {
             // Towards zero: what is rounded is still within.
@@ -51,5 +58,24 @@ mod tests {
         for (range, wanted) in of("demo").into_iter().zip(expected) {
             assert_eq!(range, wanted);
         }
+    }
+
+    /// A scene whose way back is too fast is refused when it is loaded, and not in the middle of its walk.
+    #[test]
+    fn a_way_back_that_is_too_fast_is_named_when_the_scene_is_loaded() {
+        let root = crate::root(None);
+        let scene = std::fs::read_to_string(root.join("scenes/distance.toml")).unwrap();
+        let load = |distance: f64, speed: f64| {
+            let way = format!("distance = {distance:?}\nspeed = {speed:?}");
+            let file = std::env::temp_dir().join(format!("gangwerk-way-back-{}.toml", std::process::id()));
+            std::fs::write(&file, scene.replace("distance = 3.0\nspeed = 0.28", &way)).unwrap();
+            let loaded = crate::Setup::load(&root, file.to_str().unwrap());
+            std::fs::remove_file(&file).unwrap();
+            loaded.map(drop).map_err(|e| e.to_string())
+        };
+        assert_eq!((load(1.0, 0.5), load(-1.0, 0.28)), (Ok(()), Ok(())));
+        let refused = load(-1.0, 0.5).unwrap_err();
+        let said = "command[1]: at 3 s: speed = 0.5 is beyond the 0.2857 m/s backward of gait lola";
+        assert!(refused.contains(said), "{refused}");
     }
 }

@@ -20,3 +20,4 @@ mod sensors;
 mod shipped;
 mod terrain;
 mod tolerance;
+mod urdf;

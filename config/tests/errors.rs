@@ -50,7 +50,7 @@ impl Copy {
         Setup::load(&self.0, name).unwrap_err()
     }
 
-    fn robot(&self) -> ConfigError {
+    pub(crate) fn robot(&self) -> ConfigError {
         Robot::load(&self.path("robots/lola")).unwrap_err()
     }
 }

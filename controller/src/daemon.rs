@@ -33,7 +33,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     let mut commands = connect(&d.space)?;
     let mut timeline = Timeline::new(&d.setup.scene, Process::Controller);
     if state.epoch() > 1 {
-        timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
+        timeline.drop_rest(); // started again
     }
     let mut set = d.space.writer::<Parameters>(&PARAMETERS_CONTROLLER)?;
     let mut parameters = Parameters::default();

@@ -26,6 +26,21 @@ const LEVEL: f64 = 0.02;
 /// \[1\] Largest slope that is believed.
 const LARGEST: f64 = 0.105;
 
+/// One cycle of walking, which the slope is learned from.
+pub(crate) struct WalkedCycle<'a> {
+    pub(crate) sensors: &'a Sensors,
+    /// \[N\] Weight of the robot.
+    pub(crate) weight: f64,
+    /// torso_from_sole
+    pub(crate) soles: [Matrix3<f64>; 2],
+    pub(crate) now: &'a Desired,
+    pub(crate) estimate: &'a TaskEstimate,
+    /// \[rad\] Heading of the planning frame in I_0.
+    pub(crate) heading: f64,
+    /// \[s\]
+    pub(crate) dt: f64,
+}
+
 /// Slope of the ground.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct GroundSlope {
@@ -45,15 +60,9 @@ impl GroundSlope {
         if size > LEVEL { both * ((size - LEVEL).min(LARGEST) / size) } else { Vector2::zeros() }
     }
 
-    /// Learns from a cycle of `dt` \[s\] of walking; `soles` are torso_from_sole, `weight` \[N\] is the robot's, `heading` \[rad\] that
-    /// of the planning frame in I_0.
-    pub(crate) fn learn(
-        &mut self,
-        (sensors, weight): (&Sensors, f64),
-        soles: [Matrix3<f64>; 2],
-        (now, estimate): (&Desired, &TaskEstimate),
-        (heading, dt): (f64, f64),
-    ) {
+    /// Learns from a cycle of walking.
+    pub(crate) fn learn(&mut self, cycle: &WalkedCycle<'_>) {
+        let &WalkedCycle { sensors, weight, soles, now, estimate, heading, dt } = cycle;
         let foot = usize::from(now.load[1] > now.load[0]);
         if self.foot != Some(foot) {
             *self = Self { foot: Some(foot), soles: [Vector2::zeros(), self.soles[0]] };
@@ -105,9 +114,16 @@ mod tests {
             sensors.foot_wrench[foot].moment = (sensor.rotation.transpose() * from.cross(&force)).into();
             let estimate = TaskEstimate::new(&robot, &sensors, &measured, &desired);
             let soles = [0, 1].map(|i| measured.sole(i).rotation);
-            for _ in 0..1000 {
-                slope.learn((&sensors, robot.weight()), soles, (&desired, &estimate), (HEADING, DT));
-            }
+            let cycle = WalkedCycle {
+                sensors: &sensors,
+                weight: robot.weight(),
+                soles,
+                now: &desired,
+                estimate: &estimate,
+                heading: HEADING,
+                dt: DT,
+            };
+            (0..1000).for_each(|_| slope.learn(&cycle));
         }
         slope.slope()
     }

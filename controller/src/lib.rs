@@ -1,20 +1,6 @@
 //! Stabilizing control: plan and sensors to joint targets (thesis chapter 5).
 //!
-//! The stages of thesis figure 5.8, in the order in which [`Controller::step`] runs them:
-//!
-//! | stage | equations | where |
-//! |---|---|---|
-//! | plan, and desired task space now | | [`plan_follower`] |
-//! | measured task space, inclination, zero-moment point | (4.11)-(4.17), (3.5) | [`estimate`], [`torso`] |
-//! | early and late contact | | [`contact`] |
-//! | contact force modification | (5.2)-(5.22) | [`contact_force`] |
-//! | hybrid position/force control | (5.23)-(5.33) | [`force_control`] |
-//! | inverse kinematics with null-space optimization | (5.34)-(5.39) | [`inverse_kinematics`] |
-//! | camera head | (4.55)-(4.59) | [`gaze`], [`saccade`] |
-//! | arm swing | 4.9 | [`arms`] |
-//! | in place of all of them, for a pattern: open loop | Daniali 2013, 5.4 | `open_loop` |
-//! | tables of it for drives that play them | 6.1.1 of Daniali | `plan_tables`, [`table_builder`] |
-//! | direct kinematics of the desired joints (feedback path 1) | (4.5)-(4.10) | [`task_space`] |
+//! Stages and their files: ARCHITECTURE.md, figure 5.8.
 
 mod approach;
 pub mod arms;

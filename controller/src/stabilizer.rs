@@ -23,7 +23,7 @@ use crate::contact_force::FootWrench;
 use crate::estimate::TaskEstimate;
 use crate::force_control::{Modification, modify};
 use crate::gaze::Gaze;
-use crate::ground_slope::GroundSlope;
+use crate::ground_slope::{GroundSlope, WalkedCycle};
 use crate::inclination_trim::InclinationTrim;
 use crate::open_loop::{OpenLoop, encoders_only};
 use crate::plan_follower::{Desired, PlanFollower};
@@ -181,9 +181,15 @@ impl Controller {
             self.trim.learn(&estimate, carried / self.robot.weight(), self.clock.dt);
         }
         if let Some(slope) = self.slope.as_mut().filter(|_| new.is_some() && gait == GaitState::Walking) {
-            let soles = [0, 1].map(|i| self.measured.sole(i).rotation);
-            let axes = (self.plan.plan().origin[2], self.clock.dt);
-            slope.learn((sensors, self.robot.weight()), soles, (&now, &estimate), axes);
+            slope.learn(&WalkedCycle {
+                sensors,
+                weight: self.robot.weight(),
+                soles: [0, 1].map(|i| self.measured.sole(i).rotation),
+                now: &now,
+                estimate: &estimate,
+                heading: self.plan.plan().origin[2],
+                dt: self.clock.dt,
+            });
         }
         self.fill_tables(&sensors.header);
         let com = match &self.open_loop {

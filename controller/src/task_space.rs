@@ -38,8 +38,7 @@ pub struct TaskSpace {
 impl TaskSpace {
     /// Of `robot`; allocates everything.
     pub fn new(robot: &Robot) -> Result<Self, ModelError> {
-        let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-        let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?;
+        let model = robot.model()?;
         let n = model.n();
         let sole = |i: usize| model.frame(&robot.feet[i].link, robot.feet[i].sole);
         let sensor = |i: usize| model.frame(&robot.feet[i].sensor_link, robot.feet[i].sensor);

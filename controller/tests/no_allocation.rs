@@ -1,40 +1,14 @@
 //! Nothing allocates after the controller is made, camera head, arms and tables for drives included.
-#![allow(
-    unsafe_code,
-    reason = "a counting allocator can only be written with GlobalAlloc, which is unsafe to implement"
-)]
-
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 
 use config::{Gait, Robot, root};
 use controller::Controller;
 use curves::{Path, Sample};
 use messages::command::{FixateCommand, HeadJointsCommand};
 use messages::{Command, EventCode, GaitState, Plan, Sensors};
-
-struct Counting;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-// SAFETY: every call goes unchanged to the system's allocator; counting touches a plain thread-local number.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.set(COUNT.get() + 1);
-        // SAFETY: the caller keeps the contract of `alloc`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        // SAFETY: the block came from `System.alloc` with this layout.
-        unsafe { System.dealloc(block, layout) }
-    }
-}
+use realtime::{CountingAllocator, allocations};
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 #[test]
 fn a_cycle_works_in_the_memory_made_at_the_start() {
@@ -60,7 +34,7 @@ fn a_cycle_works_in_the_memory_made_at_the_start() {
     plan.zmp.push(0.0, [state.com[0], state.com[1]]);
     plan.load_left = Path::resting(0.0, [0.5]);
 
-    let before = COUNT.get();
+    allocations::arm();
     let (mut saccades, mut refused, mut held) = (0, 0, 0);
     for k in 1..2400u64 {
         let command = match k {
@@ -79,12 +53,12 @@ fn a_cycle_works_in_the_memory_made_at_the_start() {
             held += usize::from(code == EventCode::GazeHeld);
         }
     }
-    let allocations = COUNT.get() - before;
-    assert_eq!(allocations, 0);
+    let [counted, _] = allocations::counted();
+    assert_eq!(counted, 0);
     assert_eq!((saccades, refused, held), (3, 1, 1), "all that was to be looked at happened");
 
     drop(Box::new(std::hint::black_box(1)));
-    assert!(COUNT.get() > before, "the counter counts");
+    assert!(allocations::counted()[0] > 0, "the counter counts");
 }
 
 /// A pattern gait whose tables are filled, published and followed.
@@ -105,7 +79,7 @@ fn tables_are_filled_in_the_memory_made_at_the_start() {
     plan.feet = state.feet.map(|f| Path::resting(0.0, f));
     plan.load_left = Path::resting(0.0, [0.5]);
 
-    let before = COUNT.get();
+    allocations::arm();
     let (mut points, mut active) = (0, false);
     for _ in 1..1000u64 {
         sensors.header.tick += 1;
@@ -114,9 +88,9 @@ fn tables_are_filled_in_the_memory_made_at_the_start() {
         points += controller.tables().map_or(0, |tables| tables.points);
         active |= controller.events().drain().any(|(code, _)| code == EventCode::PlanActive);
     }
-    let allocations = COUNT.get() - before;
+    let [counted, _] = allocations::counted();
     assert_eq!(
-        (allocations, points, active),
+        (counted, points, active),
         (0, 377, true),
         "30 s are 375 times 80 ms, and the last point stands twice"
     );

@@ -6,7 +6,6 @@ use config::Setup;
 use messages::plan::BodyPoint;
 use messages::{ControllerState, Plan, RIGHT, Sensors};
 use multibody::{Data, Frame, Model};
-use nalgebra::{IsometryMatrix3, UnitQuaternion};
 use recording::{RecordedPose, odometry};
 
 /// Plans that are kept: the stabilizer follows one of the newest.
@@ -56,8 +55,7 @@ impl Believer {
     /// The robot's files do not fit together.
     pub fn new(setup: &Setup, simulated: bool) -> Result<Self, String> {
         let robot = &setup.robot;
-        let order: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-        let model = Model::from_urdf(&robot.urdf, &robot.torso, &order).map_err(|e| e.to_string())?;
+        let model = robot.model().map_err(|e| e.to_string())?;
         let frame = |link: &str, at| model.frame(link, at).map_err(|e| e.to_string());
         let sole = frame(&robot.feet[RIGHT].link, robot.feet[RIGHT].sole)?;
         let [right, left] = [0, 1].map(|i| frame(&robot.feet[i].sensor_link, robot.feet[i].sensor));
@@ -92,7 +90,10 @@ impl Believer {
         let n = self.q.len() - 7;
         self.q[7..].copy_from_slice(&sensors.joint_angle[..n]);
         self.model.forward_kinematics(&mut self.data, &self.q);
-        let pose = |frame| recorded(&self.model.frame_pose(&self.data, frame));
+        let pose = |frame| {
+            let (position, orientation) = self.model.frame_place(&self.data, frame);
+            RecordedPose { position, orientation }
+        };
         let plan = self.plans.iter().find(|plan| plan.id == state.plan_id);
         let height = plan.map_or(0.0, |plan| plan.height);
         let torso = odometry::torso(sensors, state, height, &pose(&self.sole)).map(|odom_from_torso| {
@@ -159,9 +160,4 @@ impl Belief {
     pub fn turn(&self, v: [f64; 3]) -> [f64; 3] {
         RecordedPose { position: [0.0; 3], ..self.planning }.place(v)
     }
-}
-
-fn recorded(pose: &IsometryMatrix3<f64>) -> RecordedPose {
-    let turn = UnitQuaternion::from_rotation_matrix(&pose.rotation);
-    RecordedPose { position: pose.translation.vector.into(), orientation: turn.coords.into() }
 }

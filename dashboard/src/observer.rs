@@ -115,7 +115,7 @@ impl Observer {
                 Err(RecvTimeoutError::Timeout) => {
                     self.look();
                     let pause = if self.guests.is_empty() { IDLE } else { LOOK };
-                    // What a busy machine made late is not made good for.
+                    // Cycles that a busy machine missed are not caught up on.
                     next = (next + pause).max(now());
                 }
             }
@@ -124,7 +124,7 @@ impl Observer {
 
     fn hear(&mut self, notice: Notice) {
         match notice {
-            // Who comes is told everything that is known: a page that comes again asks for nothing.
+            // A new page gets the complete state: one that comes again asks for nothing.
             Notice::Arrived(number, outbox) => {
                 let mut guest = Guest::new(number, outbox);
                 if let Some(session) = &self.session {
@@ -188,26 +188,18 @@ impl Observer {
             self.files.send_replace(RobotFiles::default());
             self.guests.iter_mut().for_each(|guest| guest.plot = Plot::default());
         }
-        let dir = self.dir.display();
-        match (supervisor, &self.session) {
-            (Some(_), Some(_)) => {}
-            (None, _) => {
-                self.why = format!("no robot runs in {dir}: start one with `gangwerk run demo --dir {dir}`");
-            }
-            // The clock of all others is started last: what it is part of is complete.
-            (Some(_), None) if ipc::owner(&self.dir, Process::Lowlevel).is_none() => {
-                self.why = format!("the robot in {dir} is starting");
-            }
-            (Some(pid), None) => match Session::open(&self.dir, pid, self.runs + 1) {
+        if self.session.is_none() {
+            let number = self.runs + 1;
+            match ipc::find_robot(&self.dir, |pid, run| Session::open(pid, run, number)) {
                 Ok((session, files)) => {
-                    self.runs += 1;
+                    self.runs = number;
                     self.why.clear();
                     self.files.send_replace(files);
                     self.guests.iter_mut().for_each(|guest| session.greet(guest));
                     self.session = Some(session);
                 }
-                Err(e) => self.why = format!("the robot in {dir} cannot be observed: {e}"),
-            },
+                Err(why) => self.why = why.to_string(),
+            }
         }
         self.tell_link();
     }
@@ -301,26 +293,21 @@ struct Session {
 }
 
 impl Session {
-    fn open(
-        dir: &std::path::Path,
-        supervisor: u32,
-        number: u64,
-    ) -> Result<(Self, RobotFiles), Box<dyn Error>> {
-        // The run, and everything that a page is told once.
-        let space = Space::open(dir, Process::Observer)?;
-        let run = Run::load(dir)?;
+    fn open(supervisor: u32, run: &Run, number: u64) -> Result<(Self, RobotFiles), Box<dyn Error>> {
+        // Everything that a page is told once.
+        let space = run.enter(Process::Observer)?;
         let setup = Setup::load(&run.config, &run.scene)?;
         let robot = &setup.robot;
         let joints: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
         let picture = Picture::new(&setup, run.robot)?;
         let fields = catalogue(&joints, run.robot);
         let mut parameters = Observation::open(&space, Some(&setup))?;
-        let hello = hello(number, &run, &setup, &picture.layout, &fields, &parameters.all())?;
+        let hello = hello(number, run, &setup, &picture.layout, &fields, &parameters.all())?;
         let events = EVENTS.into_iter().map(|topic| Ok((topic.writer, space.reader(topic)?)));
         let events = events.collect::<Result<Vec<_>, IpcError>>()?;
         // Readers of the topics that it shows; those that are plotted are opened when they are asked for.
         let session = Self {
-            dir: dir.into(),
+            dir: run.dir.clone(),
             supervisor,
             cycle: setup.scene.cycle,
             hello: hello.to_string().into(),
@@ -333,7 +320,7 @@ impl Session {
             sim: run.robot.then(|| space.reader(&SIM_STATE)).transpose()?,
             events,
             parameters,
-            health: Health::open(&space, model(&run, &setup), run.method_error)?,
+            health: Health::open(&space, model(run, &setup), run.method_error)?,
             taps: Taps::default(),
             remembered: VecDeque::new(),
             changed: BTreeMap::new(),

@@ -1,16 +1,16 @@
-//! One client of the broker for each page or viewer that commands: orders out, answers back, and signs of life that only the page gives.
+//! One client of the broker for each page or viewer that commands: orders out, answers back, and heartbeats that only the page gives.
 //!
 //! A thread each, started with its first order, because the client of the broker waits. When the page goes, so does the
 //! connection, and with it the command lease: the robot comes to a stand.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-use broker::StreamClient;
-use broker::stream_client::News;
-use realtime::clock::{SECOND, now};
+use broker::identity::is_own;
+use broker::stream_client::{IDLE, News};
+use broker::{Awaited, StreamClient};
+use realtime::clock::now;
 use serde_json::json;
 
 use crate::arrival::too_old;
@@ -21,10 +21,6 @@ use crate::requests::Order;
 /// Between two looks for an answer that is awaited, and for news otherwise.
 const AWAIT: Duration = Duration::from_millis(2);
 const LOOK: Duration = Duration::from_millis(200);
-/// Time that the broker has for an answer \[ns\]; a process that decides has less.
-const PATIENCE: u64 = 3 * SECOND;
-/// Silence after which a connection gets a sign of life that keeps it open, long after its lease is over \[ns\].
-const SILENCE: u64 = 20 * SECOND;
 
 /// Receiver of answers: number of an order, and who accepted it, or why nobody did.
 pub type Answers = Box<dyn Fn(u64, &Result<String, String>) + Send>;
@@ -36,8 +32,7 @@ pub fn name(page: u64) -> String {
 
 /// True if the holder of the lease, as the broker names it, is this page of this server.
 pub fn is_page(holder: &str, page: u64) -> bool {
-    let pid = std::process::id();
-    holder.contains(&format!("{} ", name(page))) && holder.contains(&format!("pid {pid})"))
+    is_own(holder, &name(page))
 }
 
 /// The answer to an order, for its page.
@@ -62,9 +57,8 @@ impl Operator {
     /// The thread cannot be started.
     pub fn start(dir: &Path, name: String, answers: Answers) -> Result<Self, String> {
         let (orders, heard) = channel();
-        let (client, awaited) = (None, BTreeMap::new());
         let thread = std::thread::Builder::new().name(name.clone());
-        let desk = Desk { dir: dir.into(), name, answers, client, awaited, last: 0 };
+        let desk = Desk { dir: dir.into(), name, answers, client: None, awaited: Awaited::default() };
         thread.spawn(move || desk.run(&heard)).map_err(|e| format!("a thread for the operator: {e}"))?;
         Ok(Self { orders })
     }
@@ -82,10 +76,8 @@ struct Desk {
     name: String,
     answers: Answers,
     client: Option<StreamClient>,
-    /// Number of a frame to the broker, number of the order, and when it is given up \[ns\].
-    awaited: BTreeMap<u64, (u64, u64)>,
-    /// Time of the last frame to the broker \[ns\].
-    last: u64,
+    /// Numbers of orders that are not answered yet.
+    awaited: Awaited<u64>,
 }
 
 impl Desk {
@@ -114,7 +106,7 @@ impl Desk {
         if !order.only_stops()
             && let Some(why) = too_old(since)
         {
-            // A pulse of that time is no sign of life any more.
+            // A pulse of that time is no heartbeat any more.
             return order.id().map_or((), |id| (self.answers)(id, &Err(why)));
         }
         let Some(id) = order.id() else { return self.live() };
@@ -137,9 +129,8 @@ impl Desk {
             Order::TakeLease(_, over) => client.ask_lease(over),
             _ => client.give_lease(),
         };
-        self.last = now();
         match sent {
-            Ok(sequence) => _ = self.awaited.insert(sequence, (id, self.last + PATIENCE)),
+            Ok(sequence) => self.awaited.insert(sequence, id, now()),
             Err(why) => {
                 (self.answers)(id, &Err(why.clone()));
                 self.lose(&why);
@@ -149,11 +140,8 @@ impl Desk {
 
     /// The page lives; one that only lives needs no connection.
     fn live(&mut self) {
-        if let Some(client) = &mut self.client {
-            self.last = now();
-            if let Err(why) = client.ping() {
-                self.lose(&why);
-            }
+        if let Some(Err(why)) = self.client.as_mut().map(StreamClient::ping) {
+            self.lose(&why);
         }
     }
 
@@ -163,28 +151,18 @@ impl Desk {
         // A millisecond, in which this client says nothing by itself: the page's life is not ours to claim.
         while let Some(news) = client.news(Duration::from_millis(1))? {
             let News::Answer(reply) = news else { continue };
-            if reply.sequence == 0 {
-                return Err(reply.text);
-            }
-            if let Some((id, _)) = self.awaited.remove(&reply.sequence) {
+            if let Some(id) = self.awaited.take(&reply) {
                 (self.answers)(id, &reply.accepted());
             }
         }
-        let now = now();
-        if now > self.last + SILENCE {
-            self.last = now;
-            client.ping()?;
-        }
-        if self.awaited.values().any(|(_, until)| now > *until) {
-            return Err("the broker does not answer; it may have to be started again".into());
-        }
-        Ok(())
+        client.keep_alive(IDLE)?;
+        self.awaited.check(now())
     }
 
     /// The connection is over: whatever waits for an answer has this one.
     fn lose(&mut self, why: &str) {
         self.client = None;
-        for (id, _) in std::mem::take(&mut self.awaited).into_values() {
+        for id in std::mem::take(&mut self.awaited).into_requests() {
             (self.answers)(id, &Err(why.to_owned()));
         }
     }
@@ -215,7 +193,6 @@ fn watch_one_broker(dir: &Path, observer: &Sender<Notice>, told: &mut Option<Str
     let mut client = StreamClient::connect(dir, "dashboard")?;
     client.watch(0, false)?;
     *told = None;
-    let mut next_ping = now() + SILENCE;
     if observer.send(Notice::Broker(Ok(()))).is_err() {
         return Ok(());
     }
@@ -225,10 +202,7 @@ fn watch_one_broker(dir: &Path, observer: &Sender<Notice>, told: &mut Option<Str
         {
             return Ok(());
         }
-        if now() > next_ping {
-            next_ping = now() + SILENCE;
-            client.ping()?;
-        }
+        client.keep_alive(IDLE)?;
     }
 }
 
@@ -244,7 +218,7 @@ mod tests {
         let (answers, answered) = channel();
         let answers: Answers = Box::new(move |id, result| answers.send((id, result.clone())).unwrap());
         let (dir, name) = (PathBuf::from("/nonexistent"), "test".to_owned());
-        let mut desk = Desk { dir, name, answers, client: None, awaited: BTreeMap::new(), last: 0 };
+        let mut desk = Desk { dir, name, answers, client: None, awaited: Awaited::default() };
         let velocity = |forward| Command::Velocity(VelocityCommand { forward, left: 0.0, turn: 0.0 });
         let moves = [
             Order::Command(1, Ok(velocity(0.3))),

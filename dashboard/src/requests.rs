@@ -69,7 +69,7 @@ pub enum Order {
     TakeLease(u64, bool),
     /// The command lease is given back.
     GiveLease(u64),
-    /// Sign of life.
+    /// Heartbeat.
     Pulse,
 }
 

@@ -1,5 +1,6 @@
 //! One WebSocket: what the page asks for goes to observer, operator, starter and emergency stop; what they have for it goes out.
 
+use std::error::Error;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -9,9 +10,11 @@ use std::time::Duration;
 use axum::extract::ws::{CloseCode, CloseFrame, Message, WebSocket, close_code};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
-use realtime::clock::{SECOND, now};
+use realtime::Bucket;
+use realtime::clock::now;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc};
 use tokio::time::timeout;
+use tungstenite::error::CapacityError;
 
 use crate::arrival::{Arrivals, Beats, too_old};
 use crate::guests::Outbox;
@@ -137,36 +140,26 @@ async fn feed(mut sink: SplitSink<WebSocket, Message>, mut fed: mpsc::Receiver<M
 /// Reason for closing a connection.
 pub(crate) type Closing = Option<(CloseCode, String)>;
 
-/// Messages that may still come: as many as there are seconds in it, up to one second's.
-pub(crate) struct Budget {
-    left: u64,
-    last: u64,
-}
+/// Messages that may still come.
+pub(crate) struct Budget(Bucket);
 
 impl Budget {
     /// Of a client that has just come.
     pub(crate) fn new() -> Self {
-        Self { left: SECOND, last: now() }
+        Self(Bucket::full(MOST_MESSAGES, MOST_MESSAGES))
     }
 
     /// Reason for closing, if a message is one too many.
     pub(crate) fn spend(&mut self) -> Closing {
-        let now = now();
-        let saved = (self.left + (now - self.last)).min(SECOND);
-        self.last = now;
-        match saved.checked_sub(SECOND / MOST_MESSAGES) {
-            Some(left) => {
-                self.left = left;
-                None
-            }
-            None => Some((close_code::POLICY, "too many messages".into())),
-        }
+        (!self.0.take(now())).then(|| (close_code::POLICY, "too many messages".into()))
     }
 }
 
 /// Reason for closing after a message that cannot be read; none: the connection is lost.
 pub(crate) fn unreadable(error: &axum::Error) -> Closing {
-    error.to_string().contains("too long").then(|| (close_code::SIZE, "a frame is too long".into()))
+    let inner = error.source().and_then(|inner| inner.downcast_ref::<tungstenite::Error>());
+    let too_long = matches!(inner, Some(tungstenite::Error::Capacity(CapacityError::MessageTooLong { .. })));
+    too_long.then(|| (close_code::SIZE, "a frame is too long".into()))
 }
 
 struct Page {

@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 use std::net::SocketAddr;
 
 use messages::Command;
+use realtime::Bucket;
 use realtime::clock::SECOND;
 
 use crate::Cause;
@@ -19,9 +20,6 @@ pub const MAX_AGE: u64 = SECOND / 2;
 pub const RATE: u64 = 100;
 /// Datagrams at once.
 pub const BURST: u64 = 50;
-/// Time that a datagram costs, and that can be saved \[ns\].
-const COST: u64 = SECOND / RATE;
-const SAVED: u64 = BURST * COST;
 
 /// Who is heard.
 #[derive(Clone, Copy, Debug)]
@@ -32,22 +30,6 @@ struct Session {
     sequence: u64,
     /// Time of the last valid datagram \[ns\].
     last: u64,
-}
-
-/// Time that has been saved for datagrams \[ns\], and when that was counted.
-#[derive(Debug)]
-struct Bucket(u64, u64);
-
-impl Bucket {
-    const FULL: Self = Self(SAVED, 0);
-
-    /// Takes the time of one datagram; false: there is none left.
-    fn take(&mut self, now: u64) -> bool {
-        let saved = (self.0 + (now - self.1)).min(SAVED);
-        let left = saved.checked_sub(COST);
-        *self = Self(left.unwrap_or(saved), now);
-        left.is_some()
-    }
 }
 
 /// The gate.
@@ -68,7 +50,7 @@ pub struct Gate {
 impl Default for Gate {
     /// Nobody has been heard.
     fn default() -> Self {
-        let (zeros, others) = (Bucket::FULL, Bucket::FULL);
+        let (zeros, others) = (Bucket::full(RATE, BURST), Bucket::full(RATE, BURST));
         Self { session: None, stamps: VecDeque::new(), zeros, others, accepted: 0, refused: [0; _] }
     }
 }

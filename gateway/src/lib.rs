@@ -25,15 +25,16 @@ mod steering;
 pub mod trigger;
 pub mod wire;
 
+use std::error::Error;
 use std::fmt::Write;
-use std::io::{Error, ErrorKind};
+use std::io::{self, ErrorKind};
 use std::net::{SocketAddr, UdpSocket};
 use std::path::PathBuf;
 use std::time::Duration;
 
 use config::Setup;
 use ipc::Run;
-use messages::{Command, Process};
+use messages::Command;
 use realtime::Stop;
 use realtime::clock::{SECOND, now};
 
@@ -82,6 +83,14 @@ struct Robot {
     steering: Steering,
     /// None: the broker is not there.
     link: Option<Link>,
+}
+
+impl Robot {
+    fn open(supervisor: u32, run: &Run) -> Result<Self, Box<dyn Error>> {
+        let setup = Setup::load(&run.config, &run.scene)?;
+        let observer = Observer::open(&run.dir, &setup)?;
+        Ok(Self { supervisor, observer, sight: None, steering: Steering::default(), link: None })
+    }
 }
 
 /// The gateway.
@@ -135,7 +144,7 @@ pub fn run(options: &Options, stop: &Stop, say: Say) -> Result<(), String> {
         gateway.look();
         if now() >= due {
             gateway.trigger();
-            // What a busy machine made late is not made good for.
+            // Cycles that a busy machine missed are not caught up on.
             due = (due + period).max(now());
         }
     }
@@ -208,52 +217,33 @@ impl Gateway<'_> {
 
     /// Looks whether the robot is still there, or a new one, and its broker.
     fn search(&mut self) {
-        let dir = self.options.dir.display();
-        let supervisor = ipc::supervisor(&self.options.dir);
+        let dir = &self.options.dir;
+        let supervisor = ipc::supervisor(dir);
         if self.robot.as_ref().is_some_and(|robot| supervisor != Some(robot.supervisor)) {
             // Its ports go before the next run makes others in their place.
             self.robot = None;
         }
-        let line = match (supervisor, &mut self.robot) {
-            (_, Some(Robot { link: Some(_), .. })) => return,
-            (_, Some(Robot { link, .. })) => match Link::connect(&self.options.dir) {
+        let line = match &mut self.robot {
+            Some(Robot { link: Some(_), .. }) => return,
+            Some(Robot { link, .. }) => match Link::connect(dir) {
                 Ok(new) => {
                     *link = Some(new);
-                    format!("robot in {dir}: connected")
+                    format!("robot in {}: connected", dir.display())
                 }
-                Err(why) => format!("the robot in {dir} does not answer: {why}"),
+                Err(why) => format!("the robot in {} does not answer: {why}", dir.display()),
             },
-            (None, None) => {
-                format!("no robot runs in {dir}; it is waited for: gangwerk run SCENE --dir {dir} starts one")
-            }
-            // The clock of all others is started last: what it is part of is complete.
-            (Some(_), None) if ipc::owner(&self.options.dir, Process::Lowlevel).is_none() => {
-                format!("the robot in {dir} is starting")
-            }
-            (Some(supervisor), None) => match self.open() {
-                Ok(observer) => {
-                    self.robot = Some(Robot {
-                        supervisor,
-                        observer,
-                        sight: None,
-                        steering: Steering::default(),
-                        link: None,
-                    });
+            None => match ipc::find_robot(dir, Robot::open) {
+                Ok(robot) => {
+                    self.robot = Some(robot);
                     return self.search();
                 }
-                Err(why) => format!("the robot in {dir} cannot be observed: {why}"),
+                Err(why) => why.to_string(),
             },
         };
         if self.said != line {
             (self.say)(&line);
             self.said = line;
         }
-    }
-
-    fn open(&self) -> Result<Observer, String> {
-        let run = Run::load(&self.options.dir).map_err(|e| e.to_string())?;
-        let setup = Setup::load(&run.config, &run.scene).map_err(|e| e.to_string())?;
-        Observer::open(&self.options.dir, &setup).map_err(|e| e.to_string())
     }
 
     /// The connection to the broker is over; with it went the lease.
@@ -312,7 +302,7 @@ impl Gateway<'_> {
     }
 
     /// A trigger that cannot even be sent has a reason that lasts, mostly an address; each is said once.
-    fn tell_unsent(&mut self, why: &Error) {
+    fn tell_unsent(&mut self, why: &io::Error) {
         let to = self.options.to;
         let port = self.listen.port();
         let any = if to.is_ipv4() { format!("0.0.0.0:{port}") } else { format!("[::]:{port}") };

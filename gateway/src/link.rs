@@ -7,21 +7,19 @@ use std::path::Path;
 use std::time::Duration;
 
 use broker::StreamClient;
-use broker::stream_client::News;
+use broker::stream_client::{IDLE, News};
 use messages::Command;
 use messages::command::Domain;
 use realtime::clock::SECOND;
 
 use crate::steering::{NAME, Passage, Steering};
 
-/// Between two signs of life while she walks, and while she does not: those keep the connection open \[ns\].
+/// Longest silence towards the broker while she walks \[ns\]: the lease lasts for 500 ms.
 const PING: u64 = SECOND / 10;
-const IDLE: u64 = 20 * SECOND;
 
 /// Connection to the broker of a robot.
 pub(crate) struct Link {
     client: StreamClient,
-    next_ping: u64,
 }
 
 impl Link {
@@ -32,7 +30,7 @@ impl Link {
     pub(crate) fn connect(dir: &Path) -> Result<Self, String> {
         let mut client = StreamClient::connect(dir, NAME)?;
         client.subscribe(&[Domain::Walk, Domain::System])?;
-        Ok(Self { client, next_ping: 0 })
+        Ok(Self { client })
     }
 
     /// Passes a command on; false: it is held.
@@ -53,7 +51,7 @@ impl Link {
         Ok(passage != Passage::Held)
     }
 
-    /// One look: what the broker says, silence of the vision system, signs of life. Refusals of the robot, in words.
+    /// One look: what the broker says, silence of the vision system, heartbeats. Refusals of the robot, in words.
     ///
     /// # Errors
     /// The connection is lost.
@@ -67,7 +65,6 @@ impl Link {
         // A millisecond, in which this client says nothing by itself.
         while let Some(news) = self.client.news(Duration::from_millis(1))? {
             match news {
-                News::Answer(answer) if answer.sequence == 0 => return Err(answer.text),
                 News::Answer(answer) => refused += u64::from(steering.answered(answer, say)),
                 News::Command(by @ (Command::Stop | Command::End | Command::EmergencyStop)) => {
                     steering.hold(format!("stopped by somebody else ({})", by.name()), say);
@@ -81,15 +78,8 @@ impl Link {
             self.client.give_lease()?;
             say("no velocity for half a second: she comes to a stand".into());
         }
-        let pause = if steering.walks() { PING } else { IDLE };
-        self.next_ping = self.next_ping.min(now + pause);
-        if now >= self.next_ping {
-            self.client.ping()?;
-            self.next_ping = now + pause;
-        }
-        match steering.is_overdue(now) {
-            true => Err("the broker does not answer; it may have to be started again".into()),
-            false => Ok(refused),
-        }
+        self.client.keep_alive(if steering.walks() { PING } else { IDLE })?;
+        steering.check_answers(now)?;
+        Ok(refused)
     }
 }

@@ -6,7 +6,6 @@ use config::Setup;
 use messages::command::{Command, FixateCommand};
 use messages::{ControllerState, Sensors};
 use multibody::{Data, Frame, Model};
-use nalgebra::UnitQuaternion;
 use recording::{RecordedPose, odometry};
 
 use crate::trigger::{Frames, Odometry};
@@ -92,7 +91,7 @@ impl Way {
     /// The planning frame is here now, at this height \[m\].
     fn to(&mut self, place: [f64; 3], height: f64) -> Odometry {
         let [x, y, heading] = place;
-        // Who looks later than she began to walk knows the straight line, at least.
+        // An observer that came after the begin of the walk knows the straight line, at least.
         let [last, before] = *self.places.get_or_insert_with(|| {
             (self.length, self.turn) = (x.hypot(y), heading.abs());
             [place; 2]
@@ -126,8 +125,7 @@ struct Kinematics {
 impl Kinematics {
     fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
         let robot = &setup.robot;
-        let order: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-        let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?;
+        let model = robot.model()?;
         let [right, left] = [0, 1].map(|i| model.frame(&robot.feet[i].link, robot.feet[i].sole));
         let camera = robot.head.as_ref().map(|head| model.frame(&head.link, head.camera)).transpose()?;
         let (data, q) = (Data::new(&model), model.neutral());
@@ -146,9 +144,8 @@ impl Kinematics {
         self.q[7..].copy_from_slice(&sensors.joint_angle[..joints]);
         self.model.forward_kinematics(&mut self.data, &self.q);
         let pose = |frame: &Frame| {
-            let pose = self.model.frame_pose(&self.data, frame);
-            let turn = UnitQuaternion::from_rotation_matrix(&pose.rotation);
-            RecordedPose { position: pose.translation.vector.into(), orientation: turn.coords.into() }
+            let (position, orientation) = self.model.frame_place(&self.data, frame);
+            RecordedPose { position, orientation }
         };
         let soles = self.soles.each_ref().map(pose);
         let height = odom_from_planning.position[2];

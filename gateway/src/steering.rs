@@ -2,21 +2,20 @@
 //!
 //! They belong to the robot and not to a connection: a stop holds, also when the broker is started again. Pure: time is an argument.
 
-use std::collections::BTreeMap;
-
+use broker::Awaited;
+use broker::identity::is_own;
 use broker::stream_client::Answer;
 use messages::Command;
+use messages::command_answer::code;
 use realtime::clock::SECOND;
 
 /// Name at the broker.
 pub(crate) const NAME: &str = "gangwerk gateway";
 /// Silence of the vision system after which she comes to a stand \[ns\].
 pub const SILENCE: u64 = SECOND / 2;
-/// Time that the broker has for an answer \[ns\].
-const PATIENCE: u64 = 3 * SECOND;
 /// Answers of the protocol to a velocity after which it is not for the vision system to go on by itself: somebody else holds
 /// the lease, she does not stand, not in this state, fallen or stopped.
-const NOT_YOURS: [u8; 4] = [9, 31, 32, 33];
+const NOT_YOURS: [u8; 4] = [code::LEASE_HELD, code::NOT_STANDING, code::NOT_NOW, code::EVENT];
 
 /// What becomes of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,8 +37,8 @@ pub(crate) struct Steering {
     walks: Option<u64>,
     /// Why no velocity is passed on until one of zero comes.
     held: Option<String>,
-    /// Number of a frame, its command, and when its answer is given up \[ns\].
-    awaited: BTreeMap<u64, (Command, u64)>,
+    /// Commands that are not answered yet.
+    awaited: Awaited<Command>,
 }
 
 impl Steering {
@@ -76,18 +75,18 @@ impl Steering {
         self.held = None;
         let walked = self.walks.take().is_some();
         // What is on its way to the broker may have the lease before anybody has told us.
-        let on_its_way = || self.awaited.values().any(|(command, _)| command.needs_lease());
+        let on_its_way = || self.awaited.iter().any(Command::needs_lease);
         if self.mine || walked || on_its_way() { Passage::Send } else { Passage::Needless }
     }
 
     /// A command went to the broker with this number.
     pub(crate) fn sent(&mut self, sequence: u64, command: &Command, now: u64) {
-        self.awaited.insert(sequence, (*command, now + PATIENCE));
+        self.awaited.insert(sequence, *command, now);
     }
 
     /// Takes an answer; true: it is a refusal.
     pub(crate) fn answered(&mut self, answer: Answer, say: &mut dyn FnMut(String)) -> bool {
-        let Some((command, _)) = self.awaited.remove(&answer.sequence) else { return false };
+        let Some(command) = self.awaited.take(&answer) else { return false };
         let (code, name) = (answer.code, command.name());
         let Err(why) = answer.accepted() else { return false };
         if matches!(command, Command::Velocity(_)) && NOT_YOURS.contains(&code) {
@@ -98,14 +97,17 @@ impl Steering {
         true
     }
 
-    /// True if an answer is overdue.
-    pub(crate) fn is_overdue(&self, now: u64) -> bool {
-        self.awaited.values().any(|(_, until)| now > *until)
+    /// Looks whether an answer is overdue.
+    ///
+    /// # Errors
+    /// One is.
+    pub(crate) fn check_answers(&self, now: u64) -> Result<(), String> {
+        self.awaited.check(now)
     }
 
     /// The command lease has changed hands.
     pub(crate) fn held_by(&mut self, holder: &str, say: &mut dyn FnMut(String)) {
-        self.mine = holder.contains(NAME) && holder.contains(&format!("pid {})", std::process::id()));
+        self.mine = is_own(holder, NAME);
         if !self.mine && !holder.is_empty() && self.walks() {
             self.hold(format!("{holder} steers"), say);
         }
@@ -127,7 +129,7 @@ impl Steering {
 
     /// The connection to the broker is over, and with it the lease. Nobody knows who stops her until there is another one.
     pub(crate) fn disconnected(&mut self, say: &mut dyn FnMut(String)) {
-        (self.mine, self.awaited) = (false, BTreeMap::new());
+        (self.mine, self.awaited) = (false, Awaited::default());
         self.hold("nobody's stop is heard without the broker".into(), say);
     }
 }
@@ -135,6 +137,7 @@ impl Steering {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use broker::awaited::PATIENCE;
     use messages::command::{FixateCommand, GoneCommand, VelocityCommand};
 
     const WALK: Command = Command::Velocity(VelocityCommand { forward: 0.3, left: 0.0, turn: 0.0 });
@@ -166,7 +169,8 @@ mod tests {
         steering.hold("stopped by somebody else (walk/stop)".into(), &mut |_| {});
         assert_eq!(give(&mut steering, WALK, 2), Passage::Held);
         steering.disconnected(&mut |_| {});
-        assert!(!steering.has_lease() && !steering.is_overdue(u64::MAX), "both went with the connection");
+        let overdue = steering.check_answers(u64::MAX).is_err();
+        assert!(!steering.has_lease() && !overdue, "both went with the connection");
         assert_eq!(give(&mut steering, WALK, 1), Passage::Held);
         assert_eq!(give(&mut steering, ZERO, 1), Passage::Needless);
         assert_eq!(give(&mut steering, WALK, 1), Passage::Send);
@@ -239,6 +243,7 @@ mod tests {
         assert!(!steering.falls_silent(1000 + SILENCE));
         assert!(steering.falls_silent(1001 + SILENCE));
         assert!(!steering.falls_silent(1001 + SILENCE));
-        assert!(!steering.is_overdue(1000 + PATIENCE) && steering.is_overdue(1001 + PATIENCE));
+        assert!(steering.check_answers(1000 + PATIENCE).is_ok());
+        assert!(steering.check_answers(1001 + PATIENCE).is_err());
     }
 }

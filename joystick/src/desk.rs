@@ -1,18 +1,20 @@
 //! Link to the broker of one robot after the other: deeds of the pilot out, answers and news of the robot back.
 //!
-//! One thread does all of it, and signs of life as well: a program that stands still or is gone loses the lease, and she stands.
+//! One thread does all of it, and heartbeats as well: a program that stands still or is gone loses the lease, and she stands.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use broker::StreamClient;
-use broker::stream_client::{Answer, News};
+use broker::identity::is_own;
+use broker::stream_client::{Answer, IDLE, News};
+use broker::{Awaited, StreamClient};
 use config::Setup;
 use config::joystick::{ButtonFunction, Joystick};
 use ipc::Run;
 use messages::command::Domain;
-use messages::{Command, GaitState, Process, StartUp};
+use messages::command_answer::code;
+use messages::{Command, GaitState, StartUp};
 use realtime::clock::{SECOND, now, sleep_until};
 
 use crate::pad::Hands;
@@ -22,21 +24,18 @@ use crate::start_up::{RobotState, next_step};
 
 /// Name at the broker.
 const NAME: &str = "gangwerk joystick";
-/// Between two looks for a robot, and between two signs of life while the hands steer \[ns\].
+/// Between two looks for a robot \[ns\].
 const SEARCH: u64 = SECOND / 4;
+/// Longest silence towards the broker while the hands steer \[ns\].
 const PING: u64 = SECOND / 10;
-/// Silence after which a connection gets a sign of life that keeps it open, without a lease \[ns\].
-const SILENCE: u64 = 20 * SECOND;
 /// Time that this program may stand still while the hands steer \[ns\]: the lease lasts for 500 ms.
 const STILL: u64 = SECOND * 4 / 10;
-/// Time that the broker has for an answer \[ns\].
-const PATIENCE: u64 = 3 * SECOND;
 /// Between two commands of one step of the start-up \[ns\]: two edges in two cycles.
 const EDGE: u64 = SECOND * 15 / 100;
 /// States per second.
 const RATE: u16 = 10;
 /// Answers of the protocol after which a velocity is sent again: no answer in time, too old, from the future.
-const AGAIN: [u8; 3] = [11, 20, 21];
+const AGAIN: [u8; 3] = [code::NO_ANSWER, code::TOO_OLD, code::FROM_THE_FUTURE];
 
 /// Sink of lines for the operator.
 pub type Say = fn(&str);
@@ -51,9 +50,8 @@ struct Robot {
     state: RobotState,
     /// True if the broker has said that this program holds the lease.
     mine: bool,
-    /// Number of a frame, name of its command, and when its answer is given up \[ns\].
-    awaited: BTreeMap<u64, (&'static str, u64)>,
-    next_ping: u64,
+    /// Names of what is not answered yet.
+    awaited: Awaited<&'static str>,
 }
 
 /// The desk.
@@ -93,6 +91,7 @@ impl<'a> Desk<'a> {
 
     /// News of the gamepad.
     pub(crate) fn hear(&mut self, news: PadNews) {
+        self.check_time();
         let deeds = match news {
             PadNews::Here(line) => {
                 self.tell("gamepad", line);
@@ -124,13 +123,12 @@ impl<'a> Desk<'a> {
 
     /// One look: at the time, the robot, what is due.
     pub(crate) fn look(&mut self) {
-        let stood = now() - self.looked;
-        if stood > STILL {
-            self.lapse(&format!("this program stood still for {} ms", stood / 1_000_000));
-        }
+        self.check_time();
         if self.robot.is_none() && now() >= self.next_search {
             self.search();
             self.next_search = now() + SEARCH;
+            // Connecting takes its time, and nothing was held in it.
+            self.looked = now();
         }
         if let Err(why) = self.listen() {
             self.lose(why);
@@ -140,8 +138,17 @@ impl<'a> Desk<'a> {
         if let Err(why) = self.live() {
             self.lose(why);
         }
-        // Connecting takes its time, and nothing was held in it.
-        self.looked = now();
+    }
+
+    /// What was held or pressed while this program stood still does not count.
+    fn check_time(&mut self) {
+        let stood = now() - std::mem::replace(&mut self.looked, now());
+        if stood <= STILL {
+            return;
+        }
+        if self.robot.as_mut().is_some_and(|robot| robot.pilot.stood(now())) {
+            self.lapsed(&format!("this program stood still for {} ms", stood / 1_000_000));
+        }
     }
 
     /// The program ends: as a release.
@@ -158,18 +165,7 @@ impl<'a> Desk<'a> {
 
     /// Connects to the robot, if there is one.
     fn search(&mut self) {
-        let dir = self.dir.display();
-        if ipc::supervisor(&self.dir).is_none() {
-            let line = format!(
-                "no robot runs in {dir}; it is waited for: gangwerk run SCENE --dir {dir} starts one"
-            );
-            return self.tell("robot", line);
-        }
-        // The clock of all others is started last: what it is part of is complete.
-        if ipc::owner(&self.dir, Process::Lowlevel).is_none() {
-            return self.tell("robot", format!("the robot in {dir} is starting"));
-        }
-        match self.connect() {
+        match ipc::find_robot(&self.dir, |_, run| self.connect(run)) {
             Ok((mut robot, about)) => {
                 // What is held already does not count.
                 let deeds = robot.pilot.hands(self.hands, &[], 0, now());
@@ -177,12 +173,11 @@ impl<'a> Desk<'a> {
                 self.tell("robot", about);
                 self.all(deeds);
             }
-            Err(why) => self.tell("robot", format!("the robot in {dir} does not answer yet: {why}")),
+            Err(why) => self.tell("robot", why.to_string()),
         }
     }
 
-    fn connect(&self) -> Result<(Robot, String), String> {
-        let run = Run::load(&self.dir).map_err(|e| e.to_string())?;
+    fn connect(&self, run: &Run) -> Result<(Robot, String), String> {
         let setup = Setup::load(&run.config, &run.scene).map_err(|e| e.to_string())?;
         let mut client = StreamClient::connect(&self.dir, NAME)?;
         client.subscribe(&[Domain::Walk, Domain::System])?;
@@ -213,17 +208,8 @@ impl<'a> Desk<'a> {
         // Until the first STATE nothing is known of her.
         let state = RobotState { supply: false, start_up: StartUp::Off, gait: GaitState::Idle };
         let pilot = Pilot::new(Ability { velocities, on_the_spot: setup.gait.on_the_spot() });
-        let robot = Robot {
-            client,
-            pilot,
-            simulated: run.robot,
-            places,
-            state,
-            mine: false,
-            awaited: BTreeMap::new(),
-            next_ping: 0,
-        };
-        Ok((robot, about))
+        let (simulated, awaited) = (run.robot, Awaited::default());
+        Ok((Robot { client, pilot, simulated, places, state, mine: false, awaited }, about))
     }
 
     /// Does what the pilot wants.
@@ -275,10 +261,14 @@ impl<'a> Desk<'a> {
 
     /// The hands do not steer any more until the dead-man button was released.
     fn lapse(&mut self, why: &str) {
-        let Some(robot) = &mut self.robot else { return };
-        if !robot.pilot.lapse() {
-            return;
+        if self.robot.as_mut().is_some_and(|robot| robot.pilot.lapse()) {
+            self.lapsed(why);
         }
+    }
+
+    /// The hands steered until now.
+    fn lapsed(&mut self, why: &str) {
+        let Some(robot) = &mut self.robot else { return };
         // A stop could be that of somebody else's walk; who gives the lease back leaves his own walk to stop.
         let given = robot.client.give_lease().map(drop);
         robot.mine = false;
@@ -296,19 +286,11 @@ impl<'a> Desk<'a> {
         }
     }
 
-    /// Signs of life, and answers that are overdue.
+    /// Heartbeats, and answers that are overdue.
     fn live(&mut self) -> Result<(), String> {
         let Some(robot) = &mut self.robot else { return Ok(()) };
-        let now = now();
-        if now >= robot.next_ping {
-            robot.client.ping()?;
-        }
-        let pause = if robot.pilot.steers() { PING } else { SILENCE };
-        robot.next_ping = if now >= robot.next_ping { now + pause } else { robot.next_ping.min(now + pause) };
-        match robot.awaited.values().any(|(_, until)| now > *until) {
-            true => Err("the broker does not answer; it may have to be started again".into()),
-            false => Ok(()),
-        }
+        robot.client.keep_alive(if robot.pilot.steers() { PING } else { IDLE })?;
+        robot.awaited.check(now())
     }
 
     /// Takes what the broker says.
@@ -318,7 +300,6 @@ impl<'a> Desk<'a> {
             // A millisecond, in which this client says nothing by itself.
             let Some(news) = robot.client.news(Duration::from_millis(1))? else { return Ok(()) };
             match news {
-                News::Answer(answer) if answer.sequence == 0 => return Err(answer.text),
                 News::Answer(answer) => self.answered(answer)?,
                 News::Command(by @ (Command::Stop | Command::End | Command::EmergencyStop)) => {
                     self.lapse(&format!("stopped by somebody else ({})", by.name()));
@@ -335,7 +316,7 @@ impl<'a> Desk<'a> {
 
     fn answered(&mut self, answer: Answer) -> Result<(), String> {
         let Some(robot) = &mut self.robot else { return Ok(()) };
-        let Some((name, _)) = robot.awaited.remove(&answer.sequence) else { return Ok(()) };
+        let Some(name) = robot.awaited.take(&answer) else { return Ok(()) };
         let code = answer.code;
         if name == "walk/velocity" && AGAIN.contains(&code) {
             robot.pilot.forget();
@@ -346,7 +327,10 @@ impl<'a> Desk<'a> {
         match answer.accepted() {
             Ok(_) if name == "lease" => self.tell(name, "you steer".into()),
             Ok(by) => self.tell(name, format!("{name} accepted by {by}")),
-            Err(why) if name == "lease" => self.lapse(&format!("{why}; --take-over takes the lease")),
+            Err(why) if name == "lease" && code == code::LEASE_HELD => {
+                self.lapse(&format!("{why}; --take-over takes the lease"));
+            }
+            Err(why) if name == "lease" => self.lapse(&why),
             Err(why) => self.tell(name, format!("{name} refused: {why}")),
         }
         Ok(())
@@ -355,7 +339,7 @@ impl<'a> Desk<'a> {
     /// The command lease has changed hands.
     fn held_by(&mut self, holder: &str) {
         let Some(robot) = &mut self.robot else { return };
-        let mine = holder.contains(NAME) && holder.contains(&format!("pid {})", std::process::id()));
+        let mine = is_own(holder, NAME);
         let lost = std::mem::replace(&mut robot.mine, mine) && !mine;
         if lost {
             let by = if holder.is_empty() { "nobody holds it" } else { holder };
@@ -394,7 +378,7 @@ impl Robot {
     }
 
     fn await_answer(&mut self, name: &'static str, sequence: u64) {
-        self.awaited.insert(sequence, (name, now() + PATIENCE));
+        self.awaited.insert(sequence, name, now());
     }
 }
 
@@ -409,5 +393,6 @@ mod tests {
         for reason in [Reason::TooOld { age_ns: 0 }, Reason::FromTheFuture { lead_ns: 0 }] {
             assert!(AGAIN.contains(&reason.code()), "{reason:?}");
         }
+        assert!(AGAIN.contains(&broker::Refusal::NoAnswer("planner").code()));
     }
 }

@@ -10,7 +10,7 @@ use crate::pad::{Hands, velocity};
 
 /// Least time between two velocities \[ns\].
 const EVERY: u64 = SECOND / 20;
-/// Time after which a device that was plugged in tells presses and no state \[ns\].
+/// Time after which a device that was plugged in, or is read again after a standstill, tells presses of now \[ns\].
 const SETTLE: u64 = SECOND / 2;
 /// Age from which a press is too old to be meant \[ns\].
 const STALE: u64 = SECOND / 2;
@@ -56,7 +56,7 @@ pub struct Pilot {
     sent: [f64; 3],
     /// Earliest time of the next one \[ns\].
     next: u64,
-    /// Time until which the dead-man button was held before the gamepad was there \[ns\].
+    /// Time until which a press of the dead-man button may be older than its report \[ns\].
     settles: u64,
 }
 
@@ -145,6 +145,12 @@ impl Pilot {
         std::mem::take(&mut self.steers)
     }
 
+    /// The program stood still until `now`: what was pressed meanwhile is told only then. False: the hands did not steer.
+    pub fn stood(&mut self, now: u64) -> bool {
+        self.settles = now + SETTLE;
+        self.lapse()
+    }
+
     /// The last velocity has not arrived: it is due again.
     pub fn forget(&mut self) {
         self.sent = [f64::NAN; 3];
@@ -229,6 +235,22 @@ mod tests {
         assert_eq!(pilot.hands(hands(true, 0.8), &[], 9 + SETTLE, 5 * SECOND), []);
         assert_eq!(pilot.hands(hands(false, 0.8), &[], 9 + SETTLE, 5 * SECOND), []);
         assert_eq!(pilot.hands(hands(true, 0.2), &[], 9 + SETTLE, 5 * SECOND), [Deed::Take, walk(0.18)]);
+    }
+
+    /// The reader stood still, too: whatever waits for it has the time at which it goes on.
+    #[test]
+    fn a_press_made_in_a_standstill_does_not_count() {
+        for mut pilot in [steering(), Pilot::new(ABILITY)] {
+            pilot.hands(hands(false, 0.0), &[], 0, 0);
+            assert!(!pilot.stood(SECOND));
+            assert_eq!(pilot.hands(hands(false, 1.0), &[], SECOND + 1, SECOND + 1), []);
+            assert_eq!(pilot.hands(hands(true, 1.0), &[], SECOND + 2, SECOND + 2), [Deed::NeedsRelease]);
+            assert_eq!(pilot.hands(hands(true, 0.5), &[], 2 * SECOND, 2 * SECOND), [], "held since then");
+            assert_eq!(pilot.hands(hands(false, 0.5), &[], 2 * SECOND, 2 * SECOND), []);
+            assert_eq!(pilot.hands(hands(true, 0.5), &[], 3 * SECOND, 3 * SECOND), [Deed::Take, walk(0.47)]);
+            assert!(pilot.stood(4 * SECOND), "walked by who stood still");
+            assert_eq!(pilot.hands(hands(true, 0.4), &[], 5 * SECOND, 5 * SECOND), []);
+        }
     }
 
     #[test]

@@ -41,10 +41,14 @@ pub fn main(dir: &Path) -> Result<(), Box<dyn Error>> {
 ///
 /// # Errors
 /// The configuration cannot be read, or another logger serves this run. A log that cannot be written is said once and
-/// counted, and tried again every half second; at the end it is an error, so that nobody takes it for the whole run.
+/// counted, and tried again every half second; at the end it is an error, so that nobody takes it for the whole run. Nothing
+/// begins with a log that another run writes.
 pub fn run(run: &Run, stop: &Stop) -> Result<(), String> {
     let space = run.enter(Process::Logger).map_err(|e| e.to_string())?;
-    let output = LogOutput::new(open(run, again(&space))?);
+    let mut output = LogOutput::new(open(run, again(&space))?);
+    if output.is_anothers() {
+        return Err(output.complaint().unwrap_or_default());
+    }
     let ended = serve(&space, output, run.mode, stop).map_err(|e| e.to_string())?;
     if ended.broken {
         return Err(format!(
@@ -65,9 +69,16 @@ fn again(space: &Space) -> bool {
 fn open(run: &Run, again: bool) -> Result<Open, String> {
     let setup = Setup::load(&run.config, &run.scene).map_err(|e| e.to_string())?;
     let parts = Parts::new(run.log.as_deref().ok_or("this run has no log")?);
-    let before = if again { (1..).take_while(|&part| parts.path(part).exists()).count() as u32 } else { 0 };
+    let mut before =
+        if again { (1..).take_while(|&part| parts.path(part).exists()).count() as u32 } else { 0 };
     let (text, origin) = (run.to_text(), Origin::of(run));
+    let mut first = !again;
     Ok(Box::new(move |part| {
+        // What another run writes stays its own, also when it has finished it: the next part goes beyond.
+        while !first && recording::is_being_written(&parts.path(before + part)) {
+            before += 1;
+        }
+        first = false;
         let mut recorder = recorder(&parts.path(before + part), &setup, &origin)?;
         recorder.attach(RUN, text.as_bytes())?;
         Ok(recorder)
@@ -197,6 +208,33 @@ impl Signals {
 mod tests {
     use super::*;
     use messages::Header;
+    use recording::{Recorder, RecordingError, RobotInfo, RunInfo};
+
+    /// A second run that began in the same instant waited for the log of the first one to be finished, and emptied it.
+    #[test]
+    fn a_log_that_another_run_writes_is_refused_before_the_start() {
+        let dir = std::env::temp_dir().join(format!("gangwerk-log-of-another-{}", std::process::id()));
+        let (space, path) = (Space::create(&dir).unwrap(), dir.with_extension("mcap"));
+        let other = Recorder::create(&path, &RobotInfo::default(), &RunInfo::default()).unwrap();
+        let (scene, config) = ("stand".into(), config::root(None));
+        let second = Run { scene, config, log: Some(path.clone()), ..Run::bare(&dir) };
+        let stop = Stop::default();
+        stop.ask();
+        let error = run(&second, &stop).unwrap_err();
+        assert!(error.contains("it is being written"), "{error}");
+        assert!(!again(&space), "it said that it has started");
+        // One that goes on tries again when the other has ended, elsewhere.
+        let mut parts = open(&second, false).unwrap();
+        assert!(matches!(parts(1), Err(RecordingError::BeingWritten(_))));
+        drop(parts(1).unwrap());
+        other.finish().unwrap();
+        let length = std::fs::metadata(&path).unwrap().len();
+        drop(parts(1).unwrap());
+        assert_eq!(std::fs::metadata(&path).unwrap().len(), length);
+        for part in 1..4 {
+            let _ = std::fs::remove_file(Parts::new(&path).path(part));
+        }
+    }
 
     /// A logger that never caught up was silent, and killed as one that hangs.
     #[test]

@@ -4,7 +4,6 @@ use config::Robot;
 use config::robot::Drive;
 use messages::{Joints, Sensors};
 use multibody::{Data, Frame, Model, ModelError};
-use nalgebra::UnitQuaternion;
 use recording::{LinkFrame, LinkPoses, RecordedPose};
 
 /// The robot's tree of links.
@@ -20,8 +19,7 @@ pub struct Kinematics {
 impl Kinematics {
     /// From the URDF of the robot.
     pub fn new(robot: &Robot) -> Result<Self, ModelError> {
-        let joints: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-        let model = Model::from_urdf(&robot.urdf, &robot.torso, &joints)?;
+        let model = robot.model()?;
         let names: Vec<String> = model.link_names().map(String::from).collect();
         let frames = names.iter().map(|name| model.frame(name, [0.0; 3])).collect::<Result<Vec<_>, _>>()?;
         // The first link of a body is the one its joint moves; the others are fixed to it.
@@ -53,12 +51,8 @@ impl LinkPoses for Kinematics {
         self.q[7..].copy_from_slice(&joint_angle[..joints]);
         self.model.forward_kinematics(&mut self.data, &self.q);
         for (frame, pose) in self.frames.iter().zip(out) {
-            let world = self.model.frame_pose(&self.data, frame);
-            let turn = UnitQuaternion::from_rotation_matrix(&world.rotation);
-            *pose = RecordedPose {
-                position: world.translation.vector.into(),
-                orientation: [turn.i, turn.j, turn.k, turn.w],
-            };
+            let (position, orientation) = self.model.frame_place(&self.data, frame);
+            *pose = RecordedPose { position, orientation };
         }
     }
 

@@ -36,6 +36,8 @@ pub struct LogOutput {
     broken: bool,
     /// Writing does not work at present, and that was said.
     failing: bool,
+    /// Another run writes the file that was to be opened last.
+    anothers: bool,
     complaint: Option<String>,
 }
 
@@ -50,6 +52,7 @@ impl LogOutput {
             unflushed: 0,
             broken: false,
             failing: false,
+            anothers: false,
             complaint: None,
         };
         output.retry();
@@ -107,6 +110,11 @@ impl LogOutput {
         self.dropped
     }
 
+    /// Whether there is no part yet because another run writes the file that this one was to begin with.
+    pub(crate) fn is_anothers(&self) -> bool {
+        self.anothers && self.part == 0
+    }
+
     /// Whether records reach a file at present.
     pub(crate) fn is_writing(&self) -> bool {
         self.recorder.is_some()
@@ -132,6 +140,7 @@ impl LogOutput {
     /// The same complaint again and again is no news: only the first one until writing works again.
     fn complain(&mut self, error: &RecordingError) {
         self.broken = true;
+        self.anothers = matches!(error, RecordingError::BeingWritten(_));
         if !self.failing {
             self.failing = true;
             self.complaint = Some(error.to_string());

@@ -3,7 +3,7 @@
 use config::Robot;
 use logger::{Kinematics, robot_info};
 use messages::MAX_JOINTS;
-use multibody::{Data, Model};
+use multibody::Data;
 use recording::{LinkPoses, RecordedPose};
 
 fn lola() -> Robot {
@@ -41,8 +41,7 @@ fn links_form_one_tree_with_parents_first() {
 #[test]
 fn poses_are_those_of_the_model() {
     let robot = lola();
-    let names: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-    let model = Model::from_urdf(&robot.urdf, &robot.torso, &names).unwrap();
+    let model = robot.model().unwrap();
     let mut data = Data::new(&model);
     let mut kinematics = Kinematics::new(&robot).unwrap();
     let (sin, cos) = 0.3f64.sin_cos();
@@ -53,7 +52,7 @@ fn poses_are_those_of_the_model() {
     let mut q = vec![0.0; model.nq()];
     q[..3].copy_from_slice(&base.position);
     q[3..7].copy_from_slice(&base.orientation);
-    q[7..].copy_from_slice(&angles[..names.len()]);
+    q[7..].copy_from_slice(&angles[..model.n()]);
     model.forward_kinematics(&mut data, &q);
     for (link, pose) in kinematics.links().iter().zip(&poses) {
         // Through a point off all axes, so that a wrong turn shows.

@@ -22,11 +22,11 @@ use std::time::Duration;
 /// Share of a period after which the joint loop no longer waits for the targets of the same cycle.
 const ANSWER: (u64, u64) = (7, 10);
 
-/// Runs the joint loop until the scene is over or somebody asks to end.
+/// Runs the joint loop until the scene is over or somebody asks to end; whether the scene is over.
 ///
 /// # Errors
 /// The process cannot start, or, in lockstep, a peer fell silent.
-pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
+pub fn main(dir: &Path, connect: Connect) -> Result<bool, Box<dyn Error>> {
     let mut d = Daemon::new(Process::Lowlevel, dir)?;
     let mut ports = LowlevelPorts {
         bus: bus::open(&d)?,
@@ -47,13 +47,13 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         commands: connect(&d.space)?,
     };
     if ports.sensors.epoch() > 1 {
-        ports.timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
+        ports.timeline.drop_rest(); // started again
     }
     let scene = &d.setup.scene;
     let last = if d.stays { u64::MAX } else { (scene.duration / scene.cycle).round() as u64 };
     let mut joints = JointLoop::new(&d.setup.robot, &d.setup.system, scene.cycle);
     if !ports.bus.start(&WaitingDaemon { daemon: &d, waiter: &ports.waiter })? {
-        return Ok(());
+        return Ok(false);
     }
     d.report(Header::default(), EventCode::Started, Detail::Nothing);
     let header = match d.mode {
@@ -65,7 +65,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         }
     };
     d.report(header, EventCode::Ended, Detail::Nothing);
-    Ok(())
+    Ok(header.tick >= last)
 }
 
 struct LowlevelPorts {
@@ -131,7 +131,7 @@ fn receive(
 }
 
 /// Simulated time: each peer answers tick n before tick n + 1 begins; if it is paced, no sooner than its clock says. What a
-/// machine loses it does not make good for: the robot is slower for a moment.
+/// machine loses it does not catch up on: the robot is slower for a moment.
 fn lockstep(
     d: &mut Daemon,
     p: &mut LowlevelPorts,

@@ -219,7 +219,7 @@ impl JointLoop {
         match self.state {
             _ if !powered => Off,
             Stop(why) => Stop(why),
-            // Who cannot be reached is no longer asked for anything else.
+            // A controller that cannot be reached is only asked to stop.
             Off | Hold | Track if mute.is_some() => self.stop_by_bus(mute),
             Hold | Track if tripped.is_some() => {
                 self.stop(EventCode::DriveTripped, tripped.unwrap_or_default())

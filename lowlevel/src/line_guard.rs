@@ -15,15 +15,11 @@ use std::hash::{Hash, Hasher};
 use codec::frames::Received;
 use codec::layout::{Carries, FrameLayout};
 use config::{Robot, System};
-use drives::cia402::REFERENCED;
+use drives::cia402::{DriveState, REFERENCED, state_of};
 use fieldbus::{ErrorFrame, ErrorState};
 use messages::{BusCounters, BusFrames, Detail, EventCode, EventQueue, RefusedFrame, Sensors};
 
 use crate::reading::{ReadingBounds, Readings, copy_joint};
-
-/// Bits of a statusword that are the state, and the state in which a drive follows (CiA 402, operation enabled).
-const STATE: u32 = 0x6f;
-const ENABLED: u32 = 0x27;
 
 /// One local controller, with the line it is on.
 #[derive(Clone, Debug, Default)]
@@ -154,9 +150,10 @@ impl LineGuard {
     /// believed at once, so that nothing of before is left when the supply comes back.
     fn doubt_states(&mut self, sensors: &mut Sensors) {
         let powered = sensors.power == 1;
+        let is_enabled = |status: u32| state_of(status as u16) == Some(DriveState::OperationEnabled);
         for (j, doubted) in self.doubted.iter_mut().enumerate() {
             let (before, now) = (self.believed.drive_status[j], &mut sensors.drive_status[j]);
-            let falls = powered && before & STATE == ENABLED && *now & STATE != ENABLED;
+            let falls = powered && is_enabled(before) && !is_enabled(*now);
             if falls && !*doubted {
                 // All but what the joint says of its reference, which is doubted on its own.
                 let reference = u32::from(REFERENCED);

@@ -81,7 +81,7 @@ mod tests {
     fn it_begins_where_the_joint_was_and_ends_on_the_target() {
         let mut rejoin = Rejoin::default();
         let target = Setpoint { angle: 1.0, speed: 2.0 };
-        assert_eq!(rejoin.step(target, DT), target, "nothing to make good for");
+        assert_eq!(rejoin.step(target, DT), target, "nothing to catch up on");
         rejoin.begin(Setpoint { angle: 1.01, speed: 1.5 }, target);
         // The target stands still, so the offset alone moves: with its speed, and braked by 2 w x' and w^2 x.
         let first = rejoin.step(target, DT);

@@ -193,7 +193,7 @@ impl TableMaster {
             return self.forget();
         }
         self.runs = self.runs && self.running.point_at(cycle.tick, self.samples) != Ok(None);
-        // Who is no longer led does not play, nor will begin to.
+        // Drives that are no longer led stop playing, and do not begin to.
         let begins = matches!(self.state, TableState::Arming | TableState::Armed | TableState::Disarming);
         if !cycle.led && (self.runs || begins) && self.state != TableState::Stopping {
             self.runs = false;

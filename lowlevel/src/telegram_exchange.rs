@@ -64,8 +64,8 @@ impl TelegramExchange {
         self.drives[..self.joints].iter().all(|drive| drive.answered == self.count)
     }
 
-    /// Answers of a cycle: the first that is not what `expected` says of a joint's command, with both numbers. Who is
-    /// `patient` awaits answers for ever, and lets others pass.
+    /// Answers of a cycle: the first that is not what `expected` says of a joint's command, with both numbers. With `patient`,
+    /// answers are awaited for ever, and others let pass.
     pub(crate) fn receive(
         &mut self,
         frames: Option<&BusFrames>,

@@ -107,17 +107,13 @@ pub(crate) fn from_velocity(c: &VelocityCommand, gait: &Gait) -> Result<Option<S
         return Ok(None);
     }
     let l = &gait.limits;
-    let steps = [l.length, l.side, l.turn];
-    // The limits of a step at the shortest duration: no component is ever faster.
-    let mut fastest = steps.map(|limit| limit.map(|x| x / l.duration[0]));
-    let table = &gait.step.by_speed;
-    let most = table.last().map_or(0.0, |row| row[0]);
-    fastest[0] = [fastest[0][0].max(-most), fastest[0][1].min(most)];
+    // No component is ever faster.
+    let fastest = gait.fastest();
     for (field, (rate, limit)) in rates.into_iter().zip(fastest).enumerate() {
         within(rate, field as u8, limit)?;
     }
     // The duration of forward walking, shortened where length, side and turn would be too much for one step.
-    let [_, duration] = by_speed(c.forward.abs(), table).ok_or(Reason::Limit {
+    let [_, duration] = by_speed(c.forward.abs(), &gait.step.by_speed).ok_or(Reason::Limit {
         field: 0,
         low: fastest[0][0],
         high: fastest[0][1],

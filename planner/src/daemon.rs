@@ -68,7 +68,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     planner.see(KnownObstacles::new(d.setup.known_obstacles()?));
     let mut made = Box::new(Plan::default());
     if plan.epoch() > 1 {
-        timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
+        timeline.drop_rest(); // started again
     }
     let mut set = d.space.writer::<Parameters>(&PARAMETERS_PLANNER)?;
     let mut parameters = Parameters::default();
@@ -94,7 +94,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
                 matches!(live.command, Command::WalkParameter(_) | Command::Box(_) | Command::Gone(_));
             let steers = live.stamp.origin != 0 && !looks;
             if d.stays && steers {
-                timeline.skip_before(u64::MAX);
+                timeline.drop_rest();
             }
             inbox.add(live);
         }

@@ -275,7 +275,7 @@ impl Planner {
                 if let Some(asked) = parameters {
                     let before = self.parameters;
                     self.parameters = commands::shortened(&asked, &self.gait);
-                    // Who repeats a command is not told again.
+                    // A repeated command is not reported again.
                     if self.parameters != asked && self.parameters != before {
                         self.events.push(EventCode::CommandShortened, self.parameters.detail());
                     }
@@ -289,7 +289,7 @@ impl Planner {
         }
     }
 
-    /// To walk as one likes, which ends a skill. Half on a platform nobody does.
+    /// Free walking, which ends the active skill; refused half-way onto a platform.
     fn free(&mut self, to: Intent, gait: GaitState, with: Option<StepParameters>) -> Result<Taken, Reason> {
         self.tasks.walk(gait == GaitState::Standing).then_some((to, with)).ok_or(Reason::NotNow)
     }
@@ -319,7 +319,8 @@ impl Planner {
             return Err(Reason::Event { code, detail });
         }
         self.tasks.next = Some(task);
-        let still = matches!(gait, GaitState::Idle | GaitState::Standing);
+        // A plan that is about to begin may be that of a walk.
+        let still = matches!(gait, GaitState::Idle | GaitState::Standing) && self.next.plan.id == 0;
         let busy = self.tasks.active != Skill::Walk && !self.tasks.aborted;
         let intent = if busy { self.intent } else { Intent::Rest };
         Ok((if still { begin } else { intent }, None))

@@ -49,6 +49,16 @@ pub struct PlanOrigin {
     pub inside: Option<RunningStep>,
 }
 
+/// Measurement that a plan begins from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Measured<'a> {
+    pub(crate) state: &'a ControllerState,
+    /// \[m\] Zero-moment point.
+    pub(crate) zmp: [f64; 2],
+    /// \[s\] Time from the measurement to the begin of the plan.
+    pub(crate) ahead: f64,
+}
+
 /// A step whose landing is decided.
 #[derive(Clone, Copy, Debug)]
 pub struct RunningStep {
@@ -149,8 +159,8 @@ impl PlanOrigin {
         Some((from, state.feet.map(|f| f[2] - ground)))
     }
 
-    /// The robot as it is measured, inside the single support of step `k` of the active plan `walk`, at `t` \[s\], `ahead` \[s\]
-    /// after the measurement `state` with the zero-moment point at `zmp`; its foot lands at `landing` (@frame of that plan) after `cycles` of `cycle_s` \[s\].
+    /// The robot as it is measured, inside the single support of step `k` of the active plan `walk`, at `t` \[s\]; its foot lands at
+    /// `landing` (@frame of that plan) after `cycles` of `cycle_s` \[s\].
     ///
     /// A robot whose joints are led errs by turning about its stance sole: the upper body leans, and everything else with it.
     /// So the plan begins leaning; joints go on where they are.
@@ -158,7 +168,7 @@ impl PlanOrigin {
     pub(crate) fn inside(
         walk: &PlannedWalk,
         (k, t): (usize, f64),
-        (state, zmp, ahead): (&ControllerState, [f64; 2], f64),
+        Measured { state, zmp, ahead }: Measured<'_>,
         landing: &PlanarPose,
         (cycles, cycle_s): (u64, f64),
     ) -> Self {
@@ -221,13 +231,12 @@ impl PlanOrigin {
         from
     }
 
-    /// The robot as it is measured, on both feet of the active plan `walk` at `t` \[s\], `ahead` \[s\] after the measurement `state`
-    /// with the zero-moment point at `zmp`, and the step with which it goes on, seen from below its stance foot; `sole` is that
-    /// of either foot.
+    /// The robot as it is measured, on both feet of the active plan `walk` at `t` \[s\], and the step with which it goes on, seen
+    /// from below its stance foot; `sole` is that of either foot.
     pub(crate) fn on_both_feet(
         walk: &PlannedWalk,
         t: f64,
-        (state, zmp, ahead): (&ControllerState, [f64; 2], f64),
+        Measured { state, zmp, ahead }: Measured<'_>,
         step: &Stride,
         sole: &Sole,
     ) -> Self {

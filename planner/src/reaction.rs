@@ -1,10 +1,10 @@
 //! Reaction to pushes: inside a step, and out of standing, a plan from where the robot is, whose foot lands where it
-//! catches the body ([`crate::step_adaptation`]). Where the stabilizer alone can make good for an error, nothing happens.
+//! catches the body ([`crate::step_adaptation`]). Where the stabilizer alone can compensate an error, nothing happens.
 
 use crate::commands::Intent;
 use crate::footsteps::StepDemand;
 use crate::gait::{LEAD_MIN, Planner};
-use crate::origin::PlanOrigin;
+use crate::origin::{Measured, PlanOrigin};
 use crate::pose::PlanarPose;
 use crate::skills::{Script, Skill};
 use crate::sole::{Hull, Sole};
@@ -100,7 +100,8 @@ impl Planner {
             let foot = SwingFoot { place, loaded: 0.0 };
             let landing = step_adaptation::adapt(rules, walk, (k, t), &body, &foot, sole)?;
             let cycles = (model.cycles(landing.rest), model.cycle_s);
-            let from = PlanOrigin::inside(walk, (k, t), (state, zmp, ahead), &landing.pose, cycles);
+            let measured = Measured { state, zmp, ahead };
+            let from = PlanOrigin::inside(walk, (k, t), measured, &landing.pose, cycles);
             return Some(Catch { from, enough: landing.catches, persists: PERSISTS });
         }
 
@@ -121,7 +122,7 @@ impl Planner {
             landing: frame.relative(&landing.pose),
             ..s.seen(&frame, z)
         };
-        let from = PlanOrigin::on_both_feet(walk, t, (state, zmp, ahead), &step, sole);
+        let from = PlanOrigin::on_both_feet(walk, t, Measured { state, zmp, ahead }, &step, sole);
         let persists = if landing.held { PERSISTS_HELD } else { PERSISTS };
         Some(Catch { from, enough: landing.catches, persists })
     }
@@ -183,7 +184,7 @@ impl Planner {
             heights: Heights { lift: model.step.swing_height, ..Heights::default() },
         };
         let ahead = (start - state.header.tick) as f64 * model.cycle_s;
-        let measured = (state, zmp_within(state, at, &both), ahead);
+        let measured = Measured { state, zmp: zmp_within(state, at, &both), ahead };
         let from = PlanOrigin::on_both_feet(walk, t, measured, &step, sole);
         Some(Catch { from, enough: landing.catches, persists: PERSISTS })
     }

@@ -76,6 +76,8 @@ pub struct SkillCourse {
     cruise: StepParameters,
     /// \[m\] Change of length from step to step.
     change: f64,
+    /// \[m\] Longest step out of standing and into it.
+    ends: f64,
 }
 
 /// Skill: a task that is being done.
@@ -164,8 +166,10 @@ impl SkillTask {
         match self {
             Self::Distance(d) => {
                 let cruise = cruise(d, gait).ok()??;
-                let change = gait.step.change[0].min(d.acceleration * cruise.duration * cruise.duration);
-                Some(Skill::Distance(SkillCourse { begin, length: d.distance, cruise, change }))
+                let change = d.acceleration * cruise.duration * cruise.duration;
+                let ends = gait.step.first_length.min(change);
+                let change = gait.step.change[0].min(change);
+                Some(Skill::Distance(SkillCourse { begin, length: d.distance, cruise, change, ends }))
             }
             Self::Platform(p) => {
                 // Its last foothold before the edge keeps the distance of one before an obstacle.
@@ -176,7 +180,13 @@ impl SkillTask {
                     ..StepParameters::on_the_spot(rules.duration)
                 };
                 Some(Skill::Platform {
-                    way: SkillCourse { begin, length, cruise, change: gait.step.change[0] },
+                    way: SkillCourse {
+                        begin,
+                        length,
+                        cruise,
+                        change: gait.step.change[0],
+                        ends: gait.step.first_length,
+                    },
                     over: 2.0 * (sole.half[0] + rules.distance),
                     edge: p.distance,
                     ground: [from.height, from.height + p.height],
@@ -256,7 +266,7 @@ impl SkillCourse {
 
 impl Skill {
     /// Before the standard planner: what the steps shall be, and the lengths of the next ones. `first` \[m\] is the
-    /// longest step out of standing and into it.
+    /// longest step of the gait out of standing and into it.
     pub fn before(&self, from: &PlanOrigin, starting: bool, first: f64, wish: &mut StepParameters) -> Script {
         let (way, over) = match self {
             Self::Walk => return Script::NONE,
@@ -264,6 +274,7 @@ impl Skill {
             Self::Platform { way, over, .. } => (way, Some(*over)),
         };
         *wish = way.cruise;
+        let first = first.min(way.ends);
         let r = way.left(from);
         let sign = way.cruise.length.signum();
         let previous = if starting { (first - way.change).max(0.0) } else { from.previous.length * sign };
@@ -300,7 +311,8 @@ impl Skill {
 
 /// The fewest steps from `previous` \[m\] to the end of a way of `r` \[m\], each at most as long as it may be: no longer
 /// than those of the cruise, no more than a change away from the one before, and the last one short enough to stop.
-/// Scaled to end exactly there. Without an end in sight, those of the cruise. At most `most_steps` are prescribed.
+/// Scaled to end exactly there. Without an end in sight, those of the cruise, from which the way is long enough to slow down. At
+/// most `most_steps` are prescribed.
 fn lengths(r: f64, previous: f64, way: &SkillCourse, (first, most_steps): (f64, usize), script: &mut Script) {
     let most = way.cruise.length.abs();
     let step = |i: usize, n: usize| {
@@ -310,11 +322,19 @@ fn lengths(r: f64, previous: f64, way: &SkillCourse, (first, most_steps): (f64, 
     };
     let sum = |n: usize| (1..=n).map(|i| step(i, n)).sum::<f64>();
     let end = (1..=LOOK).find(|&n| sum(n) >= r);
-    let n = end.unwrap_or(LOOK);
-    let scale = end.map_or(1.0, |n| r / sum(n));
     script.complete = end.is_some_and(|n| n <= most_steps);
-    for i in 1..=if script.complete { n } else { HEAD } {
-        script.push(scale * step(i, n));
+    if let Some(n) = end {
+        let scale = r / sum(n);
+        (1..=if script.complete { n } else { HEAD }).for_each(|i| script.push(scale * step(i, n)));
+        return;
+    }
+    // Steps l, l - c, ... down to nothing make a way of l^2 / 2c + l / 2.
+    let (c, mut left) = (way.change, r);
+    for i in 1..=HEAD {
+        let slowing_down = (0.25 * c * c + 2.0 * c * left).sqrt() - 0.5 * c;
+        let length = step(i, LOOK).max(most.min(previous + i as f64 * c).min(slowing_down));
+        script.push(length);
+        left -= length;
     }
 }
 
@@ -324,7 +344,7 @@ mod tests {
 
     fn way(length: f64, most: f64, change: f64) -> SkillCourse {
         let cruise = StepParameters { length: most, ..StepParameters::on_the_spot(1.0) };
-        SkillCourse { begin: PlanarPose::default(), length, cruise, change }
+        SkillCourse { begin: PlanarPose::default(), length, cruise, change, ends: f64::INFINITY }
     }
 
     /// All the way, step by step, as the planner asks.
@@ -350,6 +370,18 @@ mod tests {
             assert!(all[0] <= 0.3 + 1e-12 && all[all.len() - 1] <= 0.3 + 1e-12, "{all:?}");
             assert!(all.windows(2).all(|p| (p[1] - p[0]).abs() <= 0.12 + 1e-9), "{all:?}");
             assert!(all.iter().all(|l| *l <= 0.5 + 1e-12 && *l > 0.0), "{all:?}");
+        }
+    }
+
+    /// Changes so small that the steps in which she slows down are more than are looked ahead.
+    #[test]
+    fn a_long_way_with_small_changes_ends_gently() {
+        for k in 1..60 {
+            let (r, change) = (0.2 * k as f64, 0.005 + 1e-3 * (k % 7) as f64);
+            let all = walk(r, 0.4, change, change);
+            assert!((all.iter().sum::<f64>() - r).abs() < 1e-9);
+            let ends = [0.0].into_iter().chain(all.iter().copied()).chain([0.0]).collect::<Vec<_>>();
+            assert!(ends.windows(2).all(|p| (p[1] - p[0]).abs() <= change * 1.01 + NOTHING), "{all:?}");
         }
     }
 

@@ -117,11 +117,6 @@ impl Hull {
     }
 }
 
-/// Distance \[m\] of `p` from the edge of the convex hull of two soles: positive inside.
-pub fn double_support_margin(a: (&Sole, &PlanarPose), b: (&Sole, &PlanarPose), p: [f64; 2]) -> f64 {
-    Hull::of(a, b).margin(p)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -29,7 +29,7 @@ const HASTE: f64 = 0.01;
 /// Shares of the sole's length and width, about its middle, in which the zero-moment point is counted on: a sole that presses in
 /// a corner turns about it.
 const COUNTED: [f64; 2] = [0.5, 0.8];
-/// The same where the stabilizer alone is to make good for an error.
+/// The same where the stabilizer alone is to compensate an error.
 const ALONE: [f64; 2] = [0.7, 1.0];
 /// Steps of the search for r: its bracket shrinks to a thousandth.
 const NARROWINGS: usize = 16;
@@ -59,7 +59,7 @@ pub(crate) struct Landing {
     pub(crate) pose: PlanarPose,
     /// \[s\] Until then.
     pub(crate) rest: f64,
-    /// The next support can make good for what is left.
+    /// The next support can compensate what is left.
     pub(crate) catches: bool,
     /// Both feet carry, and the one behind may yet bring the body back: such a step can wait.
     pub(crate) held: bool,
@@ -95,7 +95,7 @@ impl Axis {
         at - at.clamp(low, high)
     }
 
-    /// \[m\] Change of the landing and of the offset that make good for it; the foot gets no farther than `reach`.
+    /// \[m\] Change of the landing and of the offset that compensate it; the foot gets no farther than `reach`.
     fn split(&self, growth: f64, reach: f64) -> [f64; 2] {
         let missed = self.missed(growth);
         let [low, high] = self.room;
@@ -105,7 +105,7 @@ impl Axis {
     }
 }
 
-/// Landing of step `k` of `walk` at its time `t` \[s\] that makes good for the error of `body`; `foot` lands, `sole` is that of
+/// Landing of step `k` of `walk` at its time `t` \[s\] that compensates the error of `body`; `foot` lands, `sole` is that of
 /// the stance foot. None if the stabilizer alone can.
 ///
 /// As long as the swing foot carries, both soles hold the body to the sides better than a step that begins sooner: only an

@@ -55,6 +55,8 @@ impl ToldBoxes {
         // By the table again: a chain in one process has no broker before it.
         commands::in_range(command)?;
         let (id, told) = match command {
+            // Nobody meets what lies under the ground.
+            Command::Box(c) if c.base[2] + c.size[2] <= 0.0 => (c.id, None),
             Command::Box(c) => (c.id, Some(self.placed(c, tick + (c.lifetime / cycle_s).round() as u64))),
             Command::Gone(c) => (c.id, None),
             _ => return Err(Reason::NotNow),

@@ -154,7 +154,7 @@ impl Builder {
         let heading = 0.5 * (from.feet[0].heading + from.feet[1].heading);
         plan.torso.restart(0.0, from.torso.position);
         plan.torso.push(&from.torso, &Sample::rest([FRAC_PI_2, FRAC_PI_2, heading]), end);
-        // Who leans is led on from where she is.
+        // A leaning robot is led on from its measured lean.
         plan.measured = u64::from(from.torso.position[..2] != [FRAC_PI_2; 2]);
         plan.load_left.restart(0.0, [from.load_left]);
         plan.load_left.push(&Sample::rest([from.load_left]), &Sample::rest([0.5]), end);

@@ -88,7 +88,7 @@ fn a_velocity_of_zero_is_a_stop_whatever_she_does() {
     }
 }
 
-/// Who walks as he likes does not want the distance any more that waits for her to stand.
+/// A velocity replaces a distance that still waits for the robot to stand.
 #[test]
 fn a_velocity_takes_the_place_of_a_waiting_distance() {
     for wait in (0..100).step_by(7) {
@@ -108,6 +108,23 @@ fn a_velocity_takes_the_place_of_a_waiting_distance() {
         assert!(r.time() > r.active.end(), "{wait} cycles later: stands");
         let after = || r.plans.iter().filter(|p| p.header.tick >= told);
         assert!(after().all(|p| is_still(p)), "{wait} cycles later: walks again");
+    }
+}
+
+/// A distance that comes while the plan of a walk waits for its begin: a stop, the distance, and she stands.
+#[test]
+fn a_distance_right_behind_a_velocity_is_walked() {
+    for wait in 0..40 {
+        let mut r = Robot::with_cycle(&robot::gait(), 1e-3);
+        r.stand();
+        r.step(&[SLOW]);
+        r.run(f64::from(wait) * 1e-3);
+        r.step(&[distance(0.6)]);
+        r.run(20.0);
+        assert!(r.time() > r.active.end(), "{wait} ms later: stands");
+        assert!(r.active.state == GaitState::Standing as u64 || is_still(&r.active), "{wait} ms later");
+        let starts = r.plans.iter().filter(|p| p.state == GaitState::Starting as u64).count();
+        assert_eq!(starts, 2, "{wait} ms later: the walk, then the distance");
     }
 }
 

@@ -246,7 +246,7 @@ fn margins_of_soles_and_hulls() {
     close(sole.margin(&here, [0.0, 0.0]), 0.04, 1e-15);
     close(sole.margin(&here, [0.05, 0.0]), -0.01, 1e-15);
     let left = PlanarPose::new(0.0, 0.2, 0.0);
-    let both = |p| planner::sole::double_support_margin((&sole, &here), (&sole, &left), p);
+    let both = |p| planner::sole::Hull::of((&sole, &here), (&sole, &left)).margin(p);
     close(both([-0.1, 0.1]), 0.14, 1e-12);
     close(both([-0.1, 0.26]), -0.01, 1e-12);
     let half = sole.shrunk(0.5).half;

@@ -9,13 +9,14 @@
         robot.watch(rate=10, events=True)
         print(robot.state(timeout=1.0).com, robot.event())
 
-While the client is open, a thread gives signs of life; so the command lease, taken with the first command that needs it,
+While the client is open, a thread gives heartbeats; so the command lease, taken with the first command that needs it,
 stays with it. When the program ends, is killed or stopped, or has no reference to the client any more, the lease runs out
 within half a second and the robot stops. That thread does not notice a loop that hangs: name a `deadline` for that.
 The protocol, and what each number means: docs/protocol.md.
 """
 
 import collections
+import contextlib
 import hashlib
 import hmac
 import math
@@ -72,7 +73,8 @@ def default_directory():
 class Client:
     """One connection to the broker. Its methods may be called from any thread.
 
-    `deadline`: seconds after the last call, by whatever thread, for which there are signs of life; None: for as long as the
+    `timeout`: seconds for an answer, and for sending: a broker that has read nothing for so long has ended the connection.
+    `deadline`: seconds after the last call, by whatever thread, for which there are heartbeats; None: for as long as the
     main thread lives. A program that hangs for longer loses the lease."""
 
     def __init__(self, stream, name, key=None, timeout=3.0, shared_clock=True, deadline=None):
@@ -96,6 +98,9 @@ class Client:
         self.lease_holder = ""
         self.commands = {}
         stream.settimeout(None)
+        # The kernel's limit for sending alone: the reader waits for as long as nothing comes.
+        limit = max(1000, round(timeout * 1e6))
+        stream.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("@ll", *divmod(limit, 1_000_000)))
         # Threads that referred to the client would keep a forgotten one, and its lease, for ever.
         weak = weakref.ref(self)
         weakref.finalize(self, _hang_up, stream).atexit = False  # at the end of the program the kernel does it
@@ -152,7 +157,7 @@ class Client:
             value = values.get(field.name, field.default)
             if value is None:
                 raise ValueError(f"{name}: {field.name} is missing: a number in [{field.low}, {field.high}] {field.unit}")
-            payload += struct.pack("<" + field.kind, value)
+            payload += _packed(f"{name}: {field.name}", field.kind, value, field.low, field.high, field.unit)
         priority = HIGH if name == "system/emergency_stop" else NORMAL
         return self._send(entry.domain, entry.id, payload, priority)
 
@@ -165,7 +170,7 @@ class Client:
 
     def take_lease(self, over=False):
         """Takes the command lease now; `over`: from whoever holds it."""
-        self.wait(self._send(SERVICE, TAKE_LEASE, bytes([over])))
+        self.wait(self._send(SERVICE, TAKE_LEASE, bytes([bool(over)])))
 
     def give_lease(self):
         """Gives the command lease back: what was commanded under it comes to a stop."""
@@ -173,7 +178,10 @@ class Client:
 
     def subscribe(self, *domains):
         """From now on `heard` gives the commands of these domains, whoever sends them."""
-        mask = sum(1 << DOMAINS.index(domain) for domain in domains)
+        unknown = [domain for domain in domains if domain not in DOMAINS]
+        if unknown:
+            raise ValueError(f"subscribe: there is no domain {unknown[0]!r}; there are {', '.join(DOMAINS)}")
+        mask = sum(1 << DOMAINS.index(domain) for domain in set(domains))
         self.wait(self._send(SERVICE, SUBSCRIBE, struct.pack("<I", mask)))
 
     def heard(self, timeout=0.0):
@@ -194,12 +202,14 @@ class Client:
 
     def set_parameter(self, name, value):
         """Gives a parameter another value; the name of the process that took it. Raises Refused."""
-        return self.wait(self._send(SERVICE, SET, struct.pack("<d", value) + name.encode()))
+        value = _packed(f"set_parameter: {name}", "d", value)
+        return self.wait(self._send(SERVICE, SET, value + _name("set_parameter: name", name, len(value))))
 
     def watch(self, rate=0, events=False):
         """The present state and parameters at once; from now on `state` gives states at `rate` per second (at most 50),
         and `event` what the processes report. Lines that say what a state holds: name, count, unit, meaning."""
-        lines = self._ask_lines(WATCH, struct.pack("<HB", rate, events))
+        asked = _packed("watch: rate", "H", rate, 0, 50, "1/s") + _packed("watch: events", "?", bool(events))
+        lines = self._ask_lines(WATCH, asked)
         with self._changed:
             self._layout = [(name, int(count)) for name, count, *_ in (line.split(" ", 3) for line in lines)]
         return lines
@@ -231,7 +241,8 @@ class Client:
 
     def _greet(self, name, key):
         nonce = os.urandom(16)
-        names = name.encode() + (b"\0" + key[0].encode() if key else b"")
+        of_key = b"\0" + _name("name of the key", key[0], 27) if key else b""
+        names = _name("name", name, 26 + len(of_key)) + of_key
         # Schema 0: the table of commands is learnt from the broker.
         hello = self._send(SERVICE, HELLO, struct.pack("<HQ", VERSION, 0) + nonce + names)
         code, welcome = self._wait(lambda: self._answers.pop(hello, None))
@@ -242,7 +253,7 @@ class Client:
         secret, theirs = bytes.fromhex(key[1]), welcome[10:26]
         derive = lambda direction: hmac.digest(secret, direction + nonce + theirs, hashlib.sha256)
         to_broker, to_client = derive(b"gangwerk to broker"), derive(b"gangwerk to client")
-        with self._sending:
+        with self._turn():
             # The answer is the first frame with a tag, if the proof was a good one; it may be here before the next line.
             self._open = to_client
             prove = self._write(SERVICE, PROVE, hmac.digest(to_broker, b"proof", hashlib.sha256), LOW)
@@ -251,12 +262,24 @@ class Client:
 
     def _send(self, domain, ident, payload, priority=LOW):
         self._called = time.monotonic()
-        with self._sending:
+        with self._turn():
             return self._write(domain, ident, payload, priority)
+
+    @contextlib.contextmanager
+    def _turn(self):
+        """One frame after the other; a thread that waits for a broker that does not read holds up the others no longer than itself."""
+        if not self._sending.acquire(timeout=self._timeout):
+            raise TimeoutError("the broker does not read")
+        try:
+            yield
+        finally:
+            self._sending.release()
 
     def _write(self, domain, ident, payload, priority):
         if self._end:
             raise Lost(self._end)
+        if HEAD.size + len(payload) > MAX_MESSAGE:
+            raise ValueError(f"{HEAD.size + len(payload)} bytes in a message, at most {MAX_MESSAGE}")
         self._sequence += 1
         message = HEAD.pack(domain, ident, priority, 0, 0, self._sequence, self._now()) + payload
         if self._seal:
@@ -264,6 +287,10 @@ class Client:
             self._out += 1
         try:
             self._stream.sendall(struct.pack("<I", len(message)) + message)
+        except BlockingIOError:
+            # Part of the frame may be on its way: none can follow.
+            self._stop(f"the broker has read nothing for {self._timeout} s")
+            raise Lost(self._end) from None
         except OSError as error:
             raise Lost(self._end or str(error)) from error
         return self._sequence
@@ -306,13 +333,16 @@ class Client:
             return self._lines.pop(number, [])
 
     def _show_life(self):
-        """A sign of life, if the program shows one itself; False if there will be none any more."""
+        """A heartbeat, if the program shows one itself; False if there will be none any more."""
         # Daemon threads outlive the main thread for as long as another thread of the program does not end.
         if self._end or not threading.main_thread().is_alive():
             return False
         if self._deadline is None or time.monotonic() - self._called < self._deadline:
-            with self._sending:
-                self._write(SERVICE, PING, b"", LOW)
+            try:
+                with self._turn():
+                    self._write(SERVICE, PING, b"", LOW)
+            except TimeoutError:
+                pass  # another thread is sending, and ends the connection if it cannot
         return True
 
     def _authentic(self, message):
@@ -420,6 +450,27 @@ def _shut(stream):
 def _hang_up(stream):
     _shut(stream)
     stream.close()
+
+
+# Arguments, before anything of them is sent: what the broker cannot read ends the connection, and with it a walk.
+
+
+def _packed(what, kind, value, low=None, high=None, unit=""):
+    """The bytes of a number. A range is the robot's to judge."""
+    try:
+        return struct.pack("<" + kind, value)
+    except (struct.error, TypeError, OverflowError):
+        wanted = "a number" if kind == "d" else "a whole number"
+        among = "" if low is None else f" in [{low}, {high}] {unit}".rstrip()
+        raise ValueError(f"{what} = {value!r:.60}: must be {wanted}{among}") from None
+
+
+def _name(what, text, before):
+    """The bytes of a name behind so many others of a message."""
+    most = MAX_MESSAGE - HEAD.size - before
+    if not isinstance(text, str) or len(text.encode()) > most:
+        raise ValueError(f"{what} = {text!r:.60}: must be a text of at most {most} bytes")
+    return text.encode()
 
 
 def _command(line):

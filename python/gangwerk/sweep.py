@@ -2,13 +2,15 @@
 
 Workers of a Dask cluster walk pieces of the sweep with the command `gangwerk`; the rows go to one
 `gangwerk sweep --collect` here, which writes them down and makes the table. A piece whose worker is lost is walked
-again by another one. Who is interrupted starts the same command again, here or without Dask, and it goes on.
+again by another one. After an interruption the same command, here or without Dask, goes on.
 """
 
 import argparse
 import json
+import os
 import subprocess
 import sys
+from concurrent.futures import CancelledError
 
 # Names of pieces say how often they were tried: a piece is given up when its workers die again and again.
 TRIES = 10
@@ -65,7 +67,8 @@ def rows(client, gangwerk, arguments, identity, left, size):
             done.add(submit(piece))
             continue
         future.release()
-        yield from text.splitlines()
+        # A line without its end was cut off.
+        yield from text.split("\n")[:-1]
 
 
 def main(argv=None):
@@ -80,7 +83,12 @@ def main(argv=None):
     parser.add_argument("--gangwerk", default="gangwerk", help="the command (default: %(default)s)")
     asked = parser.parse_args(argv)
     if asked.piece < 1:
-        parser.error("--piece takes at least 1")
+        parser.error(f"--piece {asked.piece}: takes at least 1")
+    if asked.workers is not None and asked.workers < 1:
+        parser.error(f"--workers {asked.workers}: takes at least 1")
+    # Dask waits for a file that is not there.
+    if asked.scheduler_file and not os.path.isfile(asked.scheduler_file):
+        parser.error(f"--scheduler-file {asked.scheduler_file}: there is no such file")
     try:
         from dask.distributed import Client, LocalCluster
     except ImportError:
@@ -113,6 +121,11 @@ def main(argv=None):
         pass  # the collector has said why
     except (RuntimeError, OSError) as error:
         failed = error
+    except ValueError as error:
+        failed = f"{asked.scheduler or asked.scheduler_file or 'Dask'}: {error}"
+    except CancelledError as error:
+        why = str(error).partition("\n")[0].rstrip(".")
+        failed = f"the scheduler is gone: {why}; start the same command again: it goes on"
     except KeyboardInterrupt:
         failed = "interrupted; start the same command again: it goes on"
     try:

@@ -79,8 +79,7 @@ impl Model {
     #[pyo3(signature = (robot, *, config=None))]
     fn new(robot: &str, config: Option<PathBuf>) -> PyResult<Self> {
         let robot = configuration::robot(robot, &configuration::directory(config)?)?;
-        let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-        let model = multibody::Model::from_urdf(&robot.urdf, &robot.torso, &joints).map_err(wrong)?;
+        let model = robot.model().map_err(wrong)?;
         Ok(Self::of(model, (robot.name, robot.urdf), robot.poses.into_iter().collect()))
     }
 

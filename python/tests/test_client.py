@@ -1,6 +1,6 @@
-"""Signs of life of the client, by which an operator keeps the lease: when they end, whatever the program does or forgets.
+"""Heartbeats of the client, by which an operator keeps the lease: when they end, whatever the program does or forgets.
 
-The broker here is as much of one as a client needs. Nothing is measured: what must come is waited for, and signs of life have
+The broker here is as much of one as a client needs. Nothing is measured: what must come is waited for, and heartbeats have
 ended when none has come for five times their distance.
 """
 
@@ -22,15 +22,16 @@ from gangwerk import client
 from gangwerk.client import Client
 
 PATIENCE = 30.0  # [s]
-SILENCE = 0.5  # [s] five signs of life
+SILENCE = 0.5  # [s] five heartbeats
 
 
 class Broker:
-    """Greets one client, accepts all it asks for, and keeps its signs of life in `pings`."""
+    """Greets one client, accepts all it asks for, and keeps its heartbeats in `pings`."""
 
     def __init__(self, directory, floods=False):
         self.pings, self.ended, self.floods = queue.Queue(), threading.Event(), floods
-        self.sending = threading.Lock()
+        self.sending, self.reads = threading.Lock(), threading.Event()
+        self.reads.set()
         self.listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self.listener.bind(os.path.join(directory, "broker.sock"))
         self.listener.listen()
@@ -47,6 +48,7 @@ class Broker:
         self.ended.set()
 
     def take(self, stream, frame):
+        self.reads.wait()
         domain, ident, _, _, _, sequence, _ = client.HEAD.unpack_from(frame)
         if (domain, ident) == (client.SERVICE, client.PING):
             self.pings.put(sequence)
@@ -55,6 +57,8 @@ class Broker:
         else:
             if (domain, ident) == (client.SERVICE, client.DESCRIBE):
                 self.send(stream, client.LINE, sequence, b"walk/stop 1 2 3 0")
+                self.send(stream, client.LINE, sequence, b"walk/velocity 1 1 1 1 forward:d:m/s:-2:2:0")
+                self.send(stream, client.LINE, sequence, b"parameter 1 3 4 1 number:I:-:0:63:0")
             self.send(stream, client.ACCEPTED, sequence, b"planner")
             if self.floods:
                 self.floods = False
@@ -74,7 +78,7 @@ class Broker:
             stream.sendall(struct.pack("<I", len(frame)) + frame)
 
     def shows_life(self, count=5):
-        """True as soon as there are this many more signs of life."""
+        """True as soon as there are this many more heartbeats."""
         try:
             for _ in range(count):
                 self.pings.get(timeout=PATIENCE)
@@ -204,6 +208,61 @@ raise RuntimeError("a fault of the program")
         finally:
             _, said = run.communicate()
         self.assertIn(b"a fault of the program", said)
+
+    def test_a_broker_that_does_not_read_holds_nobody_up(self):
+        """Its clients once waited for ever, an emergency stop behind a heartbeat as well."""
+        broker = self.broker()
+        self.addCleanup(broker.reads.set)
+        robot = Client.local(self.directory, timeout=0.3)
+        self.addCleanup(robot.close)
+        broker.reads.clear()
+        errors = queue.Queue()
+
+        def goes_on():
+            while True:
+                try:
+                    robot.send("walk/stop")
+                except TimeoutError:
+                    pass  # it is the turn of another one
+                except Exception as error:
+                    return errors.put(error)
+
+        for _ in range(3):
+            threading.Thread(target=goes_on, daemon=True).start()
+        for _ in range(3):
+            error = errors.get(timeout=PATIENCE)
+            self.assertIsInstance(error, client.Lost)
+            self.assertIn("has read nothing for 0.3 s", str(error))
+
+
+class Arguments(unittest.TestCase):
+    """What a broker cannot read once ended the connection, and with it lease and walk; or was an error of `struct`."""
+
+    def test_what_cannot_be_sent_is_named_and_costs_nothing(self):
+        with tempfile.TemporaryDirectory() as directory:
+            broker = Broker(directory)
+            self.addCleanup(broker.listener.close)
+            with Client.local(directory) as robot:
+                for call, parts in (
+                    (lambda: robot.command("walk/velocity", forward="0.3"), ["walk/velocity: forward = '0.3'", "number in [-2.0, 2.0] m/s"]),
+                    (lambda: robot.command("walk/velocity", forward=10**400), ["forward = 1000", "[-2.0, 2.0] m/s"]),
+                    (lambda: robot.command("parameter", number=2.5), ["number = 2.5", "whole number in [0.0, 63.0]"]),
+                    (lambda: robot.command("parameter", number=-1), ["number = -1", "whole number"]),
+                    (lambda: robot.set_parameter("planner.swing_height", None), ["planner.swing_height = None", "must be a number"]),
+                    (lambda: robot.set_parameter("x" * 600, 1.0), ["name = 'xxx", "at most 472 bytes"]),
+                    (lambda: robot.set_parameter(None, 1.0), ["name = None", "a text"]),
+                    (lambda: robot.watch(rate=-1), ["watch: rate = -1", "[0, 50] 1/s"]),
+                    (lambda: robot.watch(rate=2.5), ["watch: rate = 2.5", "whole number"]),
+                    (lambda: robot.subscribe("nonsense"), ["no domain 'nonsense'", "walk"]),
+                    (lambda: Client.local(directory, name="x" * 600), ["name = 'xxx", "bytes"]),
+                ):
+                    with self.assertRaises(ValueError) as raised:
+                        call()
+                    for part in parts:
+                        self.assertIn(part, str(raised.exception))
+                self.assertEqual(robot.command("walk/stop"), "planner")
+                robot.watch(rate=10, events=2)
+                self.assertEqual(robot.command("walk/stop"), "planner")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ use crate::chatter::ChatterWatch;
 use crate::drive::JointCubic;
 use crate::integrate::Stepper;
 use crate::layout::orientation;
-use crate::plant::{Plant, PlantInputs, Snapshot};
+use crate::plant::{Plant, PlantInputs, Snapshot, Substep};
 use crate::terrain;
 
 /// Plant with its state and the method of its time steps.
@@ -98,7 +98,7 @@ impl SimulatedBody {
         let h = self.cycle / f64::from(self.substeps);
         for i in 1..=self.substeps {
             before.copy_from_slice(state);
-            plant.tick((i - 1, h), state, references, inputs);
+            plant.tick(Substep { index: i - 1, h }, state, references, inputs);
             stepper.step(plant, f64::from(i - 1) * h, h, state, references, inputs);
             // Whoever holds a robot in its start pose is stiffer than any explicit step bears, and lets go.
             if inputs.switches.held == 0 {
@@ -177,7 +177,7 @@ impl SimulatedBody {
 }
 
 /// The soles as they are, where that is not what the robot's software believes.
-fn with_plant_mismatch(robot: &Robot, scene: &Scene) -> Robot {
+pub(crate) fn with_plant_mismatch(robot: &Robot, scene: &Scene) -> Robot {
     let (mut robot, factor) = (robot.clone(), scene.plant_mismatch.contact_stiffness);
     robot.contact.normal_stiffness *= factor;
     robot.contact.tangential_stiffness *= factor;

@@ -113,7 +113,7 @@ impl FarEnd for CanEnd {
 
     fn answer(&mut self, _: &Daemon, frames: &BusFrames) {
         self.answer = *frames;
-        // Who was not started yet says nothing.
+        // A controller that was not started yet is silent.
         let started = self.gathering.started;
         if started == every_line(&self.layout) {
             return self.lines.send(frames);

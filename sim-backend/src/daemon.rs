@@ -32,7 +32,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
         timeline: Timeline::new(&d.setup.scene, Process::SimBackend),
     };
     if ports.state.epoch() > 1 {
-        ports.timeline.skip_before(u64::MAX); // started again: nothing of the scene is done late
+        ports.timeline.drop_rest(); // started again
     }
     let mut sim = SimBackend::new(&d.setup.robot, &d.setup.scene)?.with_relay(d.setup.system.toggle_missed);
     d.report(Header::default(), EventCode::Started, Detail::Nothing);

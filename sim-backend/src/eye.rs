@@ -55,8 +55,7 @@ impl Eye {
     /// The robot has no camera head, or the files of robot and scene do not fit together.
     pub fn new(robot: &Robot, scene: &Scene, lens: Lens, seed: u64) -> Result<Self, Box<dyn Error>> {
         let head = robot.head.as_ref().ok_or("this robot has no camera head: [head] in robot.toml")?;
-        let order: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-        let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?;
+        let model = robot.model()?;
         let camera = model.frame(&head.link, head.camera)?;
         let (data, q) = (Data::new(&model), model.neutral());
         let [across, upwards] = lens.rays;

@@ -74,7 +74,7 @@ mod tests {
         [0.0, 0.0, 1.0, q.i, q.j, q.k, q.w]
     }
 
-    /// Who leans by 0.30 rad for good lies on a foot; who sways that far for half a second does not.
+    /// A robot that leans by 0.30 rad for good lies on a foot; one that sways that far for half a second does not.
     #[test]
     fn leaning_for_long_is_a_fall() {
         let mut watch = FallWatch::new(1.0);

@@ -73,6 +73,10 @@ struct Below<'a> {
 /// \[m\] Height above which a node needs no exact gap: no step is so long.
 const FAR: f64 = 0.05;
 
+/// \[1/s\] Rate at which penetration of a finite step is taken back: within a few milliseconds, much faster than the layer relaxes.
+/// Steps above its inverse would throw the node into the air.
+pub(crate) const RECOVERY: f64 = 200.0;
+
 /// \[m\] Gap up to which a compressed node is at the ground: steps let go of one for an instant now and then.
 const AT_GROUND: f64 = 1e-4;
 
@@ -423,11 +427,10 @@ fn layer(robot: &Robot) -> Result<Arc<Layer>, Box<dyn Error>> {
 fn law(robot: &Robot) -> ContactLaw {
     let c = &robot.contact;
     let stiffness = [c.tangential_stiffness, c.tangential_stiffness, c.normal_stiffness];
-    // Penetration of a finite step is taken back within a few milliseconds, much faster than the layer relaxes.
     ContactLaw {
         stiffness,
         damping: stiffness.map(|k| k * c.damping_time),
         friction: c.friction,
-        recovery: 200.0,
+        recovery: RECOVERY,
     }
 }

@@ -11,6 +11,15 @@ pub struct PlantInputs {
     pub switches: DriveSwitches,
 }
 
+/// One integration step of a bus cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Substep {
+    /// Number in the cycle, from zero.
+    pub index: u32,
+    /// \[s\] Length.
+    pub h: f64,
+}
+
 /// Motor supply, and drives that are an exception; one bit per drive.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DriveSwitches {

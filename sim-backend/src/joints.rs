@@ -2,6 +2,7 @@
 
 use codec::frames::{DriveCommand, DriveReplies, decode_targets};
 use config::components::JointModel;
+use config::robot::Joint;
 use config::{Robot, Scene};
 use messages::{BusFrames, Sensors};
 
@@ -35,8 +36,7 @@ impl SimulatedJoints {
     pub(crate) fn new(robot: &Robot, scene: &Scene) -> Self {
         let pose = &robot.poses[&scene.start_pose];
         let resting = |&angle: &f64| JointMotion { angle, ..JointMotion::default() };
-        let offset =
-            |joint: &config::robot::Joint| scene.plant_mismatch.joint_offset.of(&joint.name).unwrap_or(0.0);
+        let offset = |joint: &Joint| scene.plant_mismatch.joint_offset.of(&joint.name).unwrap_or(0.0);
         Self {
             electronics: DriveElectronics::new(robot, scene, pose),
             timeout: CommandTimeout::new(&robot.layout),
@@ -93,7 +93,21 @@ impl SimulatedJoints {
         sensors: &Sensors,
         dt: f64,
     ) -> (DriveSwitches, Option<usize>) {
-        // Commands, node by node; an older cycle is nobody's command.
+        let new = self.take_commands(robot, frames);
+        // The current that a winding is warmed by is what its own sensor says.
+        let current = (model == JointModel::Motors).then_some(&sensors.motor_current[..]);
+        let stopped = self.switch_drives(powered, current, dt);
+        if let Some(tables) = &mut self.tables {
+            tables.receive(new, |j| self.electronics.action(j) == Action::Follow);
+        }
+        for (j, joint) in robot.joints.iter().enumerate() {
+            self.references[j] = self.reference(j, joint, model, dt);
+        }
+        (self.switches(robot, powered), stopped)
+    }
+
+    /// Takes the commands, node by node; an older cycle is nobody's command. Returns the frames that are new.
+    fn take_commands<'f>(&mut self, robot: &Robot, frames: Option<&'f BusFrames>) -> Option<&'f BusFrames> {
         let new = frames.filter(|f| f.header.tick > self.followed);
         let received = new.map(|f| decode_targets(&robot.layout, f, &mut self.command));
         if self.timeout.step(received.as_ref()) {
@@ -103,61 +117,66 @@ impl SimulatedJoints {
             tables.manage(new);
             tables.deafen(&mut self.command.control);
         }
-        // States of the drives; the current that a winding is warmed by is what its own sensor says.
-        let DriveCommand { control, targets, .. } = &self.command;
+        new
+    }
+
+    /// States of the drives after their commands, with what currents \[A\] their sensors read. Returns the first node whose drives
+    /// have just stopped.
+    fn switch_drives(&mut self, powered: bool, current: Option<&[f64]>, dt: f64) -> Option<usize> {
         let tables = self.tables.as_ref();
         let exhausted = |j: &usize| tables.is_some_and(|tables| tables.is_exhausted(*j));
-        let exhausted = (0..robot.joints.len()).filter(exhausted).fold(0, |bits, j| bits | 1 << j);
+        let exhausted = (0..self.offset.len()).filter(exhausted).fold(0, |bits, j| bits | 1 << j);
+        let DriveCommand { control, targets, .. } = &self.command;
         let command = ReceivedCommand { control, mode: targets.mode, timeout: &self.timeout, exhausted };
-        let current = (model == JointModel::Motors).then_some(&sensors.motor_current[..]);
         let stopped = self.electronics.step(&command, powered, dt, &self.goals, &self.motions, current);
-        let stopped = stopped.map(|joint| self.timeout.node_of(joint));
+        stopped.map(|joint| self.timeout.node_of(joint))
+    }
+
+    /// Reference of joint `j` by what its drive does.
+    fn reference(&mut self, j: usize, joint: &Joint, model: JointModel, dt: f64) -> JointCubic {
+        let (from, action) = (self.goals[j], self.electronics.action(j));
+        let zero = self.electronics.origin(j) - self.offset[j];
+        let targets = &self.command.targets;
+        let angle = targets.angle[j] - self.offset[j] + self.electronics.origin(j);
+        let follows = self.timeout.follows(j, angle - from.angle, joint.speed_limit * dt);
+        // What plays tables is told where to go by SYNC alone; without a table it comes to rest, and stays.
         if let Some(tables) = &mut self.tables {
-            tables.receive(new, |j| self.electronics.action(j) == Action::Follow);
-        }
-        // References by action.
-        let mut switches = DriveSwitches { powered, ..DriveSwitches::default() };
-        for (j, joint) in robot.joints.iter().enumerate() {
-            let (from, action) = (self.goals[j], self.electronics.action(j));
-            let zero = self.electronics.origin(j) - self.offset[j];
-            let angle = targets.angle[j] - self.offset[j] + self.electronics.origin(j);
-            let follows = self.timeout.follows(j, angle - from.angle, joint.speed_limit * dt);
-            // What plays tables is told where to go by SYNC alone; without a table it comes to rest, and stays.
-            let played = self.tables.as_mut().and_then(|tables| {
-                if !matches!(action, Action::Follow) {
-                    tables.stop(j);
-                    return None;
-                }
+            if matches!(action, Action::Follow) {
                 let sync = self.timeout.hears(j).then_some(self.followed as u8);
                 let played = tables.reference(j, from, zero, sync);
-                Some(played.unwrap_or_else(|| JointCubic::brake(joint, from, dt)))
-            });
-            self.references[j] = match (action, follows) {
-                // A limp joint with a motor moves as it will; one that only follows comes to rest and stays.
-                (Action::Off, _) if model == JointModel::Motors => JointCubic::resting(self.motions[j].angle),
-                (Action::Off | Action::Ramp, _) => JointCubic::brake(joint, from, dt),
-                (Action::Search(speed), _) => {
-                    let change = joint.braking * dt;
-                    let speed = from.speed + (speed - from.speed).clamp(-change, change);
-                    JointCubic::follow(from, from.angle + 0.5 * (from.speed + speed) * dt, speed, dt)
-                }
-                (Action::Follow, Follows::Target) => JointCubic::follow(from, angle, targets.speed[j], dt),
-                (Action::Follow, Follows::LastSpeed) => {
-                    JointCubic::follow(from, from.angle + from.speed * dt, from.speed, dt)
-                }
-            };
-            if let Some(played) = played {
-                self.references[j] = played;
+                return played.unwrap_or_else(|| JointCubic::brake(joint, from, dt));
             }
-            // Brakes close some time after the torque has gone, and are open until a drive has had torque once.
-            switches.off |= u64::from(action == Action::Off) << j;
+            tables.stop(j);
+        }
+        match (action, follows) {
+            // A limp joint with a motor moves as it will; one that only follows comes to rest and stays.
+            (Action::Off, _) if model == JointModel::Motors => JointCubic::resting(self.motions[j].angle),
+            (Action::Off | Action::Ramp, _) => JointCubic::brake(joint, from, dt),
+            (Action::Search(speed), _) => {
+                let change = joint.braking * dt;
+                let speed = from.speed + (speed - from.speed).clamp(-change, change);
+                JointCubic::follow(from, from.angle + 0.5 * (from.speed + speed) * dt, speed, dt)
+            }
+            (Action::Follow, Follows::Target) => JointCubic::follow(from, angle, targets.speed[j], dt),
+            (Action::Follow, Follows::LastSpeed) => {
+                JointCubic::follow(from, from.angle + from.speed * dt, from.speed, dt)
+            }
+        }
+    }
+
+    /// Drives without torque, and their brakes: they close some time after the torque has gone, and are open until a drive has
+    /// had torque once.
+    fn switches(&self, robot: &Robot, powered: bool) -> DriveSwitches {
+        let mut switches = DriveSwitches { powered, ..DriveSwitches::default() };
+        for j in 0..robot.joints.len() {
+            switches.off |= u64::from(self.electronics.action(j) == Action::Off) << j;
             let (brake, off_for) = (robot.drives.get(j).and_then(|d| d.brake), self.electronics.off_for(j));
             // Infinity, not `is_some_and`: a comparison with what stands in an absent brake may be with a subnormal number.
             let delay = brake.map_or(f64::INFINITY, |brake| brake.delay);
             switches.braked |= u64::from(off_for > delay) << j;
             switches.held |= u64::from(off_for == f64::INFINITY) << j;
         }
-        (switches, stopped)
+        switches
     }
 
     /// Ends a cycle of `dt` \[s\]: the references have come to their goals.

@@ -23,6 +23,7 @@
 use config::robot::{Drive as DriveData, Joint};
 use drives::{ControlLaw, GearSide, JointControl, OutOfDomain, Sampled, Sampling};
 
+use crate::inputs::Substep;
 use crate::resolution::{Angles, Coarse};
 use crate::servo::Servo;
 use crate::shaft::{Shaft, TrainInputs};
@@ -137,30 +138,30 @@ impl MotorController {
         coarse.look(&shaft.drive.transmission, &at)
     }
 
-    /// Clock of the drive itself: measures and computes if the beginning of the `step`-th integration step of `h` \[s\] in a
-    /// cycle is one of its instants, at the state of [`MotorController::load`].
+    /// Clock of the drive itself: measures and computes if the beginning of the integration step is one of its instants, at the
+    /// state of [`MotorController::load`].
     ///
     /// The result is an error as there.
     pub(crate) fn tick(
         &mut self,
         shaft: &Shaft,
-        (step, h): (u32, f64),
+        step: Substep,
         inputs: &TrainInputs<'_>,
     ) -> Result<(), OutOfDomain> {
-        if !self.is_due(step, h) {
+        if !self.is_due(step) {
             return Ok(());
         }
         let looked = self.look(shaft, inputs);
         let seen = self.read(shaft, inputs);
         if let Some(servo) = &mut self.servo {
-            self.sampler.output = servo.sample(shaft, self.speed_gain, (step, h), &seen, inputs);
+            self.sampler.output = servo.sample(shaft, self.speed_gain, step, &seen, inputs);
         }
         if inputs.switches.powered { looked } else { Ok(()) }
     }
 
     /// True if the beginning of a step is an instant of the drive's own clock.
-    pub(crate) fn is_due(&self, step: u32, h: f64) -> bool {
-        self.servo.as_ref().is_some_and(|servo| servo.is_due(step, h))
+    pub(crate) fn is_due(&self, step: Substep) -> bool {
+        self.servo.as_ref().is_some_and(|servo| servo.is_due(step))
     }
 
     /// Measures and computes once, at the state of [`MotorController::load`]; `cycle` \[s\] since the last time.
@@ -211,7 +212,7 @@ impl MotorController {
                 let turned = |i: usize| shaft.gear.ratio[i] * (angles[side][i] - last[side][i]);
                 seen.speed[side] = (0..shaft.coupled).map(turned).sum::<f64>() / cycle;
             }
-            // Who counts differentiates his counts, not the angles behind them.
+            // A controller that counts differentiates counts, not the angles behind them.
             if let Some(coarse) = &mut self.coarse {
                 seen.speed[GearSide::Motor as usize] = coarse.speed(cycle);
             }

@@ -38,9 +38,7 @@ mod tests {
     use multibody::Data;
 
     fn lola() -> Model {
-        let robot = Setup::load(&config::root(None), "stand").unwrap().robot;
-        let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-        Model::from_urdf(&robot.urdf, &robot.torso, &order).unwrap()
+        Setup::load(&config::root(None), "stand").unwrap().robot.model().unwrap()
     }
 
     /// Weight and centre of gravity against sums over the bodies, and the mass matrix against both.

@@ -18,7 +18,7 @@ use crate::drive::{JointCubic, JointMotion};
 use crate::external_forces::at_base;
 use crate::ground::GroundContact;
 use crate::inputs::DriveSwitches;
-pub use crate::inputs::PlantInputs;
+pub use crate::inputs::{PlantInputs, Substep};
 pub use crate::layout::orientation;
 use crate::layout::{StateLayout, quaternion_rate};
 use crate::masses;
@@ -199,17 +199,16 @@ impl Plant {
         }
     }
 
-    /// The controllers with a clock of their own measure and compute, if the beginning of the `step`-th step of `h` \[s\] in
-    /// a cycle is one of their instants. Steps are whole fractions of their periods, and cycles whole multiples.
-    pub fn tick(&mut self, (step, h): (u32, f64), x: &[f64], drives: &[JointCubic], inputs: &PlantInputs) {
+    /// The controllers with a clock of their own measure and compute, if the beginning of a step is one of their instants. Steps are whole fractions of their periods, and cycles whole multiples.
+    pub fn tick(&mut self, step: Substep, x: &[f64], drives: &[JointCubic], inputs: &PlantInputs) {
         let Joints::Driven(train) = &self.joints else { return };
-        if train.is_due(step, h) {
-            self.load(f64::from(step) * h, x, drives);
+        if train.is_due(step) {
+            self.load(f64::from(step.index) * step.h, x, drives);
             let switches = self.switches(inputs);
             let Self { data, layout, scratch, joints: Joints::Driven(train), .. } = self else { return };
             let given = train_inputs(layout, x, &scratch.reference, switches);
             train.load(&given, data);
-            train.tick(step, h, &given);
+            train.tick(step, &given);
         }
     }
 

@@ -25,7 +25,7 @@ use crate::plant::{Plant, PlantInputs};
 use crate::power::PowerLine;
 use crate::{sample_grid, step_limit, stiff};
 
-/// Cycles without their frames that are made good for at most: by then every drive has come to rest by itself.
+/// Cycles without their frames that are caught up on at most: by then every drive has come to rest by itself.
 const MOST_OVERWRITTEN: u64 = 100;
 
 /// \[1\] Force on a foot in weights of the robot, from which on its numbers are no robot's.

@@ -9,6 +9,7 @@ use drives::{
     ServoReference, SpeedEstimator,
 };
 
+use crate::inputs::Substep;
 use crate::local_control::{ControllerOutput, ShaftReadings};
 use crate::shaft::{Shaft, TrainInputs};
 
@@ -46,9 +47,9 @@ impl Servo {
         (self.periods.speed / h).round().max(1.0) as u32
     }
 
-    /// True if the speed loop is sampled at the beginning of the `step`-th step of `h` \[s\] in a cycle.
-    pub(crate) fn is_due(&self, step: u32, h: f64) -> bool {
-        step.is_multiple_of(self.steps(h))
+    /// True if the speed loop is sampled at the beginning of the step.
+    pub(crate) fn is_due(&self, Substep { index, h }: Substep) -> bool {
+        index.is_multiple_of(self.steps(h))
     }
 
     /// One sample, at such a step.
@@ -56,7 +57,7 @@ impl Servo {
         &mut self,
         shaft: &Shaft,
         speed_gain: f64,
-        (step, h): (u32, f64),
+        Substep { index, h }: Substep,
         seen: &ShaftReadings,
         inputs: &TrainInputs<'_>,
     ) -> ControllerOutput {
@@ -72,7 +73,7 @@ impl Servo {
             reference.acceleration += ratio * inputs.reference[shaft.joints[i]].acceleration;
             fastest += ratio.abs() * self.fastest[i];
         }
-        if (step / steps).is_multiple_of(periods.position_every) {
+        if (index / steps).is_multiple_of(periods.position_every) {
             law.sample_position(memory, seen.error[GearSide::Motor as usize], reference, fastest);
         }
         // Speed loop.

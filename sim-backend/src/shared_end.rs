@@ -10,7 +10,7 @@ use messages::topics::{BUS_RX, BUS_TX, Process};
 
 use crate::far_end::FarEnd;
 
-/// Cycles of the bus behind which the simulated robot was stopped, and makes good for what it missed: a robot would not
+/// Cycles of the bus behind which the simulated robot was stopped, and catches up on what it missed: a robot would not
 /// have been.
 const STALL: u64 = 3;
 

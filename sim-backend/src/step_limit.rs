@@ -1,9 +1,10 @@
-//! Linearisation of equations of motion, and the steps that explicit methods may take on them.
+//! Linearisation of equations of motion, and the steps that explicit and semi-implicit methods may take on them.
 //!
 //! | symbol | name | unit |
 //! |---|---|---|
 //! | s | eigenvalue of the derivative of the rates by the state | 1/s |
 //! | R | factor by which a step multiplies an eigenvector, as a polynomial of hs | 1 |
+//! | r, T | damping of a mode by the contact layer over its mass; time B/K of the layer | 1/s, s |
 
 use std::error::Error;
 
@@ -14,7 +15,9 @@ use environment::Environment;
 use faer::{Mat, Par, set_global_parallelism};
 use nalgebra::Complex;
 
+use crate::body::with_plant_mismatch;
 use crate::drive::JointCubic;
+use crate::feet::RECOVERY;
 use crate::plant::{Plant, PlantInputs};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -110,14 +113,51 @@ pub fn step_limit_of_ramp(
     integrator: Integrator,
     ramp: f64,
 ) -> Result<Option<StepLimit>> {
-    let of: fn(&[Complex<f64>]) -> f64 = match integrator {
-        Integrator::Euler => euler_limit,
-        Integrator::RungeKutta4 => runge_kutta_limit,
-        Integrator::SemiImplicit | Integrator::Bdf => return Ok(None),
-    };
+    let Some(of) = explicit(integrator) else { return Ok(None) };
     let mut plant = Plant::new(robot, Environment::flat(), components.into().on_points(), pose)?;
     plant.set_friction_ramp(ramp);
-    let drives: Vec<JointCubic> = pose.iter().map(|&q| JointCubic::resting(q)).collect();
+    explicit_limit(&mut plant, of, pose).map(Some)
+}
+
+/// Largest stable step of a scene: its robot as heavy and on such soles as `[plant_mismatch]` says. Semi-implicit steps have one,
+/// too. None: the method chooses its steps itself.
+///
+/// # Errors
+/// As of [`step_limit`].
+pub fn step_limit_of_scene(robot: &Robot, scene: &Scene) -> Result<Option<StepLimit>> {
+    let (real, pose) = (with_plant_mismatch(robot, scene), &robot.poses[&scene.start_pose]);
+    let plant = |components: Components| -> Result<Plant> {
+        let mut plant = Plant::new(&real, Environment::flat(), components.on_points(), pose)?;
+        plant.weigh(&scene.plant_mismatch)?;
+        plant.set_friction_ramp(scene.friction_ramp);
+        Ok(plant)
+    };
+    if let Some(of) = explicit(scene.integrator) {
+        return explicit_limit(&mut plant(scene.components())?, of, pose).map(Some);
+    }
+    if scene.integrator != Integrator::SemiImplicit {
+        return Ok(None);
+    }
+    // Dry friction holds shafts and never frees one: without it the soles meet the least mass.
+    let mut free = plant(Components { friction: false, ..scene.components() })?;
+    semi_implicit_limit(&mut free, real.contact.damping_time, pose).map(Some)
+}
+
+/// Largest stable step of a method \[s\] by eigenvalues \[1/s\].
+type LimitOf = fn(&[Complex<f64>]) -> f64;
+
+/// That of an explicit method.
+fn explicit(integrator: Integrator) -> Option<LimitOf> {
+    match integrator {
+        Integrator::Euler => Some(euler_limit),
+        Integrator::RungeKutta4 => Some(runge_kutta_limit),
+        Integrator::SemiImplicit | Integrator::Bdf => None,
+    }
+}
+
+/// Smallest of the steps `of` the eigenvalues in each regime.
+fn explicit_limit(plant: &mut Plant, of: LimitOf, pose: &[f64]) -> Result<StepLimit> {
+    let drives = resting(pose);
     let (standing, hanging) = (plant.standing(pose), plant.hanging(pose, IN_THE_AIR));
     let l = *plant.layout();
     let moving = |mut x: Vec<f64>| {
@@ -139,17 +179,49 @@ pub fn step_limit_of_ramp(
             least = StepLimit { step, regime };
         }
     }
-    Ok(Some(least))
+    Ok(least)
 }
 
-/// Refuses an explicit step of a scene that is longer than the stable one.
+/// Largest stable semi-implicit step: drives and gears are those of its end and limit nothing; contact forces are those of its
+/// begin, so that against the soles it is Euler's. Nodes in the air only take stiffness away.
+fn semi_implicit_limit(plant: &mut Plant, damping_time: f64, pose: &[f64]) -> Result<StepLimit> {
+    let drives = resting(pose);
+    let mut x = plant.standing(pose);
+    let speed = plant.layout().speed();
+    let (at_rest, mut rates) = (x[speed.clone()].to_vec(), vec![0.0; x.len()]);
+    // Without power nothing but the layers under the soles answers to a speed: - M^-1 B.
+    let mut values = eigenvalues(&at_rest, |v, dv| {
+        x[speed.clone()].copy_from_slice(v);
+        plant.rate(0.0, &x, &drives, &PlantInputs::default(), &mut rates);
+        dv.copy_from_slice(&rates[speed.clone()]);
+    })?;
+    values.retain(|s| s.re < -SLOW);
+    // Stiffness is damping over T in every direction, so each mode is a mass on one layer: s^2 + r s + r/T = 0.
+    let of_mode = |value: &Complex<f64>| {
+        let r = -value.re;
+        let root = Complex::new(r * r - 4.0 * r / damping_time, 0.0).sqrt();
+        [1.0, -1.0].map(|sign| (root * sign - r) / 2.0)
+    };
+    let modes: Vec<Complex<f64>> = values.iter().flat_map(of_mode).collect();
+    let (soles, recovery) = (euler_limit(&modes), 1.0 / RECOVERY);
+    Ok(if soles < recovery {
+        StepLimit { step: soles, regime: "contact forces of the begin of a step" }
+    } else {
+        StepLimit { step: recovery, regime: "nodes that have sunk in are thrown up" }
+    })
+}
+
+/// Drives that hold a pose.
+fn resting(pose: &[f64]) -> Vec<JointCubic> {
+    pose.iter().map(|&q| JointCubic::resting(q)).collect()
+}
+
+/// Refuses a step of a scene that is longer than the stable one.
 ///
 /// # Errors
 /// It is, and the scene does not force it; or as of [`step_limit`].
 pub(crate) fn check(robot: &Robot, scene: &Scene) -> Result<()> {
-    let pose = &robot.poses[&scene.start_pose];
-    let found = step_limit_of_ramp(robot, scene.components(), pose, scene.integrator, scene.friction_ramp)?;
-    let Some(limit) = found else { return Ok(()) };
+    let Some(limit) = step_limit_of_scene(robot, scene)? else { return Ok(()) };
     let step = scene.cycle / f64::from(scene.substeps);
     if step <= limit.step || scene.force_step {
         return Ok(());
@@ -157,9 +229,13 @@ pub(crate) fn check(robot: &Robot, scene: &Scene) -> Result<()> {
     let name = Integrator::WORDS[scene.integrator as usize];
     let enough = (scene.cycle / limit.step).ceil();
     let advice = if enough <= 1000.0 { format!("substeps = {enough} or more, or ") } else { String::new() };
+    let implicit = scene.integrator == Integrator::SemiImplicit;
+    let other = if implicit { "" } else { "integrator = \"semi_implicit\", or " };
+    let factor = scene.plant_mismatch.contact_stiffness;
+    let soles = if factor == 1.0 { String::new() } else { format!(", contact_stiffness = {factor}") };
     Err(format!(
         "scene `{}`: integrator = \"{name}\" with substeps = {}: a step of {} ms is longer than {}, the largest stable one \
-         ({}); take {advice}integrator = \"semi_implicit\", or force_step = true to see what happens",
+         ({}{soles}); take {advice}{other}force_step = true to see what happens",
         scene.name,
         scene.substeps,
         1e3 * step,

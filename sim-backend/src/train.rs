@@ -21,6 +21,7 @@ use drives::{NoLoadTorque, OutOfDomain, Sampling};
 use multibody::{Damper, Data, Model, Rotor};
 
 use crate::implicit::ShaftStep;
+use crate::inputs::Substep;
 use crate::local_control::MotorController;
 use crate::shaft::{Shaft, TrainInputs};
 
@@ -109,12 +110,12 @@ impl Train {
         }
     }
 
-    /// The controllers with a clock of their own measure and compute, those whose instant is the beginning of the
-    /// `step`-th step of `h` \[s\] in a cycle, at the state of [`Train::load`].
-    pub fn tick(&mut self, step: u32, h: f64, inputs: &TrainInputs<'_>) {
+    /// The controllers with a clock of their own measure and compute, those whose instant is the beginning of the step, at the
+    /// state of [`Train::load`].
+    pub fn tick(&mut self, step: Substep, inputs: &TrainInputs<'_>) {
         let Self { drives, fault, .. } = self;
         for (drive, DriveTrain { shaft, controller, .. }) in drives.iter_mut().enumerate() {
-            if let Err(why) = controller.tick(shaft, (step, h), inputs) {
+            if let Err(why) = controller.tick(shaft, step, inputs) {
                 _ = fault.get_or_insert(TrainFault { drive, why: FaultCause::Linkage(why) });
             }
         }
@@ -126,8 +127,8 @@ impl Train {
     }
 
     /// True if the beginning of a step is an instant of a controller's own clock.
-    pub(crate) fn is_due(&self, step: u32, h: f64) -> bool {
-        self.drives.iter().any(|d| d.controller.is_due(step, h))
+    pub(crate) fn is_due(&self, step: Substep) -> bool {
+        self.drives.iter().any(|d| d.controller.is_due(step))
     }
 
     /// Gains K_v of the speed loops, one per motor; 0 without one \[A s/rad\].

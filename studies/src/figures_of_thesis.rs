@@ -264,7 +264,7 @@ fn point_mass(setup: &mut Setup) -> Result<(), Error> {
 /// it, as another upper body would be had. The walk stays the same: hips as high over the ground and legs as heavy as
 /// before, which takes another height of the centre of gravity and another share of the legs.
 fn with_torus(setup: &mut Setup) -> Result<(), Error> {
-    let model = model_of(setup)?;
+    let model = setup.robot.model()?;
     let (mass, radius) = TORUS;
     let at = model.base_cog();
     let (across, along) = (0.5 * mass * radius * radius, mass * radius * radius);
@@ -278,14 +278,9 @@ fn with_torus(setup: &mut Setup) -> Result<(), Error> {
     let before = height(&model, setup);
     setup.robot.urdf = setup.robot.urdf.replace("</robot>", &torus);
     setup.robot.total_mass += mass;
-    setup.gait.model.com_height += height(&model_of(setup)?, setup) - before;
+    setup.gait.model.com_height += height(&setup.robot.model()?, setup) - before;
     setup.gait.model.leg_mass *= model.mass() / (model.mass() + mass);
     Ok(())
-}
-
-fn model_of(setup: &Setup) -> Result<Model, Error> {
-    let names: Vec<&str> = setup.robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-    Ok(Model::from_urdf(&setup.robot.urdf, &setup.robot.torso, &names)?)
 }
 
 /// \[m\] Height of the centre of gravity over the origin of the upper body in the start pose.
@@ -341,7 +336,7 @@ mod tests {
         let plain = periodic(&config::root(None), case("9.1"), 1).unwrap();
         let mut setup = plain.clone();
         with_torus(&mut setup).unwrap();
-        let [before, after] = [&plain, &setup].map(|s| model_of(s).unwrap());
+        let [before, after] = [&plain, &setup].map(|s| s.robot.model().unwrap());
         let (mass, radius) = TORUS;
         assert!((after.mass() - before.mass() - mass).abs() < 1e-9);
         assert!((after.base_cog() - before.base_cog()).norm() < 1e-12);

@@ -8,7 +8,7 @@ use drives::{CascadePi, ControlLaw, Sampling, Transmission};
 use environment::Environment;
 use sim_backend::drive::{JointCubic, JointMotion};
 use sim_backend::integrate::Stepper;
-use sim_backend::plant::{Plant, PlantInputs};
+use sim_backend::plant::{Plant, PlantInputs, Substep};
 
 use crate::Error;
 
@@ -171,7 +171,7 @@ impl ServoBench {
             let begin = f64::from(k) * cycle;
             let references = drives(begin);
             for i in 0..per_sample * periods.position_every {
-                plant.tick((i, h), &x, &references, &inputs);
+                plant.tick(Substep { index: i, h }, &x, &references, &inputs);
                 stepper.step(&mut plant, f64::from(i) * h, h, &mut x, &references, &inputs);
                 let come = ((begin + f64::from(i) * h) / course.ramp.max(h)).min(1.0);
                 x[l.speed()][6] += h * come * course.load / loaded;

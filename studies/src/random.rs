@@ -19,6 +19,11 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
+    /// A number out of \[-1, 1).
+    pub(crate) fn symmetric(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+
     /// A number out of a range.
     pub(crate) fn within(&mut self, [low, high]: [f64; 2]) -> f64 {
         low + (high - low) * self.unit()

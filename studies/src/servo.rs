@@ -99,6 +99,8 @@ fn one(given: &Given<'_>, period: f64, integral: bool, steps: u32) -> Result<Wal
     let step = period / f64::from(steps);
     let substeps = (setup.scene.cycle / step).round() as u32;
     setup.scene.choose(Method { depth: 3, integrator: Integrator::SemiImplicit, substeps });
+    // A step as long as the longest period is longer than the soles allow, and is shown all the same.
+    setup.scene.force_step = true;
     let walked = walk::walk(&setup)?;
     let f = &walked.figures;
     Ok(Walked {

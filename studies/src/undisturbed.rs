@@ -3,6 +3,7 @@
 //! One rule for all studies that disturb a walk: the robot is on its feet and supplied, it walks, and over one stride
 //! it gets as far, as far sideways and as much round as it did undisturbed. To be on one's feet is not enough.
 
+use chain::ending::is_doubt;
 use chain::{Chain, Cycle};
 use config::Setup;
 use config::components::JointModel;
@@ -138,6 +139,11 @@ pub(crate) fn ended(cycle: &Cycle) -> bool {
         matches!(code, EventCode::Fallen | EventCode::Lifted | EventCode::SafeStop | EventCode::PowerOff)
     };
     cycle.sim_state.fallen == 1 || cycle.events.iter().any(|&(_, code, _)| ends(code))
+}
+
+/// Whether the simulation says in this cycle that it is not to be trusted.
+pub(crate) fn doubted(cycle: &Cycle) -> bool {
+    cycle.events.iter().any(|&(_, code, _)| is_doubt(code))
 }
 
 #[cfg(test)]

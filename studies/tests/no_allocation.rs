@@ -1,40 +1,14 @@
 //! Neither the plans of a pattern nor the open loop that walks them allocate after the start, nor do boxes that are told.
-#![allow(
-    unsafe_code,
-    reason = "a counting allocator can only be written with GlobalAlloc, which is unsafe to implement"
-)]
-
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 
 use config::{Gait, Robot, root};
 use controller::Controller;
 use messages::command::{BoxCommand, GoneCommand, MAX_BOXES, VelocityCommand};
 use messages::{Command, ControllerState, GaitState, Plan, Sensors};
 use planner::Planner;
-
-struct Counting;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-// SAFETY: every call goes unchanged to the system's allocator; counting touches a plain thread-local number.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.set(COUNT.get() + 1);
-        // SAFETY: the caller keeps the contract of `alloc`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        // SAFETY: the block came from `System.alloc` with this layout.
-        unsafe { System.dealloc(block, layout) }
-    }
-}
+use realtime::{CountingAllocator, allocations};
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 #[test]
 fn a_pattern_is_planned_and_walked_in_the_memory_made_at_the_start() {
@@ -50,7 +24,7 @@ fn a_pattern_is_planned_and_walked_in_the_memory_made_at_the_start() {
     let mut state = ControllerState::default();
     let forward = Command::Velocity(VelocityCommand { forward: 0.0208, left: 0.0, turn: 0.0 });
 
-    let before = COUNT.get();
+    allocations::arm();
     let (mut plans, mut walked) = (0, false);
     for tick in 1..6000u64 {
         let command = match tick {
@@ -68,12 +42,12 @@ fn a_pattern_is_planned_and_walked_in_the_memory_made_at_the_start() {
         (sensors.joint_angle, sensors.joint_speed, state) = (targets.angle, targets.speed, *now);
         walked |= GaitState::from(state.gait) == GaitState::Walking;
     }
-    let allocations = COUNT.get() - before;
-    assert_eq!(allocations, 0);
+    let [counted, _] = allocations::counted();
+    assert_eq!(counted, 0);
     assert!(walked && plans >= 4, "{plans} plans");
 
     drop(Box::new(std::hint::black_box(1)));
-    assert!(COUNT.get() > before, "the counter counts");
+    assert!(allocations::counted()[0] > 0, "the counter counts");
 }
 
 /// All places taken, moved, lapsed and left, refused ones too, while plans are made over them.
@@ -88,7 +62,7 @@ fn boxes_that_come_and_go_are_planned_with_in_the_memory_made_at_the_start() {
     let mut plan = Box::new(Plan::default());
     let mut next: Option<u64> = None;
 
-    let before = COUNT.get();
+    allocations::arm();
     let (mut plans, mut refused) = (0, 0);
     for tick in 1..16_000u64 {
         // One after the other, 0.2 m apart, across the way of both feet and beside it.
@@ -115,6 +89,6 @@ fn boxes_that_come_and_go_are_planned_with_in_the_memory_made_at_the_start() {
             state.gait = plan.state;
         }
     }
-    assert_eq!(COUNT.get() - before, 0);
+    assert_eq!(allocations::counted()[0], 0);
     assert!(plans >= 8 && refused >= 10, "{plans} plans, {refused} refused");
 }

@@ -228,7 +228,7 @@ fn a_gamepad_walks_her_while_its_button_is_held() {
     let begun = clock::now();
     robot.stands();
     let seconds = (clock::now() - begun) as f64 * 1e-9;
-    assert!((0.3..2.0).contains(&seconds), "she stood {seconds} s after the last sign of life");
+    assert!((0.3..2.0).contains(&seconds), "she stood {seconds} s after the last heartbeat");
     stick.signal_supervisor(Signal::CONT);
     pad.stick(dice.between(0.3, 1.0), 0.0);
     says(&mut stick, "release the dead-man button, and hold it again", 3);

@@ -13,7 +13,7 @@ use tungstenite::{Message, WebSocket};
 
 /// Limit for everything that a test waits for.
 pub(crate) const PATIENCE: u64 = 60 * clock::SECOND;
-/// Period of a page's signs of life \[ns\].
+/// Period of a page's heartbeats \[ns\].
 const PULSE: u64 = clock::SECOND / 10;
 
 /// A running `gangwerk dashboard`.
@@ -169,7 +169,7 @@ pub(crate) enum Received {
 pub(crate) struct Page {
     pub(crate) socket: WebSocket<TcpStream>,
     pub(crate) hello: Value,
-    /// Signs of life are sent while it waits.
+    /// Heartbeats are sent while it waits.
     pub(crate) pulse: bool,
     next_pulse: u64,
     next_id: u64,

@@ -102,7 +102,7 @@ pub fn run(options: &Options, stop: &Stop, say: fn(&str)) -> Result<End, String>
             && let Ok(trigger) = Trigger::decode(&bytes[..length])
         {
             (heard, told) = (now(), false);
-            // Who starts this program ends an earlier stop with it, and none that comes later.
+            // Starting this program ends an earlier stop, and none that comes later.
             match trigger.flags & flag::HELD != 0 {
                 true if may => return Ok(End::Held),
                 true => drop(socket.send_to(&line.stop(&trigger), from)),

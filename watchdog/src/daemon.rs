@@ -1,8 +1,8 @@
 //! The process around the watchdog: `gangwerk watchdog --run DIR`.
 //!
 //! Real time: a grid of its own, one cycle per bus cycle, so that it notices what no longer happens. The grid lies
-//! between the sign of life of one cycle and the latest of the next: a late one is not taken for a missing one. Lockstep:
-//! woken by the joint loop's sign of life, it answers each tick.
+//! between the heartbeat of one cycle and the latest of the next: a late one is not taken for a missing one. Lockstep:
+//! woken by the joint loop's heartbeat, it answers each tick.
 
 use crate::estop::EmergencyStop;
 use crate::{Inputs, Supply, Watchdog, supply_event, verdict};
@@ -39,7 +39,7 @@ pub fn main(dir: &Path, connect: Connect) -> Result<(), Box<dyn Error>> {
     };
     if guard.power.epoch() > 1 {
         // Started again: power stays off until somebody asks for it now.
-        guard.timeline.skip_before(u64::MAX);
+        guard.timeline.drop_rest();
         guard.watchdog = guard.watchdog.restarted();
     }
     d.report(Header::default(), EventCode::Started, Detail::Nothing);
@@ -111,7 +111,7 @@ struct Guard {
 }
 
 impl Guard {
-    /// One step with the newest sign of life and the commands of this cycle: the scene's that are due, then live ones.
+    /// One step with the newest heartbeat and the commands of this cycle: the scene's that are due, then live ones.
     /// `skipped` own cycles were missed before it; `late` in its cycle is one after a quarter of it.
     fn cycle(&mut self, d: &mut Daemon, skipped: u64, late: bool) {
         let mut lives = [Live::of_scene(Command::End); MAX_COMMANDS];
@@ -120,7 +120,7 @@ impl Guard {
         let now = self.now();
         let asker = self.stop.asked();
         if asker.is_some() {
-            self.timeline.skip_before(u64::MAX);
+            self.timeline.drop_rest();
         }
         while count < MAX_COMMANDS
             && let Some(live) = self.next_command(now.tick)
@@ -171,12 +171,12 @@ impl Guard {
         }
         let live = self.commands.next()?;
         if live.command == Command::EmergencyStop {
-            self.timeline.skip_before(u64::MAX);
+            self.timeline.drop_rest();
         }
         Some(live)
     }
 
-    /// Tick and stamp of the newest sign of life.
+    /// Tick and stamp of the newest heartbeat.
     fn now(&self) -> Header {
         self.reset.held().map_or(Header::default(), |r| r.header)
     }

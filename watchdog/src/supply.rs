@@ -55,7 +55,7 @@ pub fn verdict(command: &Command, before: Supply, after: Supply) -> Verdict {
 /// Inputs of one cycle of the watchdog.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Inputs<'a> {
-    /// The newest sign of life of the joint loop; none before the first one.
+    /// The newest heartbeat of the joint loop; none before the first one.
     pub reset: Option<&'a WatchdogReset>,
     /// Commands that came since the last cycle, in order.
     pub commands: &'a [Command],
@@ -79,7 +79,7 @@ enum Happening {
 pub struct SupplyState {
     /// The motor supply.
     pub supply: Supply,
-    /// Epoch and tick of the newest sign of life.
+    /// Epoch and tick of the newest heartbeat.
     pub seen: Option<(u64, u64)>,
     /// Cycles since the last reset command, up to a pause.
     pub reset_pause: u32,
@@ -87,9 +87,9 @@ pub struct SupplyState {
     pub enable_pause: u32,
     /// Cycles since the supply was switched on in which it was not measured on.
     pub closing: Option<u32>,
-    /// Cycles without a sign of life, up to the limit.
+    /// Cycles without a heartbeat, up to the limit.
     pub missed: u64,
-    /// A late look without a sign of life was not counted.
+    /// A late look without a heartbeat was not counted.
     pub forgiven: bool,
 }
 
@@ -101,19 +101,19 @@ pub struct Watchdog {
     most_closing: u32,
     most_skipped: u64,
     supply: Supply,
-    /// (epoch, tick) of the newest sign of life.
+    /// (epoch, tick) of the newest heartbeat.
     seen: Option<(u64, u64)>,
     reset_pause: u32,
     enable_pause: u32,
     /// Cycles since the supply was switched on in which it was not measured on; none once it was.
     closing: Option<u32>,
-    /// A late look without a sign of life was not counted since the last sign of life.
+    /// A late look without a heartbeat was not counted since the last heartbeat.
     forgiven: bool,
     power: Power,
 }
 
 impl Watchdog {
-    /// Off. `missed` own cycles without a new sign of life of the joint loop are too many; one late cycle since the last sign
+    /// Off. `missed` own cycles without a new heartbeat of the joint loop are too many; one late cycle since the last sign
     /// of life is not counted. The supply's relay falls after `quiet` cycles without a toggle. Both at least 1.
     pub fn new(missed: u32, quiet: u32) -> Self {
         Self {
@@ -160,7 +160,7 @@ impl Watchdog {
         }
     }
 
-    /// One cycle: looks for a sign of life, then at the commands in their order.
+    /// One cycle: looks for a heartbeat, then at the commands in their order.
     pub fn step(&mut self, inputs: &Inputs) -> &Power {
         self.reset_pause = self.reset_pause.saturating_add(1);
         self.enable_pause = self.enable_pause.saturating_add(1);
@@ -228,7 +228,7 @@ impl Watchdog {
     fn switch(&mut self, happening: Happening, reset: Option<&WatchdogReset>) {
         let open = reset.is_some_and(|r| r.supply == 0);
         self.supply = match (self.supply, happening) {
-            // Never on: nothing to report until something worse than silence before the first sign of life happens.
+            // Never on: nothing to report until something worse than silence before the first heartbeat happens.
             (Supply::Off(EventCode::None), Happening::Trip(EventCode::ResetMissed)) => {
                 Supply::Off(EventCode::None)
             }

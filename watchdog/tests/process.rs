@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
-/// Own cycles without a sign of life in these tests: far more than a busy machine lets this process sleep.
+/// Own cycles without a heartbeat in these tests: far more than a busy machine lets this process sleep.
 const LIMIT: u64 = 500;
 const PATIENCE: Duration = Duration::from_secs(20);
 

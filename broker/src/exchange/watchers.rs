@@ -41,7 +41,7 @@ impl Exchange<'_> {
             self.members.iter_mut().filter(|m| m.watch.asked).for_each(|m| m.deliver(&message));
         }
         for member in self.members.iter_mut().filter(|m| m.watch.period > 0 && now >= m.watch.due) {
-            // The rate is kept on the average; what a stalled broker missed is not made good for.
+            // The rate is kept on the average; what a stalled broker missed is not caught up on.
             let watch = &mut member.watch;
             watch.due = (watch.due + watch.period).max(now.saturating_sub(watch.period));
             let state = robot.state(member.lost);

@@ -193,7 +193,7 @@ fn each_client_gets_states_at_its_own_rate() {
         client.watch(&gate, rate, false);
     }
     exchange.turn(SECOND, &mut |_| {});
-    // The broker looks every 10 ms; once it is stopped for a second, which is not made good for.
+    // The broker looks every 10 ms; once it is stopped for a second, which is not caught up on.
     for k in (1..=200).chain(301..=500) {
         exchange.turn(SECOND + k * SECOND / 100, &mut |_| {});
     }

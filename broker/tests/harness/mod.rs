@@ -8,10 +8,12 @@ use std::process::{Child, Stdio};
 use std::time::Duration;
 
 use broker::daemon::Tcp;
+use broker::stream_client::News;
 use broker::{Client, StreamClient};
 use ipc::{Run, Space};
-use messages::Process;
 use messages::command::Domain;
+use messages::{Command, Process};
+use realtime::clock::now;
 use rustix::process::{Pid, Signal, kill_process};
 
 const ROLE: &str = "GANGWERK_TEST_ROLE";
@@ -114,6 +116,26 @@ impl System {
     /// The broker's line about a client, if it knows it.
     pub(crate) fn line_about(&self, name: &str) -> Option<String> {
         self.stream().statistics().expect("statistics").into_iter().find(|line| line.starts_with(name))
+    }
+}
+
+/// What only a test asks a client for.
+pub(crate) trait Receive {
+    /// The next command of the domains subscribed to; other news are passed over.
+    fn receive(&mut self, timeout: Duration) -> Result<Option<Command>, String>;
+}
+
+impl Receive for StreamClient {
+    fn receive(&mut self, timeout: Duration) -> Result<Option<Command>, String> {
+        let until = now() + timeout.as_nanos() as u64;
+        loop {
+            let left = Duration::from_nanos(until.saturating_sub(now()));
+            match self.news(left.max(Duration::from_millis(1)))? {
+                Some(News::Command(command)) => return Ok(Some(command)),
+                Some(_) => {}
+                None => return Ok(None),
+            }
+        }
     }
 }
 

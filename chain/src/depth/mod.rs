@@ -1,6 +1,7 @@
 //! `depth = "auto"`: the cheapest model and step that are as accurate as a scene asks.
 //!
-//! Methods are tried in the order of what they cost, on the begin of the scene with everything in the loop ([`trial`]).
+//! Methods are tried in the order of what they cost, on the begin of the scene with everything in the loop ([`trial`]); those
+//! whose step the scene would be refused with are left out.
 //! What a method is off by is estimated from differences to the next finer ones, for every output that the scene names:
 //!
 //! ```text
@@ -33,6 +34,7 @@ use config::method::Method;
 use config::tolerance::Output;
 use config::{Robot, Scene, Setup};
 use serde::Serialize;
+use sim_backend::step_limit::step_limit_of_scene;
 
 use self::trial::MethodTrial;
 
@@ -182,7 +184,7 @@ pub fn choose(setup: &Setup, trying: impl FnMut(&str)) -> Result<Choice, Box<dyn
     for method in by_cost() {
         let useless = tolerance.needs_motors() && method.depth == 1;
         let hopeless = tried.iter().any(|t| t.method.depth == method.depth && t.hopeless());
-        if useless || hopeless || !types.has(method.depth) {
+        if useless || hopeless || !types.has(method.depth) || is_too_long(setup, method)? {
             continue;
         }
         let found = Tried { method, estimates: estimate(&mut trials, &types, method, &tolerance.outputs)? };
@@ -193,6 +195,15 @@ pub fn choose(setup: &Setup, trying: impl FnMut(&str)) -> Result<Choice, Box<dyn
         }
     }
     Err(too_strict(setup, &tried, trials.seconds()).into())
+}
+
+/// True if the scene would be refused with the step of a method.
+fn is_too_long(setup: &Setup, method: Method) -> Result<bool, Box<dyn Error>> {
+    let mut scene = setup.scene.clone();
+    scene.choose(method);
+    let limit = step_limit_of_scene(&setup.robot, &scene)?;
+    let step = scene.cycle / f64::from(scene.substeps);
+    Ok(!scene.force_step && limit.is_some_and(|limit| step > limit.step))
 }
 
 /// What one method is estimated to be off by on a scene whose depth is "auto".
@@ -347,6 +358,6 @@ fn last_happening(scene: &Scene) -> f64 {
     }
     let commands = scene.commands.iter().map(|(time, _)| *time);
     let pushes = scene.pushes.iter().map(|(time, push)| time + push.duration);
-    let faults = scene.bus_faults.iter().map(|fault| fault.time);
+    let faults = scene.bus_faults.iter().map(|fault| fault.time + fault.duration);
     commands.chain(pushes).chain(faults).fold(0.0, f64::max).min(scene.duration)
 }

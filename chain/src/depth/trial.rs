@@ -32,7 +32,7 @@ pub struct MethodTrial {
     torque: Vec<f64>,
     /// \[A\] Motors; empty without any.
     current: Vec<f64>,
-    /// \[m\] Torso at the end.
+    /// \[m\] Torso at the end of the trial.
     position: [f64; 3],
 }
 
@@ -44,6 +44,8 @@ impl MethodTrial {
     pub fn run(setup: &Setup, method: Method, cycles: usize) -> Result<Self, Box<dyn Error>> {
         let mut setup = setup.clone();
         setup.scene.choose(method);
+        // What a step that is too long does is what a trial is for.
+        setup.scene.force_step = true;
         let mut chain = Chain::new(&setup)?;
         let mut trial = Self {
             method,

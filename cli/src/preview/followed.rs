@@ -21,8 +21,10 @@ const STANDING: f64 = 4.0;
 const LONGEST: f64 = 60.0;
 /// \[m\] Steps whose lengths differ by less are equal.
 const EQUAL: f64 = 1e-6;
-/// \[m\] Centre of gravity or sole that are further from where they are planned are out of reach.
+/// \[m\] Centre of gravity, or sole on the ground, that are further from where they are planned are out of reach.
 const OFF: f64 = 5e-3;
+/// \[1\] The same of a sole in the air, beyond those: share of its planned height, so that it touches nothing.
+const OFF_IN_THE_AIR: f64 = 0.5;
 /// \[rad\] The same of a sole's pitch.
 const TILT: f64 = 0.05;
 /// \[1\] Rounding of a joint at its limit.
@@ -154,7 +156,7 @@ impl<'a> Obedient<'a> {
         sensors.imu.orientation = [0.0, 0.0, 0.0, 1.0];
         sensors.joint_angle[..pose.len()].copy_from_slice(pose);
         (0..2).for_each(|foot| sensors.foot_wrench[foot].force[2] = 0.5 * robot.weight());
-        // Forces are as planned: nothing is to be made good for.
+        // Forces are as planned: nothing is to be compensated.
         let mut kinematic = gait.clone();
         (kinematic.control.force_gain, kinematic.control.force_feed_forward) = ([0.0; 3], 0.0);
         kinematic.control.planned_deformation = 0.0;
@@ -238,8 +240,12 @@ impl<'a> Obedient<'a> {
         };
         let places = [RIGHT, LEFT].into_iter().find_map(|foot| {
             let what = format!("{} sole", super::SIDES[foot]);
-            let far = 1e3 * apart(&state.feet[foot], &state.feet_desired[foot]);
-            off(&what, far, 1e3 * OFF, "mm").or_else(|| off(&what, tilt(foot), TILT.to_degrees(), "deg"))
+            let (is, planned) = (&state.feet[foot], &state.feet_desired[foot]);
+            // The other foot stands.
+            let height = (planned[2] - state.feet_desired[1 - foot][2]).max(0.0);
+            let bound = OFF + OFF_IN_THE_AIR * height;
+            off(&what, 1e3 * apart(is, planned), 1e3 * bound, "mm")
+                .or_else(|| off(&what, tilt(foot), TILT.to_degrees(), "deg"))
         });
         let body = || off("centre of gravity", 1e3 * apart(&state.com, &state.com_desired), 1e3 * OFF, "mm");
         // A joint at a limit is mostly why.

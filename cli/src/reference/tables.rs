@@ -19,7 +19,7 @@ pub(super) fn commands() -> String {
         "Commands",
         "What can be asked of a running robot: `gangwerk topic pub NAME field=number ...`, the page in the browser, a program that \
          speaks [the broker's protocol](../protocol.md), or a `[[command]]` of a scene. Ranges are those of any robot; the gait of a \
-         robot narrows them ([keys of a gait](gait_keys.md)). Who sends a command that needs the lease takes it, or is refused while \
+         robot narrows them ([keys of a gait](gait_keys.md)). A command that needs the lease takes it, or is refused while \
          somebody else holds it.",
     );
     text += &head(&["command", "task", "answered by", "lease"]);

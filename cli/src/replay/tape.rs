@@ -351,7 +351,7 @@ fn read(
 ) -> Result<LogEnd, recording::RecordingError> {
     log.each(|message| {
         let Some(at) = channels.iter().position(|(name, _)| name == message.channel) else { return };
-        // Who does not listen any more has found what he wanted.
+        // A closed channel: the listener has found what it wanted.
         let _ = match message.definition == channels[at].1.as_bytes() {
             true => heard.send(Heard::Message(
                 at,

@@ -1,6 +1,6 @@
 //! Back-off of restarts: soon, then later and later, and not for ever. Pure: time is an argument.
 //!
-//! Who died too often in a row is left dead, and who died so often in the whole run that its topics have room for no other writer
+//! A process that died too often in a row is left dead, and so is one that died so often that its topics have no slot for another writer
 //! ([`ipc::writers`]): each that is killed takes its place with it.
 
 use realtime::clock::SECOND;

@@ -9,7 +9,7 @@ pub(super) const ENVIRONMENT: [&str; 3] = ["NOTIFY_SOCKET", "WATCHDOG_USEC", "WA
 
 /// The line to the service manager.
 pub(super) struct Manager {
-    /// Between two signs of life \[ns\]: a third of what the manager bears; none: it wants none.
+    /// Between two heartbeats \[ns\]: a third of what the manager bears; none: it wants none.
     every: Option<u64>,
     next: u64,
 }
@@ -25,7 +25,7 @@ impl Manager {
         tell(NotifyState::Ready);
     }
 
-    /// One look at the processes: a sign of life, if it is time for one.
+    /// One look at the processes: a heartbeat, if it is time for one.
     pub(super) fn look(&mut self, now: u64) {
         if let Some(every) = self.every
             && now >= self.next

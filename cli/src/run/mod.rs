@@ -92,6 +92,18 @@ impl std::fmt::Display for Cause {
     }
 }
 
+/// Somebody asked for the end before the robot was there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EndedWhileStarting;
+
+impl std::fmt::Display for EndedWhileStarting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("asked to end while starting")
+    }
+}
+
+impl Error for EndedWhileStarting {}
+
 /// Outcome of a run.
 #[derive(Debug, Default)]
 pub struct RunOutcome {
@@ -125,6 +137,7 @@ pub fn run(order: &RunOptions, stop: Stop, console: &Console) -> Result<RunOutco
     }
     // From here errors name the files of the operator; the processes read the copy.
     let theirs = Setup::load(&order.config, &order.scene)?.on_bus(order.bus.is_classic())?;
+    refuse_config_inside(&order.config, &order.dir)?;
     let space = Space::create(&order.dir)?;
     let config = space.dir().join(ipc::CONFIG);
     let _ = std::fs::remove_dir_all(&config); // of a run that was killed
@@ -162,6 +175,21 @@ pub fn run(order: &RunOptions, stop: Stop, console: &Console) -> Result<RunOutco
         mend(log, console);
     }
     Ok(outcome)
+}
+
+/// The end of a run removes what it put into its directory: no place for the operator's configuration.
+fn refuse_config_inside(config: &Path, dir: &Path) -> Result<(), String> {
+    let inside = match (config.canonicalize(), dir.canonicalize()) {
+        (Ok(config), Ok(dir)) => config.starts_with(dir),
+        _ => false, // a directory that is still to be made holds nothing
+    };
+    let (config, dir) = (config.display(), dir.display());
+    if inside {
+        return Err(format!(
+            "--config {config}: lies in the run directory, --dir {dir}; choose another --dir"
+        ));
+    }
+    Ok(())
 }
 
 /// Gives the parts of a log their index that the death of the logger cost.

@@ -1,7 +1,7 @@
 //! Detection of hung processes: alive, but no longer writing. Pure: time is an argument.
 //!
-//! In real time every process writes something in every cycle. Who does not for [`HANG`] hangs; if several do, the first one
-//! in the order in which they drive each other is named: who is driven has nothing to write about.
+//! In real time every process writes something in every cycle. One that does not for [`HANG`] hangs; if several do, the first one
+//! in the order in which they drive each other is named: those that it drives have nothing to write about.
 
 use messages::Process;
 use realtime::clock::SECOND;

@@ -22,7 +22,7 @@ use super::hearing::Hearing;
 use super::manager::{ENVIRONMENT, Manager};
 use super::pulse::Pulse;
 use super::view::View;
-use super::{Cause, RunOutcome};
+use super::{Cause, EndedWhileStarting, RunOutcome};
 
 /// Between two looks at the processes.
 const LOOK: Duration = Duration::from_millis(10);
@@ -109,8 +109,8 @@ struct Supervisor {
 }
 
 impl Supervisor {
-    /// Starts the processes one after the other, in the order of `start_order`; each has built everything before the next begins. Who waits longer for
-    /// peers, `peer_timeout`, waits longer for their start, too.
+    /// Starts the processes one after the other, in the order of `start_order`; each has built everything before the next begins. A longer wait for
+    /// peers, `peer_timeout`, is a longer wait for their start, too.
     fn start(&mut self, setup: &Setup) -> Result<(), Box<dyn Error>> {
         let patience = START_PATIENCE.max(self.patience);
         for &process in &setup.system.start_order {
@@ -131,7 +131,7 @@ impl Supervisor {
 
     /// Nobody waits for a robot that is not there yet: who asks for the end while it starts has it at once.
     fn end_if_asked(&self) -> Result<(), Box<dyn Error>> {
-        if self.stop.asked() { Err("asked to end while starting".into()) } else { Ok(()) }
+        if self.stop.asked() { Err(EndedWhileStarting.into()) } else { Ok(()) }
     }
 
     fn spawn(&mut self, process: Process) -> Result<(), Box<dyn Error>> {
@@ -217,9 +217,9 @@ impl Supervisor {
             let now = clock::now();
             self.manager.look(now);
             let mut seen = CourseObservation { finished: self.bury(now), ..CourseObservation::default() };
-            // Who hangs is treated as who died.
+            // A process that hangs is treated as one that died.
             hearing.listen(operator.statistics().connected);
-            // The last records of who died are heard after the death.
+            // The last records of a process are heard after its death.
             let Self { pulse, children, .. } = self;
             let alive = |p: Process| children.iter().any(|(child, _)| *child == p);
             if let Some((process, ns)) = pulse.look(now, |p| alive(p) && hearing.heard(p)) {

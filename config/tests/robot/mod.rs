@@ -6,8 +6,7 @@ use multibody::{Data, Model};
 /// A shipped robot and its model.
 pub(crate) fn load(name: &str) -> (Robot, Model) {
     let robot = Robot::load(&config::root(None).join("robots").join(name)).unwrap();
-    let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-    let model = Model::from_urdf(&robot.urdf, &robot.torso, &names).unwrap();
+    let model = robot.model().unwrap();
     (robot, model)
 }
 

@@ -1,4 +1,4 @@
-//! First stage of figure 5.8: contacts of the feet, what they resist, and their position-control inputs.
+//! Contacts of the feet (figure 5.8): what they resist, and their position-control inputs.
 
 use messages::Sensors;
 use nalgebra::{Matrix3, Vector2, Vector3, Vector6};

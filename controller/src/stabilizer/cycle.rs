@@ -9,7 +9,7 @@ use crate::plan_follower::Desired;
 use crate::task_space::TaskSpace;
 use crate::torso;
 
-/// Cycles that may be missed and are made good for, one after the other; the joint loop carries on meanwhile.
+/// Cycles that may be missed and are caught up on, one after the other; the joint loop carries on meanwhile.
 const MISSED_CYCLES: u64 = 20;
 
 /// Time base of the controller.

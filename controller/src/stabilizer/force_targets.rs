@@ -1,4 +1,4 @@
-//! Second stage of figure 5.8: force targets of the feet (5.2)-(5.22).
+//! Force targets of the feet (figure 5.8), (5.2)-(5.22).
 
 use nalgebra::{Rotation3, Vector2, Vector3, Vector6};
 

@@ -1,4 +1,4 @@
-//! Last stage of figure 5.8: task velocities to joint speeds (5.34)-(5.39), and the joints without a task: toes, camera
+//! Joint speeds (figure 5.8): of task velocities (5.34)-(5.39), and the joints without a task: toes, camera
 //! head, arms, and those that go to their comfortable angles.
 
 use config::Robot;

@@ -1,4 +1,4 @@
-//! Fourth stage of figure 5.8: task velocities with their modification (5.33), (5.35), and how modifications move the soles
+//! Task velocities (figure 5.8) with their modification (5.33), (5.35), and how modifications move the soles
 //! (5.30).
 
 use nalgebra::{Matrix3, Matrix6, Rotation3, SMatrix, Vector3};

@@ -135,7 +135,7 @@ impl Telemetry {
     }
 }
 
-/// Gait state of the robot. Who lies, or was stopped, is in none.
+/// Gait state of the robot. None for a robot that has fallen or was stopped.
 fn gait(sensors: &Sensors, outcome: &CycleOutcome<'_>, t: f64) -> GaitState {
     let CycleOutcome { plan, watch, estimate, .. } = *outcome;
     // Without a plan nobody watches the inclination; an IMU that says nothing yet is no fall.

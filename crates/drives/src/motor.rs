@@ -55,11 +55,4 @@ impl Motor {
         let gone = -(-h / self.time_constant()).exp_m1();
         current + (self.steady_current(voltage, speed) - current) * gone
     }
-
-    /// \[A\] Mean current of those `h` \[s\], exactly: it gives the impulse of the torque.
-    pub fn mean_current(&self, current: f64, voltage: f64, speed: f64, h: f64) -> f64 {
-        let x = h / self.time_constant();
-        let gone = if x < 1e-4 { x * (0.5 - x / 6.0) } else { 1.0 + (-x).exp_m1() / x };
-        current + (self.steady_current(voltage, speed) - current) * gone
-    }
 }

@@ -1,5 +1,6 @@
 //! CAN interfaces of this machine by name, and what to do when one cannot be used.
 
+use rustix::io::Errno;
 use socketcan::{CanFdSocket, Socket};
 use std::fmt;
 use std::io;
@@ -9,16 +10,6 @@ use std::path::Path;
 const TYPE_CAN: &str = "280";
 /// Bit of /sys/class/net/NAME/flags: the interface is up.
 const UP: u32 = 1;
-
-/// Errors of the operating system, by number.
-const EPERM: i32 = 1;
-const EACCES: i32 = 13;
-const ENODEV: i32 = 19;
-const EINVAL: i32 = 22;
-const EAFNOSUPPORT: i32 = 97;
-const ENETDOWN: i32 = 100;
-/// The interface's queue is full: wait and send again.
-pub(crate) const ENOBUFS: i32 = 105;
 
 /// Problem of an interface, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,25 +27,25 @@ impl InterfaceError {
 
     /// Meaning of an error of the operating system for `interface`.
     pub fn of(interface: &str, error: &io::Error) -> Self {
-        let why = match error.raw_os_error() {
-            Some(EAFNOSUPPORT) => {
+        let why = match Errno::from_io_error(error) {
+            Some(Errno::AFNOSUPPORT) => {
                 "this kernel has no CAN (AF_CAN): load it with `modprobe can_raw` and, for \
                                    virtual lines, `modprobe vcan`"
                     .into()
             }
-            Some(ENODEV) => format!(
+            Some(Errno::NODEV) => format!(
                 "there is no such interface; a virtual one is made with `ip link add dev {interface} type vcan`"
             ),
-            Some(ENETDOWN) => format!(
+            Some(Errno::NETDOWN) => format!(
                 "the interface is down; `ip link set {interface} up` (a real one first needs its bit rate: \
                  `ip link set {interface} type can bitrate 1000000`)"
             ),
-            Some(EPERM | EACCES) => {
+            Some(Errno::PERM | Errno::ACCESS) => {
                 "not permitted; SocketCAN asks for no right of its own: rules of a container or service forbid it \
                  (seccomp, SELinux, AppArmor)"
                     .into()
             }
-            Some(EINVAL) => format!(
+            Some(Errno::INVAL) => format!(
                 "it does not take this frame; CAN FD needs `ip link set {interface} mtu 72` while it is down"
             ),
             _ => error.to_string(),
@@ -89,7 +80,7 @@ pub(crate) fn open(name: &str) -> Result<CanFdSocket, InterfaceError> {
     let flags = about("flags");
     let flags = u32::from_str_radix(flags.trim().trim_start_matches("0x"), 16);
     if flags.is_ok_and(|flags| flags & UP == 0) {
-        return Err(InterfaceError::of(name, &io::Error::from_raw_os_error(ENETDOWN)));
+        return Err(InterfaceError::of(name, &Errno::NETDOWN.into()));
     }
     CanFdSocket::open(name).map_err(|e| InterfaceError::of(name, &e))
 }

@@ -4,7 +4,8 @@
 //! kernel (SO_TIMESTAMPNS, the clock candump stamps with): when the frame passed the socket layer.
 
 use crate::capture::{CLASSIC_BYTES, Captured, FrameType};
-use crate::interface::{self, ENOBUFS, InterfaceError};
+use crate::interface::{self, InterfaceError};
+use rustix::io::Errno;
 use socketcan::frame::{can_frame_default, canfd_frame_default};
 use socketcan::{
     CanAnyFrame, CanFdFrame, CanFdSocket, CanFrame, EmbeddedFrame, Frame, ShouldRetry, Socket, SocketOptions,
@@ -171,7 +172,8 @@ impl Player {
         for _ in 0..PATIENCE.1 {
             match self.sockets[line].write_frame(&ready) {
                 Ok(()) => return Ok(()),
-                Err(e) if e.raw_os_error() == Some(ENOBUFS) || e.should_retry() => {
+                // The queue of the interface is full: wait and send again.
+                Err(e) if Errno::from_io_error(&e) == Some(Errno::NOBUFS) || e.should_retry() => {
                     std::thread::park_timeout(PATIENCE.0);
                 }
                 Err(e) => return Err(InterfaceError::of(name, &e)),

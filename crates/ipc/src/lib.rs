@@ -9,6 +9,7 @@
 //!   [`Doorbell`]: how a control cycle wakes the thread that moves them.
 //! - [`StopLine`], [`StopButton`]: the emergency stop's own socket, which needs nothing of all this.
 //! - [`Run`]: what a process started with `gangwerk PROCESS --run DIR` needs to know.
+//! - [`find_robot`]: search for the robot that runs, for programs beside it.
 //!
 //! Why it is built this way: `docs/decisions/0002-data-plane.md`.
 
@@ -20,6 +21,7 @@ mod queue;
 mod reader;
 mod run;
 mod run_dir;
+mod search;
 mod slot;
 mod space;
 mod stop_line;
@@ -31,6 +33,7 @@ pub use queue::{Doorbell, MAX_MESSAGE, QueueReceiver, QueueSender, QueueWaiter};
 pub use reader::Reader;
 pub use run::{Mode, Run};
 pub use run_dir::{CONFIG, default_dir, publish_file, withdraw_file, wrong_dir};
+pub use search::{NoRobot, find_robot};
 pub use slot::writers;
 pub use space::{Space, owner, supervisor};
 pub use stop_line::{Asker, Datagram, StopAnswer, StopButton, StopLine, StopName};

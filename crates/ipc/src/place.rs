@@ -3,10 +3,11 @@
 use crate::error::{IpcError, because};
 use crate::run_dir::{NAMES, RunDir};
 use iceoryx2::prelude::*;
+use messages::{FNV1A, fnv1a};
 use rustix::fs::OFlags;
 use rustix::rand::{GetRandomFlags, getrandom};
 use std::io::{Read, Write};
-use std::os::unix::fs::DirBuilderExt;
+use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path as StdPath, PathBuf};
 
 /// Shared memory objects appear here.
@@ -24,8 +25,7 @@ pub(crate) struct RunPlace {
 
 /// 48 bits of hash (FNV-1a) of a run directory's full path.
 pub(crate) fn key(dir: &StdPath) -> u64 {
-    let bytes = dir.as_os_str().as_encoded_bytes().iter();
-    bytes.fold(0xcbf2_9ce4_8422_2325u64, |hash, b| (hash ^ u64::from(*b)).wrapping_mul(0x100_0000_01b3)) >> 16
+    fnv1a(FNV1A, dir.as_os_str().as_encoded_bytes().iter().copied()) >> 16
 }
 
 /// The full path of a directory, whether it is still there or not.
@@ -96,6 +96,30 @@ impl RunPlace {
         config.global.node.cleanup_dead_nodes_on_creation = false;
         config.global.node.cleanup_dead_nodes_on_destruction = false;
         Ok(config)
+    }
+
+    /// After the first node: makes private what iceoryx2 makes for everybody, its count of nodes. Who cuts it to nothing hangs whoever
+    /// makes a node, or clears up after one.
+    ///
+    /// In its place comes a copy, because somebody may have opened it by now.
+    pub(crate) fn close_to_others(&self) -> Result<(), IpcError> {
+        let user = rustix::process::geteuid().as_raw();
+        let is_open = |path: &StdPath| {
+            let found = path.symlink_metadata();
+            found.is_ok_and(|m| m.is_file() && m.uid() == user && m.mode() & 0o077 != 0)
+        };
+        let told = |path: &StdPath, e: std::io::Error| IpcError::Other(format!("{}: {e}", path.display()));
+        for entry in std::fs::read_dir(SHM).map_err(|e| told(StdPath::new(SHM), e))?.flatten() {
+            let path = entry.path();
+            if !entry.file_name().as_encoded_bytes().starts_with(self.prefix.as_bytes()) || !is_open(&path) {
+                continue;
+            }
+            let (copy, mut options) = (path.with_extension("closed"), std::fs::OpenOptions::new());
+            let made = options.write(true).create_new(true).mode(0o600).open(&copy);
+            let written = made.and_then(|mut file| file.write_all(&std::fs::read(&path)?));
+            written.and_then(|()| std::fs::rename(&copy, &path)).map_err(|e| told(&path, e))?;
+        }
+        Ok(())
     }
 
     /// Removes what former runs in this directory left behind. Only under the supervisor's lock.

@@ -107,7 +107,7 @@ impl<T: Record> Reader<T> {
     /// The record to act on next, once per cycle of the writer: the newest, as [`Reader::refresh`], unless this reader was
     /// stopped for more than `stall` records; then those that it missed in their order, as far as the ring still holds them.
     ///
-    /// Who is merely too slow is not made slower: what is more than twice as far behind as it was at first is given up.
+    /// A reader that is merely too slow is not made slower: what is more than twice as far behind as it was at first is given up.
     pub fn refresh_in_order(&mut self, stall: u64) -> bool {
         let behind = self.count_of_newest().map_or(0, |count| count.saturating_sub(self.number));
         if behind <= 1 {
@@ -125,7 +125,7 @@ impl<T: Record> Reader<T> {
         self.follow().is_some()
     }
 
-    /// Reading in order: [`Reader::refresh_in_order`] makes good for what was missed, and more waits.
+    /// Reading in order: [`Reader::refresh_in_order`] catches up on what was missed, and more waits.
     pub fn is_behind(&self) -> bool {
         self.missed > 0
     }

@@ -13,9 +13,11 @@ use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
 /// What a run puts there, besides a `.lock` of each process.
-const FILES: [&str; 6] = ["run", "run.new", NAMES, "names.new", "broker.sock", "broker.tcp"];
+const FILES: [&str; 6] = [RUN, "run.new", NAMES, "names.new", "broker.sock", "broker.tcp"];
 /// File with the part of the names in shared memory that is one run's own.
 pub(crate) const NAMES: &str = "names";
+/// Parameters of the run's processes.
+const RUN: &str = "run";
 /// The configuration of the run: read once by the supervisor, and by nobody from anywhere else.
 pub const CONFIG: &str = "config";
 
@@ -81,6 +83,25 @@ impl RunDir {
                 Err(told(path, &format!("cannot be made: {e}; choose another one with --dir")))
             }
             _ => Self::open(path),
+        }
+    }
+
+    /// Refuses a directory in which something has the name of what a run puts there, and removes at its end, if no run put it there:
+    /// a run leaves `names` beside it.
+    pub(crate) fn refuse_others(&self) -> Result<(), IpcError> {
+        let there = |name: &str| rustix::fs::statat(&self.fd, name, AtFlags::SYMLINK_NOFOLLOW).is_ok();
+        let mut names = String::new();
+        let read = self.file(NAMES, OFlags::RDONLY).map(|file| file.take(7).read_to_string(&mut names));
+        // Empty: the power failed before it was on the disk.
+        let of_a_run = matches!(read, Ok(Ok(0 | 6))) && names.bytes().all(|c| c.is_ascii_hexdigit());
+        match [NAMES, CONFIG, RUN].into_iter().find(|name| !of_a_run && there(name)) {
+            None => Ok(()),
+            Some(name) => Err(told(
+                &self.path,
+                &format!(
+                    "is not a run directory: no run made the `{name}` in it; choose another one with --dir"
+                ),
+            )),
         }
     }
 
@@ -245,6 +266,28 @@ mod tests {
         assert_eq!(std::fs::read_to_string(path.join("x.url")).unwrap(), "two", "somebody else's by now");
         withdraw_file(&path, "x.url", "two");
         assert!(!path.exists());
+    }
+
+    /// `--dir .` removed the `config` of the project, and then the project's directory.
+    #[test]
+    fn what_no_run_put_there_is_refused_and_stays() {
+        for name in ["config", "run", "names"] {
+            let ground = Ground::new(&format!("own-{name}"));
+            let (path, precious) = (ground.0.join("project"), ground.0.join("project").join(name));
+            let dir = RunDir::make(&path).unwrap();
+            std::fs::write(&precious, "precious").unwrap();
+            refused(dir.refuse_others(), &format!("is not a run directory: no run made the `{name}`"));
+            refused(crate::Space::create(&path).map(drop), "is not a run directory");
+            let left: Vec<_> = std::fs::read_dir(&path).unwrap().map(|e| e.unwrap().file_name()).collect();
+            assert_eq!(left, [name]);
+            assert_eq!(std::fs::read_to_string(&precious).unwrap(), "precious");
+        }
+        // What a killed run left is no reason.
+        let ground = Ground::new("killed");
+        let dir = RunDir::make(&ground.0.join("run")).unwrap();
+        std::fs::create_dir(dir.path.join("config")).unwrap();
+        std::fs::write(dir.path.join("names"), "00c0de").unwrap();
+        dir.refuse_others().unwrap();
     }
 
     #[test]

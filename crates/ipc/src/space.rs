@@ -80,7 +80,7 @@ impl Space {
     }
 
     fn create_topics(dir: &StdPath, topics: &[Topic]) -> Result<Self, IpcError> {
-        RunDir::make(dir)?;
+        RunDir::make(dir)?.refuse_others()?;
         let mut place = RunPlace::of(dir)?;
         // A run that is ending removes the directory under our feet: then it is made once more.
         let lock = Lock::take(&place.dir, SUPERVISOR).or_else(|e| {
@@ -105,6 +105,7 @@ impl Space {
         place.begin()?;
         place.make_root()?;
         let node = node::<RealTime>(&place, SUPERVISOR)?;
+        place.close_to_others()?;
         let mut made = Vec::new();
         for topic in topics {
             made.extend(with_type(topic.name, Create { node: &node }).unwrap_or_else(|| Ok(Vec::new()))?);
@@ -269,6 +270,20 @@ mod tests {
     fn left(place: &RunPlace) -> usize {
         let names = std::fs::read_dir("/dev/shm").unwrap().map(|e| e.unwrap().file_name());
         names.filter(|name| name.to_string_lossy().starts_with(&place.prefix)).count()
+    }
+
+    /// Another user could cut one of them to nothing, and the supervisor hung when it cleared up after an observer.
+    #[test]
+    fn nobody_else_may_open_what_is_shared() {
+        use std::os::unix::fs::MetadataExt;
+        let dir = std::env::temp_dir().join(format!("gangwerk-ipc-{}-closed", std::process::id()));
+        let system = Space::create(&dir).unwrap();
+        let lowlevel = Space::open(&dir, Process::Lowlevel).unwrap();
+        let _queue = lowlevel.queue_receiver("x").unwrap();
+        let files = std::fs::read_dir("/dev/shm").unwrap().map(Result::unwrap);
+        let own = files.filter(|f| f.file_name().to_string_lossy().starts_with(&system.place.prefix));
+        let open: Vec<_> = own.filter(|f| f.metadata().is_ok_and(|m| m.mode() & 0o077 != 0)).collect();
+        assert!(open.is_empty(), "{open:?}");
     }
 
     /// Memory the objects really take \[B\].

@@ -50,8 +50,7 @@ impl StopName {
     /// # Errors
     /// /proc/net/unix cannot be read.
     pub fn all() -> io::Result<Vec<Self>> {
-        let table = std::fs::read_to_string("/proc/net/unix")?;
-        Ok(table.lines().filter_map(|line| Self::parse(line.split_once(" @")?.1)).collect())
+        Ok(sockets()?.lines().filter_map(|line| Self::parse(line.split_once(" @")?.1)).collect())
     }
 
     /// Whether this is a line of a robot in `dir`, whoever runs it.
@@ -75,7 +74,7 @@ impl StopName {
 
     /// Holders of this name, in words: those that may be looked at.
     fn holder(&self) -> String {
-        let table = std::fs::read_to_string("/proc/net/unix").unwrap_or_default();
+        let table = sockets().unwrap_or_default();
         let line = table.lines().find(|line| line.ends_with(&format!(" @{}", self.text)));
         let inode = line.and_then(|line| line.split_whitespace().nth(6));
         let socket = format!("socket:[{}]", inode.unwrap_or("?"));
@@ -96,6 +95,11 @@ impl StopName {
             None => format!("a process of another user ({socket})"),
         }
     }
+}
+
+/// The kernel's table of Unix sockets. Anybody may put a name of any bytes into it, and hides no robot with one that is not UTF-8.
+fn sockets() -> io::Result<String> {
+    Ok(String::from_utf8_lossy(&std::fs::read("/proc/net/unix")?).into_owned())
 }
 
 /// Sender of a datagram, as the kernel saw it; zeros if unknown (another namespace).
@@ -352,6 +356,18 @@ mod tests {
         let _squatter = UnixDatagram::bind_addr(&StopName::own(&dir).address().unwrap()).unwrap();
         let text = StopLine::bind(&dir).unwrap_err().to_string();
         assert!(text.contains(&format!("pid {} ", std::process::id())), "{text}");
+    }
+
+    /// One socket of any user, with such a name, hid every robot from everybody's emergency stop.
+    #[test]
+    fn a_name_that_is_not_utf8_hides_no_robot() {
+        let dir = dir("hidden");
+        let name = [&b"\xFF\xFE"[..], dir.as_os_str().as_encoded_bytes()].concat();
+        let strange = SocketAddr::from_abstract_name(name).unwrap();
+        let _strange = UnixDatagram::bind_addr(&strange).unwrap();
+        let _line = StopLine::bind(&dir).unwrap();
+        assert!(StopName::all().unwrap().contains(&StopName::own(&dir)));
+        assert!(StopLine::bind(&dir).unwrap_err().to_string().contains("pid"));
     }
 
     #[test]

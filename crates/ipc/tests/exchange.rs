@@ -221,7 +221,7 @@ fn wrong_writer_and_wrong_type_are_refused() {
     assert!(matches!(error, IpcError::Other(_)));
 }
 
-/// Who was stopped makes good for what it missed; who is only slow takes the newest, and is not made slower.
+/// A reader that was stopped catches up on what it missed; one that is only slow takes the newest, and is not made slower.
 #[test]
 fn a_reader_that_was_stopped_takes_what_it_missed_in_order() {
     let dir = RunDir::new("in_order");

@@ -1,9 +1,37 @@
 //! Answers to commands: accepted, or refused with the reason and the limit, by the process that has the last word.
 //!
 //! A [`Verdict`] is made in a control cycle, so it is plain numbers; its text is made later, by a thread that may
-//! allocate. The numbers of the reasons travel in the protocol (`docs/protocol.md`) and are never given twice.
+//! allocate. Its number in the protocol (`docs/protocol.md`) is one of [`code`].
 
 use crate::{Command, Detail, EventCode, Live};
+
+/// Numbers of refusals in the protocol, the broker's own first. They travel, and are never given twice; 0: accepted.
+#[allow(missing_docs, reason = "names of docs/protocol.md")]
+pub mod code {
+    pub const MALFORMED: u8 = 1;
+    pub const TIMED_OUT: u8 = 2;
+    pub const TOO_MANY_CONNECTIONS: u8 = 3;
+    pub const NOT_A_COMMAND: u8 = 4;
+    pub const OUT_OF_RANGE: u8 = 5;
+    pub const BUSY: u8 = 6;
+    pub const VERSION: u8 = 7;
+    pub const NO_ACCESS: u8 = 8;
+    pub const LEASE_HELD: u8 = 9;
+    pub const NOBODY_LISTENS: u8 = 10;
+    pub const NO_ANSWER: u8 = 11;
+    pub const NOT_AUTHENTIC: u8 = 12;
+    pub const NO_PARAMETER: u8 = 13;
+    // Of the process that decides.
+    pub const TOO_OLD: u8 = 20;
+    pub const FROM_THE_FUTURE: u8 = 21;
+    pub const REPLAYED: u8 = 22;
+    pub const LEASE_LOST: u8 = 23;
+    pub const LIMIT: u8 = 30;
+    pub const NOT_STANDING: u8 = 31;
+    pub const NOT_NOW: u8 = 32;
+    pub const EVENT: u8 = 33;
+    pub const LOADED: u8 = 34;
+}
 
 /// Outcome of a command.
 pub type Verdict = Result<(), Reason>;
@@ -63,15 +91,15 @@ impl Reason {
     /// Number in the protocol.
     pub const fn code(&self) -> u8 {
         match self {
-            Self::TooOld { .. } => 20,
-            Self::FromTheFuture { .. } => 21,
-            Self::Replayed { .. } => 22,
-            Self::LeaseLost => 23,
-            Self::Limit { .. } => 30,
-            Self::NotStanding => 31,
-            Self::NotNow => 32,
-            Self::Event { .. } => 33,
-            Self::Loaded { .. } => 34,
+            Self::TooOld { .. } => code::TOO_OLD,
+            Self::FromTheFuture { .. } => code::FROM_THE_FUTURE,
+            Self::Replayed { .. } => code::REPLAYED,
+            Self::LeaseLost => code::LEASE_LOST,
+            Self::Limit { .. } => code::LIMIT,
+            Self::NotStanding => code::NOT_STANDING,
+            Self::NotNow => code::NOT_NOW,
+            Self::Event { .. } => code::EVENT,
+            Self::Loaded { .. } => code::LOADED,
         }
     }
 

@@ -11,7 +11,7 @@ use crate::command_answer::Reason;
 pub const MAX_AGE: u64 = 100_000_000;
 /// Lead of the sender's clock that is still none \[ns\].
 const MAX_LEAD: u64 = 1_000_000;
-/// Lifetime of a command lease without a sign of life of its holder \[ns\].
+/// Lifetime of a command lease without a heartbeat of its holder \[ns\].
 pub const LEASE: u64 = 500_000_000;
 
 /// Sender and time of a command.

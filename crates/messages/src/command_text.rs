@@ -250,8 +250,14 @@ impl FieldInfo {
             return Ok(());
         }
         let why = if x.is_finite() { "is outside of" } else { "is not a finite number; it must lie in" };
-        Err(format!("{command}: {name} = {x} {why} [{lo}, {hi}] {unit}"))
+        Err(format!("{command}: {name} = {} {why} [{lo}, {hi}] {unit}", number_text(x)))
     }
+}
+
+/// A number in a sentence; with a power of ten where it would else have hundreds of digits.
+pub fn number_text(x: f64) -> String {
+    let plain = !x.is_finite() || x == 0.0 || (1e-9..1e12).contains(&x.abs());
+    if plain { x.to_string() } else { format!("{x:e}") }
 }
 
 impl Command {

@@ -48,7 +48,7 @@ events! {
     TargetsStale = 6, Cycles, "joint targets are too old", "{n} cycles",
         "the stabilizer is late or gone";
     /// A target was not finite; detail: joint index.
-    TargetNotFinite = 7, Joint, "a joint target is not a number; the last good one is kept", "{joint}",
+    TargetNotFinite = 7, Joint, "a joint target is not a number; controlled stop", "{joint}",
         "`gangwerk replay` of the log shows where it comes from";
     /// A target left its range, or asked for more speed or acceleration than the joint has, and was held back; detail: joint
     /// index.

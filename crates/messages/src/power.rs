@@ -24,7 +24,7 @@ record! {
 }
 
 record! {
-    /// The sign of life of the joint loop. Written by lowlevel once per cycle.
+    /// The heartbeat of the joint loop. Written by lowlevel once per cycle.
     record WatchdogReset {
         /// Tick of the bus cycle.
         header: Header,

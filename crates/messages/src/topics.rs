@@ -1,6 +1,7 @@
 //! The table of topics: the whole data plane on one page.
 
 use crate::command::Domain;
+use crate::hash::{FNV1A, fnv1a};
 use crate::record::Record;
 use crate::{
     BusFrames, CommandTaken, ControllerState, CycleInputs, CycleStats, Event, JointTables, JointTargets,
@@ -129,7 +130,7 @@ topics! {
     /// Trajectories to the end of the horizon.
     PLAN: Plan = "plan", Planner -> [Controller], wakes [],
         0 Hz, stale 0, depth 8, logged true;
-    /// Sign of life of the planner; in lockstep the controller waits for it.
+    /// Heartbeat of the planner; in lockstep the controller waits for it.
     PLANNER_TICK: Event = "planner_tick", Planner -> [Controller], wakes [Controller],
         1000 Hz, stale 100, depth 4, logged false;
     /// Targets of the joints.
@@ -147,7 +148,7 @@ topics! {
     /// Parameters of the stabilizer.
     PARAMETERS_CONTROLLER: Parameters = "parameters/controller", Controller -> [], wakes [],
         0 Hz, stale 0, depth 8, logged true;
-    /// Sign of life of the joint loop.
+    /// Heartbeat of the joint loop.
     WATCHDOG_RESET: WatchdogReset = "watchdog_reset", Lowlevel -> [Watchdog], wakes [Watchdog],
         1000 Hz, stale 3, depth 256, logged true;
     /// State of the motor supply.
@@ -255,12 +256,8 @@ impl Topic {
 
 /// Hash (FNV-1a) of the layout of a record type: two programs may share a topic only if it is equal.
 pub fn schema_hash<T: Record>() -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325u64;
-    let mut eat = |s: &str| {
-        for b in s.bytes().chain([0]) {
-            hash = (hash ^ u64::from(b)).wrapping_mul(0x100_0000_01b3);
-        }
-    };
+    let mut hash = FNV1A;
+    let mut eat = |s: &str| hash = fnv1a(hash, s.bytes().chain([0]));
     T::describe(&mut |name, fields| {
         eat(name);
         for (type_name, field) in fields {

@@ -48,6 +48,8 @@ fn errors_say_what_to_do() {
     has(refused("walk/velocity", ""), &["give it numbers", "forward=<m/s> left=<m/s> turn=<rad/s>"]);
     has(refused("walk/step", "length=0.3"), &["duration is missing: a number in [0.3, 5] s"]);
     has(refused("walk/step", "length=0.3 duration=9"), &["duration = 9 is outside of [0.3, 5] s"]);
+    // Regression: three hundred digits.
+    has(refused("walk/step", "length=0.3 duration=1e300"), &["duration = 1e300 is outside of [0.3, 5] s"]);
     has(refused("walk/stop", "now=1"), &["takes no numbers"]);
     for bad in ["NaN", "nan", "inf", "-inf", "1e999"] {
         has(

@@ -11,7 +11,7 @@
 //! The thesis carries velocities in body axes and gives no recursion for the products; here they are those of errata
 //! F1, in world axes, where the "- w_rel x" terms vanish.
 
-use nalgebra::{IsometryMatrix3, Vector3};
+use nalgebra::{IsometryMatrix3, UnitQuaternion, Vector3};
 
 use crate::body::JointKernel;
 use crate::data::{BodyMotion, BodyPlace, Data, with_turn};
@@ -110,6 +110,13 @@ impl Model {
         let p = &data.places[frame.body];
         let r: Vector3<f64> = (p.r + p.a * frame.r).into();
         IsometryMatrix3::from_parts(r.into(), (p.a * frame.rotation).into())
+    }
+
+    /// The same as position \[m\] and quaternion (x, y, z, w).
+    pub fn frame_place(&self, data: &Data, frame: &Frame) -> ([f64; 3], [f64; 4]) {
+        let pose = self.frame_pose(data, frame);
+        let turn = UnitQuaternion::from_rotation_matrix(&pose.rotation);
+        (pose.translation.vector.into(), turn.coords.into())
     }
 
     /// \[m\] Origin of a frame in the world, after [`Model::forward_kinematics`].

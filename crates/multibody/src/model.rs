@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::body::{Body, Composite, NamedLink, kernel_rotation};
+use crate::body::{Body, Composite, JointKernel, NamedLink, kernel_rotation};
 use crate::error::ModelError;
 use crate::gyro::Gyro;
 use crate::space::{Mat3, V3};
@@ -120,6 +120,11 @@ impl Model {
     /// Joint that carries a joint's parent body; none if that is the base.
     pub fn parent_joint(&self, joint: usize) -> Option<usize> {
         self.bodies[joint + 1].parent.checked_sub(1)
+    }
+
+    /// Is a joint (0..n) prismatic?
+    pub fn slides(&self, joint: usize) -> bool {
+        matches!(self.bodies[joint + 1].kind, JointKernel::Along(_))
     }
 
     /// Names of all links, in the order in which they were added.

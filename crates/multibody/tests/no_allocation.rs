@@ -1,40 +1,14 @@
 //! Nothing allocates after the model and its data are made.
-#![allow(
-    unsafe_code,
-    reason = "a counting allocator can only be written with GlobalAlloc, which is unsafe to implement"
-)]
 
 mod legs;
 mod tree;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
 use multibody::{Data, Rotor};
 use nalgebra::{Matrix3xX, Matrix6xX, Vector3};
-
-struct Counting;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-// SAFETY: every call goes unchanged to the system's allocator; counting touches a plain thread-local number.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.set(COUNT.get() + 1);
-        // SAFETY: the caller keeps the contract of `alloc`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        // SAFETY: the block came from `System.alloc` with this layout.
-        unsafe { System.dealloc(block, layout) }
-    }
-}
+use realtime::{CountingAllocator, allocations};
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 #[test]
 fn every_function_works_in_the_memory_made_at_the_start() {
@@ -62,7 +36,7 @@ fn every_function_works_in_the_memory_made_at_the_start() {
     let leg = legs::leg(1.0);
     let (stance, high) = (legs::posture(1.0, [0.1; 6]), Vector3::repeat(1e3));
 
-    let before = COUNT.get();
+    allocations::arm();
     model.integrate(&q, &v, 1e-3, &mut next);
     model.configuration_rate(&q, &v, &mut rate);
     model.forward_kinematics(&mut d, &q);
@@ -91,10 +65,10 @@ fn every_function_works_in_the_memory_made_at_the_start() {
     let base = model.base_dynamics(&mut d, &q, &v, &a[6..]);
     let (rotation, position) = leg.pose(&stance);
     let legs = (leg.angles(&rotation, &position), leg.angles(&rotation, &high));
-    let allocations = COUNT.get() - before;
+    let [counted, _] = allocations::counted();
     let _ = std::hint::black_box((seen, legs, whole, base, next, rate, spin, carried));
-    assert_eq!(allocations, 0);
+    assert_eq!(counted, 0);
 
     drop(Box::new(std::hint::black_box(1)));
-    assert!(COUNT.get() > before, "the counter counts");
+    assert!(allocations::counted()[0] > 0, "the counter counts");
 }

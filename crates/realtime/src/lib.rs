@@ -4,6 +4,7 @@
 //! - [`clock`]: monotonic now and absolute sleep. [`Period`]: a grid of wake-ups and what happens on overrun.
 //! - [`CycleMeter`]: lateness, execution time, page faults and allocations of a cycle, as `cycle_stats` publishes them.
 //! - [`CountingAllocator`]: counts what the cycle's thread allocates after arming.
+//! - [`Bucket`]: how many messages per second somebody may send.
 //! - [`black_box`], [`last_words`]: what a process leaves when it dies.
 //! - [`Stop`]: the request to end, by signal.
 //! - [`subnormals`]: whether arithmetic met numbers that cost a hundred times as much.
@@ -11,6 +12,7 @@
 
 pub mod allocations;
 pub mod black_box;
+mod bucket;
 pub mod clock;
 mod cyclictest;
 mod histogram;
@@ -24,10 +26,11 @@ pub mod subnormals;
 mod thread;
 
 pub use allocations::CountingAllocator;
+pub use bucket::Bucket;
 pub use cyclictest::cyclictest;
 pub use histogram::Histogram;
 pub use meter::CycleMeter;
 pub use period::{CycleVerdict, Period};
 pub use preflight::{Check, Grade, open_files, preflight};
-pub use stop::{Stop, end_with_reader, terminate};
+pub use stop::{Stop, end_with_reader, ignore_sigxfsz, terminate};
 pub use thread::{Granted, ThreadSchedule, prepare_side_thread, prepare_thread, run_on_any_core};

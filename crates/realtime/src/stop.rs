@@ -1,5 +1,5 @@
-//! The request to end: SIGTERM, SIGINT, SIGHUP and the parent's death, taken by a thread of their own so that no control
-//! cycle is interrupted.
+//! The request to end: SIGTERM, SIGINT, SIGQUIT, SIGTSTP, SIGHUP and the parent's death, taken by a thread of their own so
+//! that no control cycle is interrupted.
 
 use std::io;
 use std::sync::Arc;
@@ -83,6 +83,13 @@ pub fn end_with_reader() {
     unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
 }
 
+/// A file that reaches the limit of its size (`ulimit -f`) is an error of who writes it, as a full disk is, for this process and
+/// those that it starts; by default the kernel ends the process (SIGXFSZ).
+pub fn ignore_sigxfsz() {
+    // SAFETY: SIGXFSZ is ignored; no handler is involved.
+    unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
+}
+
 /// Asks another process to end (SIGTERM). A process that is gone has ended.
 pub fn terminate(pid: u32) {
     // SAFETY: `kill` takes two numbers and touches no memory.
@@ -98,7 +105,8 @@ fn block() -> io::Result<libc::sigset_t> {
     // for.
     let error = unsafe {
         libc::sigemptyset(&mut set);
-        let wanted = [libc::SIGTERM, libc::SIGINT, libc::SIGHUP, PARENT_DIED];
+        // Ctrl-\ and Ctrl-Z, too: a robot whose supervisor the terminal stopped would walk on without it.
+        let wanted = [libc::SIGTERM, libc::SIGINT, libc::SIGQUIT, libc::SIGTSTP, libc::SIGHUP, PARENT_DIED];
         for signal in wanted.into_iter().filter(|signal| *signal != libc::SIGHUP || !left_alone) {
             libc::sigaddset(&mut set, signal);
         }
@@ -121,7 +129,7 @@ fn is_ignored(signal: libc::c_int) -> bool {
 mod tests {
     use super::*;
 
-    /// Who looked late took two for one: the supervisor stopped the robot gently where its emergency stop was asked for.
+    /// A late look took two for one: the supervisor stopped the robot gently where its emergency stop was asked for.
     #[test]
     fn two_requests_stay_two_however_late_somebody_looks() {
         let stop = Stop::default();

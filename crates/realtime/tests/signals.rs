@@ -1,7 +1,8 @@
 //! Signals that ask a process to end, seen from processes of their own.
 //!
 //! A parent's threads end one after the other, and the kernel tells the child of each that had it in turn. Asked is asked once;
-//! only who asks again by hand is in a hurry. And a terminal that is closed asks who was not started by nohup.
+//! only who asks again by hand is in a hurry. And a terminal that is closed asks who was not started by nohup; its Ctrl-Z and
+//! Ctrl-\ ask as its Ctrl-C does, where a robot would walk on without the supervisor that they stop.
 
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
@@ -16,7 +17,8 @@ fn main() {
     match std::env::args().nth(1).as_deref() {
         Some("parent") => parent(),
         Some("child") => child(),
-        Some("orphan of a terminal") => orphan_of_a_terminal(),
+        Some("orphan of a terminal") => signalled("HUP"),
+        Some("signalled") => signalled(&std::env::args().nth(2).unwrap()),
         _ => {
             let this = std::env::current_exe().unwrap();
             let asked = Command::new(&this).arg("parent").output().unwrap();
@@ -34,7 +36,15 @@ fn main() {
                 assert_eq!(String::from_utf8_lossy(&said.stdout), asked, "{command}");
             }
             println!("test who_was_started_by_nohup_goes_on_without_its_terminal ... ok");
-            println!("\ntest result: ok. 2 passed; 0 failed");
+            for signal in ["INT", "QUIT", "TSTP"] {
+                // A child that is stopped is killed.
+                let mut child = Command::new("timeout");
+                child.args(["-s", "KILL", "20"]).arg(&this).args(["signalled", signal]);
+                let said = child.output().unwrap();
+                assert_eq!(String::from_utf8_lossy(&said.stdout), "true", "{signal}");
+            }
+            println!("test keys_of_the_terminal_ask_and_stop_nobody ... ok");
+            println!("\ntest result: ok. 3 passed; 0 failed");
         }
     }
 }
@@ -79,11 +89,11 @@ fn child() {
     }
 }
 
-/// Says whether a SIGHUP asked it to end.
-fn orphan_of_a_terminal() {
+/// Says whether this signal asked it to end.
+fn signalled(signal: &str) {
     let stop = Stop::on_signals().unwrap();
     let own = std::process::id().to_string();
-    assert!(Command::new("kill").args(["-HUP", &own]).status().unwrap().success());
+    assert!(Command::new("kill").args(["-s", signal, &own]).status().unwrap().success());
     std::thread::park_timeout(PAUSE);
     print!("{}", stop.asked());
 }

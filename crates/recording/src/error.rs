@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 pub enum RecordingError {
     /// The file could not be made.
     Create(PathBuf, std::io::Error),
+    /// The original of an earlier repair is there, where another one would go.
+    OriginalKept(PathBuf),
     /// Somebody is writing the file.
     BeingWritten(PathBuf),
     /// The file could not be opened or read.
@@ -57,6 +59,9 @@ impl fmt::Display for RecordingError {
                     path.display()
                 )
             }
+            Self::OriginalKept(path) => {
+                write!(f, "{}: holds the original of an earlier repair; move it away first", path.display())
+            }
             Self::BeingWritten(path) => {
                 write!(
                     f,
@@ -92,7 +97,7 @@ impl fmt::Display for RecordingError {
             }
             Self::DamagedAt(path, byte, why) => write!(
                 f,
-                "{}: damaged at byte {byte}: {why}; `gangwerk log repair` keeps what is before it",
+                "{}: damaged at byte {byte}: {why}; `gangwerk log repair` keeps all other chunks",
                 path.display()
             ),
         }

@@ -10,26 +10,22 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use mcap::records::{Record as Entry, op};
-use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use messages::topics::{ForType, with_type};
 use messages::{Record, TOPICS, Topic};
 
+use crate::chunk::{self, HEAD};
 use crate::composer::channel_name;
 use crate::definition::definition;
 use crate::error::RecordingError;
 use crate::lengths;
 use crate::log::{LONGEST_RECORD, Log};
 
-/// \[B\] Opcode and length in front of each record.
-const HEAD: usize = 9;
 /// \[B\] Of a record as much as the index needs: head and, of the index of a chunk, the number of its channel.
 const PEEK: usize = HEAD + 2;
 /// \[B\] Memory for chunks that were read; one is kept, however long.
 const KEPT: usize = 24 << 20;
 /// Topics of a chunk of which the file does not say what is in it.
 const UNKNOWN: u64 = u64::MAX;
-
-const LONG_STRING: &str = "a string is longer than the record that it is in";
 
 const _: () = assert!(TOPICS.len() < 64, "topics of a chunk are bits of one number");
 
@@ -243,29 +239,9 @@ impl IndexedLog {
         let mut bytes = vec![0; place.length];
         let read = self.file.read_exact_at(&mut bytes, place.begin);
         read.map_err(|e| self.damaged(place.begin, format!("{e}, and it was whole when it was opened")))?;
-        if !lengths::fit(op::CHUNK, &bytes[HEAD..]) {
-            return Err(self.damaged(place.begin, LONG_STRING));
-        }
-        let options = LinearReaderOptions::default()
-            .with_skip_start_magic(true)
-            .with_skip_end_magic(true)
-            .with_validate_chunk_crcs(true)
-            .with_record_length_limit(LONGEST_RECORD);
-        let mut reader = LinearReader::new_with_options(options);
-        let (mut found, mut rest) = (LogChunk::default(), &bytes[..]);
-        while let Some(event) = reader.next_event() {
-            match event.map_err(|e| self.damaged(place.begin, e))? {
-                // All at once: a reader may ask for nothing and go on with what it has.
-                LinearReadEvent::ReadRequest(_) => {
-                    reader.insert(rest.len()).copy_from_slice(rest);
-                    reader.notify_read(rest.len());
-                    rest = &[];
-                }
-                LinearReadEvent::Record { opcode, data } => {
-                    self.take(opcode, data, &mut found).map_err(|why| self.damaged(place.begin, why))?;
-                }
-            }
-        }
+        let mut found = LogChunk::default();
+        let taken = chunk::each_record(&bytes, |opcode, data| self.take(opcode, data, &mut found));
+        taken.map_err(|why| self.damaged(place.begin, why))?;
         Ok(found)
     }
 
@@ -275,7 +251,7 @@ impl IndexedLog {
             return Ok(());
         }
         if !lengths::fit(opcode, data) {
-            return Err(LONG_STRING.into());
+            return Err(lengths::LONG_STRING.into());
         }
         match mcap::parse_record(opcode, data).map_err(|e| e.to_string())? {
             Entry::Schema { header, data } => _ = self.schemas.insert(header.id, data.into_owned()),

@@ -2,6 +2,9 @@
 
 use mcap::records::op;
 
+/// What is wrong with a record whose strings do not [fit].
+pub(crate) const LONG_STRING: &str = "a string is longer than the record that it is in";
+
 /// Whether this is a record that a log is read for.
 pub(crate) fn is_read(opcode: u8) -> bool {
     matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE | op::ATTACHMENT | op::METADATA)

@@ -4,13 +4,14 @@
 //! - [`Composer`]: its channels and messages, without a file; also for viewers of a running robot.
 //! - [`Log`]: reads a log back into records, also one that was cut off by a crash.
 //! - [`IndexedLog`]: reads it at any instant, with bounded memory, also while it is written.
-//! - [`repair`]: gives a log its index that was cut off by a crash.
+//! - [`repair`]: gives a log its index that was cut off by a crash, and takes out what is damaged.
 //! - [`traffic`]: frames of CAN lines.
 //! - [`payload_hashes`]: two runs are equal if these are.
 //!
 //! Design: profile `ros2`, CDR only. One channel of another encoding would break other readers of ROS 2 bags.
 
 pub mod cdr;
+mod chunk;
 mod claim;
 pub mod composer;
 pub mod definition;
@@ -29,6 +30,7 @@ mod recorder;
 mod rewrite;
 mod robot;
 mod rosout;
+mod salvage;
 mod standard;
 mod standard_definitions;
 mod time;

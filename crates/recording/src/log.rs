@@ -230,6 +230,63 @@ pub(crate) enum LogContent<'a> {
     Message(LogMessage<'a>),
 }
 
+/// Schemas and channels that a file has described so far.
+#[derive(Default)]
+pub(crate) struct Described {
+    schemas: HashMap<u16, Vec<u8>>,
+    channels: HashMap<u16, (String, u16)>,
+    /// Number of messages so far.
+    messages: u64,
+}
+
+impl Described {
+    /// Shows a record, if it is one that a log is read for.
+    ///
+    /// # Errors
+    /// Why it is damaged.
+    pub(crate) fn show(
+        &mut self,
+        (opcode, data): (u8, &[u8]),
+        see: &mut dyn FnMut(LogContent<'_>) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, String> {
+        if !lengths::is_read(opcode) {
+            return Ok(ControlFlow::Continue(()));
+        }
+        if !lengths::fit(opcode, data) {
+            return Err(lengths::LONG_STRING.into());
+        }
+        Ok(match mcap::parse_record(opcode, data).map_err(|e| e.to_string())? {
+            Entry::Schema { header, data } => {
+                let flow = see(LogContent::Schema(&header, &data));
+                self.schemas.insert(header.id, data.into_owned());
+                flow
+            }
+            Entry::Channel(channel) => {
+                let flow = see(LogContent::Channel(&channel));
+                self.channels.insert(channel.id, (channel.topic, channel.schema_id));
+                flow
+            }
+            Entry::Attachment { header, data, .. } => see(LogContent::Attachment(&header.name, &data)),
+            Entry::Metadata(metadata) => see(LogContent::Metadata(&metadata.name, &metadata.metadata)),
+            Entry::Message { header, data } => {
+                self.messages += 1;
+                let Some((channel, schema)) = self.channels.get(&header.channel_id) else {
+                    return Err(format!("it belongs to the unknown channel {}", header.channel_id));
+                };
+                let definition = self.schemas.get(schema).map_or(&[][..], Vec::as_slice);
+                see(LogContent::Message(LogMessage {
+                    channel,
+                    definition,
+                    number: header.sequence,
+                    log_time_ns: header.log_time,
+                    payload: &data,
+                }))
+            }
+            _ => ControlFlow::Continue(()),
+        })
+    }
+}
+
 /// Walks over the file until its end, a cut, or a break.
 pub(crate) fn walk(
     path: &Path,
@@ -240,11 +297,9 @@ pub(crate) fn walk(
         .with_validate_chunk_crcs(true)
         .with_record_length_limit(LONGEST_RECORD);
     let mut reader = LinearReader::new_with_options(options);
-    let mut schemas: HashMap<u16, Vec<u8>> = HashMap::new();
-    let mut channels: HashMap<u16, (String, u16)> = HashMap::new();
-    let (mut messages, mut bytes) = (0u64, 0u64);
+    let (mut described, mut bytes, mut begun) = (Described::default(), 0u64, false);
     while let Some(event) = reader.next_event() {
-        let (opcode, data) = match event {
+        let record = match event {
             Ok(LinearReadEvent::Record { opcode, data }) => (opcode, data),
             Ok(LinearReadEvent::ReadRequest(wanted)) => {
                 // What a record claims to be long is not yet there to be read.
@@ -255,54 +310,18 @@ pub(crate) fn walk(
                 reader.notify_read(got);
                 continue;
             }
-            Err(McapError::BadMagic) => {
+            Err(McapError::BadMagic) if !begun => {
                 return Err(RecordingError::not_a_log(path, "it does not begin like one"));
             }
             Err(McapError::UnexpectedEof) if bytes < mcap::MAGIC.len() as u64 => {
                 return Err(RecordingError::not_a_log(path, format!("it has only {bytes} bytes")));
             }
-            Err(McapError::UnexpectedEof) => return Ok(LogEnd::Truncated(messages)),
-            Err(e) => return Err(RecordingError::Damaged(path.into(), messages, e.to_string())),
+            Err(McapError::UnexpectedEof) => return Ok(LogEnd::Truncated(described.messages)),
+            Err(e) => return Err(RecordingError::Damaged(path.into(), described.messages, e.to_string())),
         };
-        if !lengths::is_read(opcode) {
-            continue;
-        }
-        if !lengths::fit(opcode, data) {
-            let why = "a string is longer than the record that it is in".into();
-            return Err(RecordingError::Damaged(path.into(), messages, why));
-        }
-        let entry = mcap::parse_record(opcode, data)
-            .map_err(|e| RecordingError::Damaged(path.into(), messages, e.to_string()))?;
-        let flow = match entry {
-            Entry::Schema { header, data } => {
-                let flow = see(LogContent::Schema(&header, &data));
-                schemas.insert(header.id, data.into_owned());
-                flow
-            }
-            Entry::Channel(channel) => {
-                let flow = see(LogContent::Channel(&channel));
-                channels.insert(channel.id, (channel.topic, channel.schema_id));
-                flow
-            }
-            Entry::Attachment { header, data, .. } => see(LogContent::Attachment(&header.name, &data)),
-            Entry::Metadata(metadata) => see(LogContent::Metadata(&metadata.name, &metadata.metadata)),
-            Entry::Message { header, data } => {
-                messages += 1;
-                let Some((channel, schema)) = channels.get(&header.channel_id) else {
-                    let why = format!("it belongs to the unknown channel {}", header.channel_id);
-                    return Err(RecordingError::Damaged(path.into(), messages, why));
-                };
-                let definition = schemas.get(schema).map_or(&[][..], Vec::as_slice);
-                see(LogContent::Message(LogMessage {
-                    channel,
-                    definition,
-                    number: header.sequence,
-                    log_time_ns: header.log_time,
-                    payload: &data,
-                }))
-            }
-            _ => ControlFlow::Continue(()),
-        };
+        begun = true;
+        let shown = described.show(record, &mut see);
+        let flow = shown.map_err(|why| RecordingError::Damaged(path.into(), described.messages, why))?;
         if flow.is_break() {
             return Ok(LogEnd::Complete);
         }

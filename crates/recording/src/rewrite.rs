@@ -1,9 +1,10 @@
-//! A log once more, message by message: with an index if it had none, because its writer died.
+//! A log once more, message by message: with an index if it had none, because its writer died; without what is damaged.
 
 use crate::claim;
 use crate::error::RecordingError;
 use crate::log::{LogContent, LogEnd, walk};
 use crate::recorder::{Sink, options};
+use crate::salvage::salvage;
 use mcap::records::{MessageHeader, Metadata};
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
@@ -16,11 +17,14 @@ use std::path::{Path, PathBuf};
 pub struct Repaired {
     /// Messages that are in it now.
     pub messages: u64,
-    /// Reason for its being incomplete; none: it was complete, and nothing was done.
+    /// Reason for its being incomplete, and what is left out of it; none: it was complete, and nothing was done.
     pub found: Option<String>,
+    /// Where a log that was damaged is now, as it was.
+    pub original: Option<PathBuf>,
 }
 
-/// Gives a log its end and index, if it lacks them: everything up to the cut, or up to the first damage, is kept.
+/// Gives a log its end and index, if it lacks them: everything up to the cut is kept. Of a damaged one every chunk is kept
+/// that is whole, and the file as it was beside it as `LOG.damaged`.
 ///
 /// # Errors
 /// The file is no log, it is being written, or there is no room beside it for the new one; then it stays as it was.
@@ -28,28 +32,47 @@ pub fn repair(path: &Path) -> Result<Repaired, RecordingError> {
     let log = File::open(path).map_err(|e| RecordingError::Read(path.into(), e))?;
     // Held until the new one has its name: a writer would go on in a file that nobody finds.
     claim::claim(&log, path)?;
-    let mut new = path.as_os_str().to_owned();
-    new.push(".repair");
-    let new = PathBuf::from(new);
-    let done = rewrite(path, &new, |_, _| true);
-    let found = match &done {
-        Ok((LogEnd::Complete, _)) => None,
-        Ok((LogEnd::Truncated(_), _)) => Some("it ended in the middle".to_owned()),
-        Err(e) => Some(e.to_string()),
-    };
-    let messages = match done {
-        Ok((_, messages)) | Err(RecordingError::Damaged(_, messages, _)) => messages,
-        Err(e) => {
-            let _ = std::fs::remove_file(&new);
-            return Err(e);
-        }
-    };
-    match found {
-        Some(_) => std::fs::rename(&new, path),
-        None => std::fs::remove_file(&new),
+    let new = beside(path, ".repair");
+    let done = repaired(path, &new);
+    if !matches!(done, Ok(Repaired { found: Some(_), .. })) {
+        let removed = std::fs::remove_file(&new);
+        return done.and_then(|done| removed.map(|()| done).map_err(|e| RecordingError::Create(new, e)));
     }
-    .map_err(|e| RecordingError::Create(path.into(), e))?;
-    Ok(Repaired { messages, found })
+    let done = done?;
+    if let Some(original) = &done.original {
+        // A second name first, where there are such: the log is then never without its own.
+        std::fs::hard_link(path, original)
+            .or_else(|_| std::fs::rename(path, original))
+            .map_err(|e| RecordingError::Create(original.clone(), e))?;
+    }
+    std::fs::rename(&new, path).map_err(|e| RecordingError::Create(path.into(), e))?;
+    Ok(done)
+}
+
+/// What is whole of a log, as `new`; what is wrong with it, and where it is to go.
+fn repaired(path: &Path, new: &Path) -> Result<Repaired, RecordingError> {
+    match rewrite(path, new, |_, _| true) {
+        Ok((LogEnd::Complete, messages)) => Ok(Repaired { messages, found: None, original: None }),
+        Ok((LogEnd::Truncated(_), messages)) => {
+            Ok(Repaired { messages, found: Some("it ended in the middle".into()), original: None })
+        }
+        Err(RecordingError::Damaged(..)) => {
+            let original = beside(path, ".damaged");
+            if original.exists() {
+                return Err(RecordingError::OriginalKept(original));
+            }
+            let (left_out, messages) = copy(new, |_, _| true, |see| salvage(path, see))?;
+            Ok(Repaired { messages, found: Some(left_out.to_string()), original: Some(original) })
+        }
+        Err(e) => Err(e),
+    }
+}
+
+/// The file of that name with this behind it.
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(ending);
+    name.into()
 }
 
 /// Copies a log; `edit` sees name of the channel and payload of each message, may change the payload, and
@@ -61,14 +84,23 @@ pub fn repair(path: &Path) -> Result<Repaired, RecordingError> {
 pub fn rewrite(
     from: &Path,
     to: &Path,
-    mut edit: impl FnMut(&str, &mut Vec<u8>) -> bool,
+    edit: impl FnMut(&str, &mut Vec<u8>) -> bool,
 ) -> Result<(LogEnd, u64), RecordingError> {
+    copy(to, edit, |see| walk(from, see))
+}
+
+/// Writes what `read` shows of a log; what it returns, and the number of messages.
+fn copy<T>(
+    to: &Path,
+    mut edit: impl FnMut(&str, &mut Vec<u8>) -> bool,
+    read: impl FnOnce(&mut dyn FnMut(LogContent<'_>) -> ControlFlow<()>) -> Result<T, RecordingError>,
+) -> Result<(T, u64), RecordingError> {
     let sink: Box<dyn Sink> = Box::new(BufWriter::new(claim::create(to)?));
     let mut mcap = options().create(sink).map_err(RecordingError::write)?;
     let mut schemas = HashMap::new();
     let mut channels: HashMap<String, u16> = HashMap::new();
     let (mut payload, mut messages, mut failed) = (Vec::new(), 0, None);
-    let end = walk(from, |seen| {
+    let done = read(&mut |seen: LogContent<'_>| {
         let written = match seen {
             LogContent::Metadata(name, map) => {
                 mcap.write_metadata(&Metadata { name: name.into(), metadata: map.clone() })
@@ -115,5 +147,5 @@ pub fn rewrite(
     }
     mcap.finish().map_err(RecordingError::write)?;
     mcap.into_inner().flush().map_err(RecordingError::write)?;
-    Ok((end?, messages))
+    Ok((done?, messages))
 }

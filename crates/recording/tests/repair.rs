@@ -61,6 +61,77 @@ fn a_whole_log_is_left_as_it_is_and_another_file_is_refused() {
     assert!(!beside(&other).exists());
 }
 
+/// Heads of the records of a file: opcode, place, length \[byte\].
+fn records(bytes: &[u8]) -> Vec<(u8, usize, usize)> {
+    let (mut all, mut at) = (Vec::new(), mcap::MAGIC.len());
+    while at + 9 <= bytes.len() {
+        let length = 9 + u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+        all.push((bytes[at], at, length));
+        at += length;
+    }
+    all
+}
+
+/// Regression: one flipped bit cost all that was behind it, and the log as it was.
+#[test]
+fn a_damaged_log_loses_the_damaged_chunk_only() {
+    let (path, before) = cut("damaged", 0);
+    let whole = std::fs::read(&path).unwrap();
+    let chunks: Vec<_> = records(&whole).into_iter().filter(|(opcode, ..)| *opcode == 6).collect();
+    assert!(chunks.len() > 4, "{}", chunks.len());
+    // The first one describes the channels; so does the summary.
+    for (_, begin, length) in [chunks[0], chunks[2], chunks[chunks.len() - 1]] {
+        let mut bytes = whole.clone();
+        bytes[begin + length / 2] ^= 4;
+        std::fs::write(&path, &bytes).unwrap();
+        let original = PathBuf::from(format!("{}.damaged", path.display()));
+        let _ = std::fs::remove_file(&original);
+        let done = repair(&path).unwrap();
+        let found = done.found.unwrap();
+        let (place, lost) = (format!("damaged at byte {begin}: "), format!("other records, {length} bytes"));
+        assert!(
+            found.starts_with(&place) && found.contains("left out: 1 ") && found.ends_with(&lost),
+            "{found}"
+        );
+        assert!(done.original.as_ref() == Some(&original) && std::fs::read(&original).unwrap() == bytes);
+        let (log, mut after) = (Log::open(&path).unwrap(), 0);
+        assert_eq!(log.each(|_| after += 1).unwrap(), LogEnd::Complete);
+        // About as many messages in each chunk; before the attachment there is none.
+        let (lost, most) = (before - after, 2 * before / chunks.len() as u64);
+        assert!(
+            after == done.messages && lost <= most && (lost > 0 || begin == chunks[0].1),
+            "{lost} of {before}"
+        );
+        assert!(!beside(&path).exists() && repair(&path).unwrap().found.is_none());
+        // Another damage does not cost the first original.
+        std::fs::write(&path, &bytes).unwrap();
+        assert!(matches!(repair(&path), Err(RecordingError::OriginalKept(_))));
+        assert!(std::fs::read(&path).unwrap() == bytes && !beside(&path).exists());
+    }
+}
+
+/// A length that cannot be ends what can be read; what is before it is kept. At the end of a file nothing is lost.
+#[test]
+fn what_is_damaged_beside_the_chunks_costs_no_chunk_before_it() {
+    let (path, before) = cut("lengths", 0);
+    let whole = std::fs::read(&path).unwrap();
+    let original = PathBuf::from(format!("{}.damaged", path.display()));
+    let repaired = |at: usize, to: u8| {
+        let mut bytes = whole.clone();
+        bytes[at] = to;
+        std::fs::write(&path, &bytes).unwrap();
+        let _ = std::fs::remove_file(&original);
+        repair(&path).unwrap()
+    };
+    let last = records(&whole).into_iter().rfind(|(opcode, ..)| *opcode == 6).unwrap().1;
+    let done = repaired(last + 8, 1);
+    assert!(done.found.unwrap().contains("left out: 1 chunks or other records"));
+    assert!(done.messages < before && done.messages > before / 2, "{} of {before}", done.messages);
+    let done = repaired(whole.len() - 1, 0);
+    assert_eq!(done.found.unwrap(), "its end is damaged; nothing is left out");
+    assert_eq!(done.messages, before);
+}
+
 /// Where the new log is made.
 fn beside(path: &Path) -> PathBuf {
     PathBuf::from(format!("{}.repair", path.display()))

@@ -9,7 +9,7 @@
 //! | nothing | nothing | no telegrams |
 //!
 //! Ends of lines say so in their device status. When the idle port of every end has seen the telegrams of the other side
-//! for [`STABLE`] cycles, the cable is back, and the ends are commanded to let telegrams through. Who does not obey
+//! for [`STABLE`] cycles, the cable is back, and the ends are commanded to let telegrams through. A slave that does not obey
 //! within [`PATIENCE`] cycles is commanded back.
 
 use crate::device::{DeviceControl, Idle, Status, Topology};

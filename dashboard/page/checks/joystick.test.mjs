@@ -80,7 +80,12 @@ let from = 0;
 before(() => bench.open("walk_2kmh"));
 after(() => bench.close());
 afterEach(() => bench.clean());
-beforeEach(() => { from = bench.mock.received.length; });
+// She walks: the end of the recording would be a halt.
+const WALKS = { supply: [1], start_up: [6], gait: [3] };
+beforeEach(() => {
+  from = bench.mock.received.length;
+  bench.mock.override = WALKS;
+});
 
 /** Page with a gamepad that `move` moves: axes, and numbers of held buttons. */
 async function withPad(mapping = "standard") {
@@ -229,7 +234,7 @@ test("the emergency stop needs neither dead-man button nor lease; the other butt
   await page.settled();
   await press(VIEW, "system/reset");
   await bench.arrives((m) => m.name === "system/enable", from);
-  bench.mock.override = {};
+  bench.mock.override = WALKS;
   await press(MENU, "walk/stand");
   await press(A, "walk/start");
   const step = bench.sent("command", from).find(({ name }) => name === "walk/step");
@@ -247,6 +252,88 @@ test("the emergency stop needs neither dead-man button nor lease; the other butt
   await page.settled();
   await page.move([0, -0.5, 0, 0], [L1]);
   await bench.arrives((m) => m.name === "walk/velocity", at);
+  await page.done();
+});
+
+test("a release stops her however late timers are, and a page that stood still gives the lease back", async () => {
+  const page = await withPad();
+  await page.move(CENTRE);
+  await page.settled();
+  await page.hold([0, -0.6, 0, 0]);
+  await bench.arrives((m) => m.name === "walk/velocity", from);
+  let at = bench.mock.received.length;
+  await page.evaluate(() => {
+    const begin = performance.now();
+    while (performance.now() - begin < 700);
+  });
+  await bench.arrives((m) => m.type === "lease" && m.give, at);
+  await page.status("release left shoulder");
+  assert.equal(await page.getByRole("slider", { name: "Forward" }).inputValue(), "0");
+  await page.move(CENTRE);
+  await page.settled();
+  await page.hold([0, -0.6, 0, 0]);
+  // No timer any more, and frames that keep the lease.
+  await page.evaluate(() => { for (let id = 0; id < 10000; id++) clearInterval(id); });
+  at = bench.mock.received.length;
+  await bench.arrives((m) => m.type === "pulse", at);
+  await page.move([0, -0.6, 0, 0]);
+  await bench.arrives((m) => m.name === "walk/stop" || (m.type === "lease" && m.give), at);
+  await page.done();
+});
+
+test("a step on the spot undoes no stop that came before its answer", async () => {
+  const page = await withPad();
+  await page.move(CENTRE);
+  await page.settled();
+  const stops = {
+    "the dead-man button": [() => page.move(CENTRE), (m) => m.name === "walk/stop"],
+    "the stop button": [() => page.move(CENTRE, [L1, X]), (m) => m.name === "walk/stop"],
+    "the emergency stop": [() => page.keyboard.press("Space"), (m) => m.type === "emergency_stop"],
+  };
+  for (const [name, [stop, stopped]] of Object.entries(stops)) {
+    await page.hold(CENTRE);
+    bench.mock.late = 1000;
+    const at = bench.mock.received.length;
+    await page.move(CENTRE, [L1, A]);
+    await bench.arrives((m) => m.name === "walk/step", at);
+    await stop();
+    await bench.arrives(stopped, at);
+    await page.waitForTimeout(1500);
+    assert.ok(!sentNow(at).includes("walk/start"), `${name}: ${sentNow(at)}`);
+    bench.mock.late = 0;
+    await page.move(CENTRE);
+    await page.settled();
+  }
+  await page.done();
+});
+
+test("what was held through a halt moves nothing", async () => {
+  const page = await withPad();
+  const halts = {
+    "emergency stop": () => page.keyboard.press("Space"),
+    "supply off": () => { bench.mock.override = { ...WALKS, supply: [0] }; },
+    fallen: () => { bench.mock.override = { ...WALKS, gait: [5] }; },
+    "joints stopped": () => { bench.mock.override = { ...WALKS, gait: [6] }; },
+    "stopped by somebody else": () => { bench.mock.override = { ...WALKS, gait: [4] }; },
+  };
+  for (const [name, halt] of Object.entries(halts)) {
+    bench.mock.rewind();
+    await page.move(CENTRE);
+    await page.settled();
+    await page.hold([0, -0.6, 0, 0]);
+    // Longer ago than a stop of this page.
+    await page.waitForTimeout(3200);
+    await page.hold([0, -0.6, 0, 0]);
+    await halt();
+    await page.status("release left shoulder");
+    bench.mock.calm();
+    bench.mock.override = WALKS;
+    await page.settled();
+    const at = bench.mock.received.length;
+    await page.move([0, -0.7, 0, 0], [L1]);
+    await page.settled();
+    assert.deepEqual(sentNow(at), [], name);
+  }
   await page.done();
 });
 

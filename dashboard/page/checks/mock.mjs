@@ -35,7 +35,7 @@ const parameters = () => [
   ["controller.height_p", "N/m", 0, 5e4, 1e4, "live", "K_P of the height of the centre of gravity (5.4)"], ["controller.force_filter", "s", 1e-4, 0.1, 0.003, "live", "time constant of the force sensor filter"],
   ["controller.feedback", "-", 1, 2, 1, "fixed", "feedback path of figure 5.8"], ["planner.swing_height", "m", 0, 0.15, 0.055, "live", "height of the swing foot z_swing, from the next step on"],
   ["planner.step.width", "m", 0, 1, 0.21, "fixed", "lateral distance of the sole frames W_step"], ["lowlevel.following_error", "rad", 0, null, 0.1, "fixed", "following error at rest that trips the motor supply"],
-  ["broker.lease", "s", 0.5, 0.5, 0.5, "constant", "command lease after the last sign of life of its holder"],
+  ["broker.lease", "s", 0.5, 0.5, 0.5, "constant", "command lease after the last heartbeat of its holder"],
 ].map(([name, unit, low, high, value, change, about]) => ({ name, unit, low, high, default: value, value, change, about }));
 
 /** Layout of a gamepad as config/joystick.toml has it: what a test changes is its own. */
@@ -144,6 +144,8 @@ export class Mock {
 
   /** Values that the next frames have: name of a part, and numbers. */
   override = {};
+  /** Time that answers take [ms]. */
+  late = 0;
 
   #link = () => ({ type: "link", robot: this.robot, broker: this.robot, why: this.robot ? "" : "no robot runs in this directory: gangwerk run SCENE starts one" });
 
@@ -215,6 +217,7 @@ export class Mock {
   /** Forgets what a check has set. */
   calm() {
     this.override = {};
+    this.late = 0;
     this.#stopped = null;
     this.#give();
     this.joystick = joystick();
@@ -232,14 +235,17 @@ export class Mock {
   #take(socket, message) {
     this.received.push({ ...message, at: performance.now() });
     if (message.type !== "plot" && this.#lease.socket === socket) this.#lease.until = performance.now() + LEASE_MS;
-    const answer = (accepted, text) => this.#send(socket, { type: "answer", id: message.id, accepted, text });
+    const answer = (accepted, text) => {
+      const send = () => this.#send(socket, { type: "answer", id: message.id, accepted, text });
+      this.late ? setTimeout(send, this.late) : send();
+    };
     switch (message.type) {
       case "plot":
         Object.assign(socket, { plot: message.fields, rate: message.rate, sent: this.#tick() });
         this.#send(socket, { type: "plotting", fields: message.fields, rate: message.rate });
         break;
       case "lease":
-        if (message.give) this.#give();
+        if (message.give) this.#lease.socket === socket && this.#give();
         else if (this.#lease.socket && this.#lease.socket !== socket && !message.over) return answer(false, `${this.#lease.holder} holds the lease`);
         else this.#grant(socket);
         answer(true, "broker");
@@ -334,11 +340,11 @@ export class Mock {
     const frame = frames[at].slice();
     const put = (name, values) => frame.set(values, place.get(name));
     if (performance.now() < this.push[3]) put("push", this.push.slice(0, 3));
+    for (const [name, values] of Object.entries(this.override)) put(name, values);
     if (this.#stopped !== null) {
       put("supply", [0]);
       put("start_up", [0]);
     }
-    for (const [name, values] of Object.entries(this.override)) put(name, values);
     const buffer = Buffer.alloc(16 + 4 * frame.length);
     buffer.writeUInt8(1, 0);
     buffer.writeUInt32LE(this.lost, 4);

@@ -207,7 +207,7 @@ test("keyboard alone: cycles, seconds, events, play, the time bar", async () => 
 test("plots have each cycle around the instant", async () => {
   const page = await open(one);
   await page.getByRole("tab", { name: "Plot" }).click();
-  await page.getByLabel("Window", { exact: true }).selectOption("2");
+  await page.getByRole("group", { name: "Window" }).getByRole("button", { name: "2 s" }).click();
   const field = await page.evaluate(() => `sensors.joint_angle.${window.gangwerk.hub.last("hello").robot.joints[3].name}`);
   await page.getByLabel("Add a field to this pane").first().fill(field);
   await page.keyboard.press("Enter");

@@ -145,7 +145,7 @@ test("a reload finds the panel and the run again; a run of somebody else is told
 
 test("room for it on a tablet: list, choices and buttons are in view", async () => {
   const page = await waiting({ viewport: { width: 1024, height: 768 }, hasTouch: true });
-  for (const [role, name] of [["listbox", "Scenes"], ["combobox", "Depth"], ["combobox", "Integrator"], ["button", "Start"], ["button", "Stop"]]) {
+  for (const [role, name] of [["listbox", "Scenes"], ["listbox", "Depth"], ["listbox", "Integrator"], ["button", "Start"], ["button", "Stop"]]) {
     const box = await page.getByRole(role, { name, exact: true }).boundingBox();
     assert.ok(box.x >= 0 && box.x + box.width <= 1024 && box.y + box.height <= 768, `${name}: ${JSON.stringify(box)}`);
   }

@@ -99,6 +99,39 @@ test("a walk that the planner stops is told, and the sliders rest", async () => 
   await page.done();
 });
 
+test("sliders rest with every halt, but not with a stop of this page that they were moved after", async () => {
+  const walks = { supply: [1], start_up: [6], gait: [3] };
+  bench.mock.override = walks;
+  const page = await bench.page();
+  const slider = page.getByRole("slider", { name: "Forward" });
+  const rests = () => page.waitForFunction(() => document.querySelector("input[type=range]").value === "0", null, { timeout: 4000 });
+  const halts = {
+    "emergency stop": () => page.keyboard.press("Space"),
+    "supply off": () => { bench.mock.override = { ...walks, supply: [0] }; },
+    fallen: () => { bench.mock.override = { ...walks, gait: [5] }; },
+    "joints stopped": () => { bench.mock.override = { ...walks, gait: [6] }; },
+    "stopped by somebody else": () => { bench.mock.override = { ...walks, gait: [4] }; },
+  };
+  for (const [name, halt] of Object.entries(halts)) {
+    const at = bench.mock.received.length;
+    await slider.press("ArrowRight");
+    await bench.arrives((m) => m.name === "walk/velocity" && m.values.forward > 0, at);
+    await halt();
+    await rests().catch((e) => assert.fail(`${name}: ${e.message}`));
+    bench.mock.calm();
+    bench.mock.override = walks;
+    await page.waitForTimeout(200);
+  }
+  const at = bench.mock.received.length;
+  await page.getByRole("button", { name: "Stop walking" }).click();
+  await slider.press("ArrowRight");
+  bench.mock.override = { ...walks, gait: [4] };
+  await bench.arrives((m) => m.name === "walk/velocity", at);
+  await page.waitForTimeout(300);
+  assert.equal(await slider.inputValue(), "0.01");
+  await page.done();
+});
+
 test("the start-up asks for the next action, and power on sends both edges", async () => {
   const page = await bench.page();
   const states = [[0, 0, "Power on"], [1, 1, "Home"], [1, 4, "Zero"], [1, 5, "Lower"], [1, 6, "Stand"]];
@@ -198,6 +231,49 @@ test("the emergency stop is sent by press, by Space wherever it is no text, and 
   await page.getByRole("button", { name: /EMERGENCY STOP/ }).press("Enter");
   await expect(7, "Enter on the button");
   await page.done();
+});
+
+test("no list that opens keeps the space bar", async () => {
+  bench.mock.setRun("elsewhere");
+  const page = await bench.page();
+  for (const tab of ["Scenes", "Steer", "Tune", "Plot", "Machine", "Events"]) {
+    await page.getByRole("tab", { name: tab }).click();
+    assert.equal(await page.locator("select:visible:not([size])").count(), 0, tab);
+    for (const choice of await page.locator("select:visible, .choice button:visible").all()) {
+      const at = bench.mock.received.length;
+      await choice.click();
+      await page.keyboard.press("Space");
+      await bench.arrives((m) => m.type === "emergency_stop", at);
+    }
+  }
+  await page.getByRole("tab", { name: "Plot" }).click();
+  assert.equal(await page.getByRole("group", { name: "Rate" }).locator("[aria-pressed=true]").textContent(), "1000 /s");
+  await bench.arrives((m) => m.type === "plot" && m.rate === 1000, from);
+  bench.mock.run = null;
+  await page.done();
+});
+
+test("a browser that keeps nothing has all of the page, and a page that cannot begin has the emergency stop", async () => {
+  const page = await bench.page({ init: () => {
+    for (const place of ["localStorage", "sessionStorage"]) {
+      Object.defineProperty(window, place, { get() { throw new DOMException("Access is denied for this document.", "SecurityError"); } });
+    }
+  } });
+  await page.getByRole("tab", { name: "Plot" }).click();
+  await page.getByRole("button", { name: "5 s", exact: true }).click();
+  await page.getByRole("button", { name: /EMERGENCY STOP/ }).click();
+  await bench.arrives((m) => m.type === "emergency_stop", from);
+  await page.done();
+  const broken = await (await bench.context()).newPage();
+  await broken.addInitScript(() => { navigator.getGamepads = () => { throw new Error("broken on purpose"); }; });
+  await broken.goto(bench.mock.url);
+  await broken.waitForFunction(() => document.querySelector(".stop"));
+  assert.equal(await broken.locator("main").count(), 0, "it cannot begin");
+  for (const stop of [() => broken.keyboard.press("Space"), () => broken.getByRole("button", { name: /EMERGENCY STOP/ }).click()]) {
+    const at = bench.mock.received.length;
+    await stop();
+    await bench.arrives((m) => m.type === "emergency_stop", at);
+  }
 });
 
 test("without WebGL everything but the picture works", async () => {

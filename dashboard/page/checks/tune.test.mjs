@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, afterEach, before, beforeEach, test } from "node:test";
+import { exact } from "../src/numbers.js";
 import { Bench, difference } from "./harness.mjs";
 
 const bench = new Bench();
@@ -11,6 +12,10 @@ before(() => bench.open("walk_2kmh"));
 after(() => bench.close());
 afterEach(() => bench.clean());
 beforeEach(() => { from = bench.mock.received.length; });
+
+test("a number that is none is a dash", () => {
+  assert.deepEqual([null, undefined, NaN, 0.1 + 0.2, -0.055].map(exact), ["–", "–", "–", "0.3", "-0.055"]);
+});
 
 test("a parameter is set, undone, reset, refused with its range, and saved", async () => {
   const page = await bench.page();

@@ -9,11 +9,13 @@ export class Desk {
   #link;
   #hub;
   cycle = 0.001;
+  /** Time of the robot at which this page last stopped the walk [s]. */
+  stopped = -Infinity;
 
   constructor(link, hub) {
     this.#link = link;
     this.#hub = hub;
-    hub.on("hello", (hello) => { this.cycle = hello.cycle; });
+    hub.on("hello", (hello) => { [this.cycle, this.stopped] = [hello.cycle, -Infinity]; });
   }
 
   /** Time of the robot [s]. */
@@ -23,6 +25,8 @@ export class Desk {
 
   /** Sends a command of the broker; `at` is the answer beside its button. Resolves to {accepted, text}. */
   command(name, values, at) {
+    // A velocity of zero is a stop, too.
+    if (name === "walk/stop" || (name === "walk/velocity" && Object.values(values).every((x) => x === 0))) this.stopped = this.time;
     return this.#ask({ type: "command", name, values }, name, at);
   }
 
@@ -38,7 +42,9 @@ export class Desk {
 
   /** Emergency stop: always possible, whoever holds the lease. */
   emergencyStop(at) {
-    return this.#ask({ type: "emergency_stop" }, "emergency stop", at);
+    const answer = this.#ask({ type: "emergency_stop" }, "emergency stop", at);
+    this.#hub.say("halt", {});
+    return answer;
   }
 
   /** Starts a run of a scene: {scene, depth, integrator}; null: as the scene says. */

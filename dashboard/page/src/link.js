@@ -16,7 +16,7 @@ export class Link {
   #nextId = 1;
   #waiting = new Map();
   #retry = 0;
-  #pulsed = 0; // [ms] time of the last sign of life
+  #pulsed = 0; // [ms] time of the last heartbeat
 
   constructor(hub, address) {
     this.#hub = hub;
@@ -108,13 +108,15 @@ export class Link {
   }
 
   /**
-   * Sign of life of an operator who sees the robot, if one is due; a hidden page gives none, and the robot stops. Called by frames and
+   * Heartbeat of an operator who sees the robot, if one is due; a hidden page gives none, and the robot stops. Called by frames and
    * messages, too: a browser whose pictures take long lets timers wait behind them and behind keys, for a second and more.
    */
   pulse() {
     const now = performance.now();
     if (now - this.#pulsed < PULSE_MS / 2 || document.visibilityState !== "visible") return;
     this.#pulsed = now;
+    // No heartbeat without a look at the hands: what keeps the lease sees a release.
+    this.#hub.say("pulse", {});
     this.send({ type: "pulse" });
   }
 }

@@ -4,6 +4,7 @@ import "./style.css";
 import { Desk } from "./desk.js";
 import { h, say } from "./dom.js";
 import { state } from "./frames.js";
+import { watchHalts } from "./halt.js";
 import { Hub } from "./hub.js";
 import { Layout } from "./layout.js";
 import { Link } from "./link.js";
@@ -34,10 +35,13 @@ let description = fetch("/robot.urdf");
 description.catch(() => {});
 const link = new Link(hub, `ws://${location.host}/socket?token=${encodeURIComponent(readAddress(location.hash).token)}`);
 const desk = new Desk(link, hub);
-link.start();
-
 const stop = emergencyStop(desk);
 const header = new Header(hub, stop.button, leaseControl(desk, hub));
+// First of all: whatever else of the page cannot begin, she can be stopped.
+document.body.append(header.element);
+link.start();
+watchHalts(desk, hub);
+
 const push = new Push(desk, hub);
 const walk = new Walk(desk, hub);
 const startUp = new StartUp(desk, hub, walk);
@@ -75,7 +79,7 @@ tabs = new Tabs([
 ]);
 // A server that starts runs says so. Where none is there yet, they come first.
 hub.on("scenes", () => tabs.reveal("scenes") && !hub.last("link")?.robot && tabs.open("scenes"));
-document.body.append(header.element, h("main", {}, stage, tabs.element));
+document.body.append(h("main", {}, stage, tabs.element));
 
 /** URDF of the robot that runs, or null; the answer that was asked for first serves once. */
 async function describe() {

@@ -11,8 +11,8 @@ export function short(x) {
   return x.toFixed(Math.min(digits, 6)).replace("-", "−");
 }
 
-/** Number in full, as it would be typed. */
-export const exact = (x) => String(Number(x.toPrecision(9)));
+/** Number in full, as it would be typed; none is a dash. */
+export const exact = (x) => (Number.isFinite(x) ? String(Number(x.toPrecision(9))) : short(x));
 
 /** Number with a fixed count of digits and a real minus sign, so that columns do not jump. */
 export function fixed(x, digits) {

@@ -1,6 +1,7 @@
 // Tabs of the side panel: one panel is seen, the arrow keys go from tab to tab.
 
 import { h, mark, newId } from "./dom.js";
+import { recall, remember } from "./store.js";
 
 const KEPT = "gangwerk.tab";
 
@@ -9,7 +10,7 @@ export class Tabs {
   #tabs = new Map();
   current = "";
   #changed;
-  #kept = sessionStorage.getItem(KEPT);
+  #kept = recall("sessionStorage", KEPT);
 
   constructor(panels, changed) {
     this.#changed = changed;
@@ -52,7 +53,7 @@ export class Tabs {
       panel.hidden = !on;
     }
     this.#tabs.get(name).tab.removeAttribute("data-news");
-    sessionStorage.setItem(KEPT, name);
+    remember("sessionStorage", KEPT, name);
     mark(document.body, "data-tab", name);
     this.#changed?.(name);
   }

@@ -7,7 +7,8 @@ export const START_UP = ["Off", "Not homed", "Homing", "Switching drives on", "H
 export const GAIT = ["Idle", "Standing", "Starting", "Walking", "Stopping", "Fallen", "Halted"];
 
 const OFF = 0, NOT_HOMED = 1, HOMING = 2, ENABLING = 3, HANGING = 4, ZEROED = 5, STANDING = 6, STOPPED = 7;
-const IDLE = 0, FALLEN = 5, HALTED = 6;
+const IDLE = 0;
+export const STARTING = 2, WALKING = 3, FALLEN = 5, HALTED = 6;
 
 /** Steps of the start-up in their order. */
 export const STEPS = ["power", "home", "zero", "lower", "stand", "walk"];

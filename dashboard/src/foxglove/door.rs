@@ -46,7 +46,7 @@ async fn enter(
     RawQuery(query): RawQuery,
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Response {
-    // Who asks, before anything else: strangers learn nothing.
+    // The sender is checked before anything else: strangers learn nothing.
     let refuse = |status: StatusCode, why: &str| (status, format!("{why}\n")).into_response();
     let may_command = match admit(&door.admission, &headers, token(query.as_deref())) {
         Ok(may_command) => may_command,

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
@@ -85,7 +85,7 @@ impl Watcher {
                 Err(RecvTimeoutError::Timeout) => {
                     self.look();
                     let pause = if self.viewers.is_empty() { IDLE } else { LOOK };
-                    // What a busy machine made late is not made good for.
+                    // Cycles that a busy machine missed are not caught up on.
                     next = (next + pause).max(now());
                 }
             }
@@ -211,20 +211,11 @@ impl Watcher {
         let supervisor = ipc::supervisor(&self.dir);
         // Its ports go before the next run makes others in their place.
         let gone = self.session.take_if(|session| supervisor != Some(session.supervisor)).is_some();
-        let dir = self.dir.display();
-        match (supervisor, &self.session) {
-            (Some(_), Some(_)) => {}
-            (None, _) => {
-                self.why = format!("no robot runs in {dir}: start one with `gangwerk run demo --dir {dir}`");
-            }
-            // The clock of all others is started last: what it is part of is complete.
-            (Some(_), None) if ipc::owner(&self.dir, Process::Lowlevel).is_none() => {
-                self.why = format!("the robot in {dir} is starting");
-            }
-            (Some(pid), None) => match Session::open(&self.dir, pid) {
+        if self.session.is_none() {
+            match ipc::find_robot(&self.dir, Session::open) {
                 Ok(session) => self.begin(session),
-                Err(e) => self.why = format!("the robot in {dir} cannot be observed: {e}"),
-            },
+                Err(why) => self.why = why.to_string(),
+            }
         }
         if gone && self.session.is_none() {
             let why = &self.why;
@@ -271,10 +262,9 @@ struct Session {
 }
 
 impl Session {
-    fn open(dir: &Path, supervisor: u32) -> Result<Self, Box<dyn Error>> {
-        let space = Space::open(dir, Process::Observer)?;
-        let run = Run::load(dir)?;
-        let (setup, origin) = (Setup::load(&run.config, &run.scene)?, Origin::of(&run));
+    fn open(supervisor: u32, run: &Run) -> Result<Self, Box<dyn Error>> {
+        let space = run.enter(Process::Observer)?;
+        let (setup, origin) = (Setup::load(&run.config, &run.scene)?, Origin::of(run));
         Ok(Self {
             supervisor,
             composer: logger::composer(&setup, &origin),

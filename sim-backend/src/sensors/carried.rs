@@ -42,8 +42,7 @@ mod tests {
 
     fn lola() -> (Robot, Model, [Frame; 2]) {
         let robot = Robot::load(&config::root(None).join("robots/lola")).unwrap();
-        let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-        let model = Model::from_urdf(&robot.urdf, &robot.torso, &order).unwrap();
+        let model = robot.model().unwrap();
         let sensors = [0, 1].map(|i| model.frame(&robot.feet[i].sensor_link, robot.feet[i].sensor).unwrap());
         (robot, model, sensors)
     }

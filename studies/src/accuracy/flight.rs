@@ -20,15 +20,11 @@ const TOLERANCES: [f64; 5] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 
 fn charts(given: &AccuracyInput<'_>) -> Result<Vec<ErrorChart>, Box<dyn Error>> {
     let lola = Setup::load(given.config, "stand")?.robot;
-    let order: Vec<&str> = lola.joints.iter().map(|j| j.name.as_str()).collect();
     let chain = include_str!("../../../tests/peers/mujoco/chain.urdf");
     let mut all = motion(
         given,
         ["flight", "Free flight of Lola, 1 s", "flight"],
-        FallingBodies::new(
-            Model::from_urdf(&lola.urdf, &lola.torso, &order)?,
-            include_str!("../../../tests/peers/mujoco/states/flight.txt"),
-        )?,
+        FallingBodies::new(lola.model()?, include_str!("../../../tests/peers/mujoco/states/flight.txt"))?,
     );
     all.extend(motion(
         given,

@@ -275,8 +275,7 @@ struct Torques {
 impl Torques {
     fn new(setup: &Setup) -> Result<Self, Box<dyn Error>> {
         let robot = &setup.robot;
-        let order: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-        let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?;
+        let model = robot.model()?;
         let sole = |i: usize| model.frame(&robot.feet[i].link, robot.feet[i].sole);
         let toe = |j| robot.feet.iter().any(|f| f.toe == Some(j));
         Ok(Self {

@@ -95,8 +95,7 @@ type Rest = Vector3<f64>;
 impl<'a> Statics<'a> {
     /// For a pattern; none if it cannot be laid.
     pub(super) fn new(robot: &'a Robot, gait: &Gait) -> Option<Self> {
-        let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-        let model = Model::from_urdf(&robot.urdf, &robot.torso, &names).ok()?;
+        let model = robot.model().ok()?;
         let points = robot.feet.iter().flat_map(|foot| &foot.points);
         let corners = points.map(|(link, at)| model.frame(link, *at)).collect::<Result<Vec<_>, _>>().ok()?;
         let (data, q) = (Data::new(&model), model.neutral());

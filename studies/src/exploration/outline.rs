@@ -29,8 +29,7 @@ impl Outline {
     /// # Errors
     /// Its files do not fit together, or a shape is a mesh.
     pub(super) fn new(robot: &Robot) -> Result<Self, Error> {
-        let order: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-        let model = Model::from_urdf(&robot.urdf, &robot.torso, &order)?;
+        let model = robot.model()?;
         let mut links = Vec::new();
         for link in &urdf_rs::read_from_string(&robot.urdf)?.links {
             let mut points = Vec::new();

@@ -22,8 +22,7 @@ pub(super) fn all(bench: &Bench) -> Findings {
 /// F22: a quaternion turns through upright like anywhere, where the thesis's z-x-z angles have a pole: their rates lose a
 /// factor of 2/theta. The robot's own configuration, by the rates of the model.
 fn orientation(bench: &Bench) -> Result<Finding> {
-    let robot = &bench.setup.robot;
-    let model = Model::from_urdf(&robot.urdf, &robot.torso, &names(bench))?;
+    let model = bench.setup.robot.model()?;
     // A turn of 1 rad/s through upright in steps of 10 ms, against the rotation itself; error h^4 w^5 t/1920.
     let (mut x, mut v) = (model.neutral(), vec![0.0; model.nv()]);
     (x[4], x[6], v[4]) = ((-0.25_f64).sin(), (-0.25_f64).cos(), 1.0);
@@ -45,7 +44,7 @@ fn knee(bench: &Bench) -> Findings {
     let free: Vec<bool> = robot.joints.iter().map(|j| legs.iter().any(|leg| j.name.contains(leg))).collect();
     let ik = InverseKinematics::new(&robot.joints, &free, 0.0);
     let bent = robot.joint("right_knee_flexion").ok_or("no joint right_knee_flexion")?;
-    let model = Model::from_urdf(&robot.urdf, &robot.torso, &names(bench))?;
+    let model = robot.model()?;
     let mut at = |q: f64| {
         let mut angles = bench.pose().to_vec();
         angles[bent] = q;
@@ -78,10 +77,6 @@ fn knee(bench: &Bench) -> Findings {
             .says("damped: true, counted as limited", damped),
     );
     Ok(findings)
-}
-
-fn names(bench: &Bench) -> Vec<&str> {
-    bench.setup.robot.joints.iter().map(|j| j.name.as_str()).collect()
 }
 
 /// Direction from hip to ankle in the torso, and by how much the leg shortens per knee angle \[m/rad\].
@@ -143,8 +138,7 @@ fn drift(model: &Model, h: f64, seconds: f64) -> f64 {
 
 /// The whole robot thrown: what a minute costs, and that it falls with the fourth power of the step or faster.
 fn flight(bench: &Bench) -> Findings {
-    let robot = &bench.setup.robot;
-    let model = Model::from_urdf(&robot.urdf, &robot.torso, &names(bench))?;
+    let model = bench.setup.robot.model()?;
     let points = [8e-3, 4e-3].map(|h| [h, drift(&model, h, 5.0)]);
     let minute = drift(&model, 4e-3, 60.0);
     Ok(vec![

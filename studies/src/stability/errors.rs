@@ -75,6 +75,8 @@ pub(super) fn kinds(setup: &Setup, way: f64) -> Vec<ErrorSource> {
     }
     let stiffness = ErrorSource::new("stiffness of the soles, factor", "1", [-8.0, 6.0], 0.1, |s, x| {
         s.scene.plant_mismatch.contact_stiffness = x.exp2();
+        // The stiffer the layer, the shorter the steps that it allows; else they would be the border, and not the robot.
+        s.scene.substeps = (f64::from(s.scene.substeps) * x.exp2().max(1.0)).ceil() as u32;
     });
     all.push(ErrorSource { factor: true, ..stiffness });
     all.push(ErrorSource::new("delay of all sensors", "ms", [0.0, 100.0], 1.0, |s, x| {
@@ -102,5 +104,28 @@ fn board(height: f64) -> TerrainObject {
         keeps_clear: 0.0,
         known: false,
         poses: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use chain::Chain;
+    use config::method::Integrator;
+
+    /// Regression: on soles of 3.67 times the stiffness type 3 fell by the steps of the simulation.
+    #[test]
+    fn stiffer_soles_are_tried_in_steps_that_are_stable_on_them() {
+        for (depth, integrator) in [(1, Integrator::Euler), (3, Integrator::SemiImplicit)] {
+            let mut setup = Setup::load(&config::root(None), "walk_1kmh").unwrap();
+            (setup.scene.depth, setup.scene.integrator) = (depth, integrator);
+            let kinds = kinds(&setup, 0.0);
+            let soles = kinds.iter().find(|kind| kind.name == "stiffness of the soles, factor").unwrap();
+            for x in [soles.tried[0], 0.0, 2.5, soles.tried[1]] {
+                let mut setup = setup.clone();
+                (soles.apply)(&mut setup, x);
+                assert!(Chain::new(&setup).is_ok(), "type {depth}, {} times", x.exp2());
+            }
+        }
     }
 }

@@ -101,9 +101,9 @@ pub(crate) fn multipliers(
     let origin = map(&vec![0.0; n]).ok_or("the undisturbed motion ended")?;
     // Both signs of every disturbance.
     let images = parallel::map(samples, |k| {
-        let mut dice = Dice::new(k as u64 / 2);
+        let mut random = random(k as u64 / 2);
         let sign = if k % 2 == 0 { size } else { -size };
-        let x: Vec<f64> = steps.iter().map(|h| sign * h * dice.uniform() * 3f64.sqrt()).collect();
+        let x: Vec<f64> = steps.iter().map(|h| sign * h * random.symmetric() * 3f64.sqrt()).collect();
         map(&x)
     });
     let mut y = [DMatrix::zeros(samples, n), DMatrix::zeros(samples, n)];
@@ -180,12 +180,12 @@ fn eigenvalues(matrix: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, String> {
 /// Interval of |lambda|_max: disturbances drawn with replacement, both signs of one together.
 fn bootstrap(z: &[DMatrix<f64>; 2]) -> Result<[f64; 2], String> {
     let pairs = z[0].nrows() / 2;
-    let mut dice = Dice::new(u64::MAX);
+    let mut random = random(u64::MAX);
     let mut found = Vec::with_capacity(RESAMPLED);
     for _ in 0..RESAMPLED {
         let drawn: Vec<usize> = (0..pairs)
             .flat_map(|_| {
-                let k = ((dice.uniform() + 1.0) * 0.5 * pairs as f64) as usize;
+                let k = ((random.symmetric() + 1.0) * 0.5 * pairs as f64) as usize;
                 [2 * k.min(pairs - 1), 2 * k.min(pairs - 1) + 1]
             })
             .collect();
@@ -197,17 +197,9 @@ fn bootstrap(z: &[DMatrix<f64>; 2]) -> Result<[f64; 2], String> {
     Ok([at(TAIL), at(1.0 - TAIL)])
 }
 
-/// Uniform numbers from -1 to 1.
-struct Dice(Random);
-
-impl Dice {
-    fn new(seed: u64) -> Self {
-        Self(Random(seed.wrapping_mul(0xD1B5_4A32_D192_ED03)))
-    }
-
-    fn uniform(&mut self) -> f64 {
-        2.0 * self.0.unit() - 1.0
-    }
+/// Random numbers whose seeds are far from each other.
+fn random(seed: u64) -> Random {
+    Random(seed.wrapping_mul(0xD1B5_4A32_D192_ED03))
 }
 
 #[cfg(test)]

@@ -243,8 +243,7 @@ mod tests {
     #[test]
     fn a_heel_that_is_up_is_no_support() {
         let setup = Setup::load(&config::root(None), "walk_3kmh").unwrap();
-        let order: Vec<&str> = setup.robot.joints.iter().map(|j| j.name.as_str()).collect();
-        let model = Model::from_urdf(&setup.robot.urdf, &setup.robot.torso, &order).unwrap();
+        let model = setup.robot.model().unwrap();
         let places: Vec<_> = setup.robot.feet.iter().flat_map(|f| &f.points).collect();
         let nodes: Vec<_> = places.iter().map(|(link, at)| model.frame(link, *at).unwrap()).collect();
         let (mut data, mut q, mut height) = (Data::new(&model), model.neutral(), vec![0.0; nodes.len()]);

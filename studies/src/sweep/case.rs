@@ -87,12 +87,14 @@ fn walk(setup: &Setup) -> Result<Figures, String> {
     Ok(gatherer.figures(setup, 0.0, None).ended(&ending))
 }
 
-/// True if the robot did what it was told, to the end, and its figures are within the bounds of the sweep.
+/// True if the robot did what it was told, to the end, of a simulation that is to be trusted, and its figures are within the bounds of
+/// the sweep.
 pub(super) fn survived(figures: &Figures, sweep: &Sweep) -> bool {
     let within = |(name, [low, high]): &(String, [f64; 2])| {
         columns::figure(name).is_some_and(|f| (*low..=*high).contains(&f(figures)))
     };
     figures.ended_by == WalkEnd::Done.to_string()
         && figures.commands_refused == 0
+        && figures.doubts.is_empty()
         && sweep.survived.iter().all(within)
 }

@@ -84,6 +84,7 @@ pub(super) fn columns(sweep: &Sweep) -> Vec<(String, CellType)> {
         vec![plain("walk", CellType::Whole), plain("scene", CellType::Text), plain("seed", CellType::Whole)];
     all.extend(sweep.numbers.iter().map(|n| plain(&n.key, CellType::Number)));
     all.extend([plain("survived", CellType::YesNo), plain("ended_by", CellType::Text)]);
+    all.push(plain("doubts", CellType::Text));
     all.extend(FIGURES.iter().map(|(name, _)| plain(name, CellType::Number)));
     all
 }
@@ -98,6 +99,7 @@ fn begin(case: &Case<'_>) -> Vec<Cell> {
 pub(super) fn walked(case: &Case<'_>, sweep: &Sweep, figures: &Figures) -> Vec<Cell> {
     let mut row = begin(case);
     row.extend([Cell::YesNo(survived(figures, sweep)), Cell::Text(figures.ended_by.clone())]);
+    row.push(Cell::Text(figures.doubts.join("; ")));
     let number = |(_, f): &(&str, Figure)| Cell::Number(Some(f(figures)).filter(|x| x.is_finite()));
     row.extend(FIGURES.iter().map(number));
     row
@@ -106,7 +108,7 @@ pub(super) fn walked(case: &Case<'_>, sweep: &Sweep, figures: &Figures) -> Vec<C
 /// The row of values that do not go together.
 pub(super) fn refused(case: &Case<'_>, why: &str) -> Vec<Cell> {
     let mut row = begin(case);
-    row.extend([Cell::YesNo(false), Cell::Text(format!("refused: {why}"))]);
+    row.extend([Cell::YesNo(false), Cell::Text(format!("refused: {why}")), Cell::Text(String::new())]);
     row.extend(FIGURES.iter().map(|_| Cell::Number(None)));
     row
 }

@@ -78,9 +78,18 @@ impl SweepOrder {
     pub fn load(config: &Path, file: &Path, program: &str) -> Result<Self, Error> {
         let sweep = Sweep::load(file)?;
         columns::check(&sweep)?;
-        let (mut hash, mut scenes) = (DefaultHasher::new(), Vec::new());
+        let (mut hash, mut scenes) = (DefaultHasher::new(), Vec::<SetupFiles>::new());
         for (of, scene) in sweep.scenes.iter().enumerate() {
             let files = SetupFiles::read(config, scene).map_err(|e| format!("{}: {e}", file.display()))?;
+            // By two paths it would count as two independent scenes.
+            let place = |files: &SetupFiles| {
+                let path = files.scene_path();
+                path.canonicalize().unwrap_or_else(|_| path.into())
+            };
+            if let Some(k) = scenes.iter().position(|before| place(before) == place(&files)) {
+                let (file, before) = (file.display(), &sweep.scenes[k]);
+                return Err(format!("{file}: scenes: `{before}` and `{scene}` are the same file").into());
+            }
             // The first combination, and with it each value, or each end of a range, of every number.
             let mut first = Case { scene, of, ..Case::of(&sweep, 0) };
             for (value, number) in first.values.iter_mut().zip(&sweep.numbers) {
@@ -214,8 +223,11 @@ pub fn collect(
     let told = serde_json::json!({ "identity": order.identity(), "walks": order.walks(), "left": left });
     writeln!(to, "{told}")?;
     to.flush()?;
-    for line in from.lines() {
-        rows.add(&line?)?;
+    // A last line without its end was cut off, and may be cut inside of a number: that walk is missing.
+    let mut line = String::new();
+    while from.read_line(&mut line)? > 0 && line.ends_with('\n') {
+        rows.add(line.trim_end_matches(['\n', '\r']))?;
+        line.clear();
         (given.progress)(rows.count(), order.walks() as usize, "walks");
     }
     finish(order, out, &rows)
@@ -266,19 +278,23 @@ impl Row<'_> {
     /// Adds a walk with so many numbers.
     fn add(&mut self, row: &[Cell], numbers: usize) {
         self.walks += 1;
-        match &row[3 + numbers..5 + numbers] {
-            [Cell::YesNo(true), _] => self.survived += 1,
-            [_, Cell::Text(end)] => *self.how.entry(kind(end)).or_default() += 1,
+        match &row[3 + numbers..6 + numbers] {
+            [Cell::YesNo(true), ..] => self.survived += 1,
+            [_, Cell::Text(end), Cell::Text(doubts)] => {
+                *self.how.entry(kind(end, doubts)).or_default() += 1;
+            }
             _ => {}
         }
         self.rate = self.survived as f64 / self.walks as f64;
     }
 }
 
-/// Kind of end of a walk that was not survived; one that came to the end of its scene was refused something, or missed the bounds of `[survived]`.
-fn kind(end: &str) -> String {
+/// Kind of end of a walk that was not survived; one that came to the end of its scene is not to be trusted, was refused something, or missed
+/// the bounds of `[survived]`.
+fn kind(end: &str, doubts: &str) -> String {
     match end.split_once(": ") {
         Some(("refused", _)) => "refused".into(),
+        _ if end == "done" && !doubts.is_empty() => "not to be trusted".into(),
         _ if end == "done" => "not as told".into(),
         _ => end.into(),
     }

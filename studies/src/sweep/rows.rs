@@ -1,4 +1,4 @@
-//! `rows.tsv` of a sweep: a line for each walk as soon as it is done, in no order. Who is killed at any instant finds every whole
+//! `rows.tsv` of a sweep: a line for each walk as soon as it is done, in no order. A sweep that is killed at any instant finds every whole
 //! line again, and goes on.
 //!
 //! The first line says which program, sweep and configuration they are from, the second one names the columns.
@@ -67,35 +67,41 @@ impl Rows {
         let names: Vec<&str> = rows.columns.iter().map(|(name, _)| name.as_str()).collect();
         let mut head = vec![names.join("\t"), format!("# {identity}")];
         // Lines up to one that was cut off, which is walked again.
-        let (mut line, mut number) = (String::new(), 0);
+        let (mut line, mut number) = (Vec::new(), 0);
         loop {
             line.clear();
-            let length = lines.read_line(&mut line).map_err(|e| format!("{}: {e}", rows.path.display()))?;
-            if !line.ends_with('\n') {
-                break;
-            }
-            let text = line.trim_end_matches('\n');
+            lines.read_until(b'\n', &mut line).map_err(|e| format!("{}: {e}", rows.path.display()))?;
             number += 1;
+            let Some(text) = line.strip_suffix(b"\n") else { break };
+            let text = std::str::from_utf8(text)
+                .map_err(|e| format!("{}: line {number}: {e}", rows.path.display()))?;
             match head.pop() {
                 Some(wanted) if text == wanted => {}
-                Some(wanted) => {
-                    let path = rows.path.display();
-                    return Err(format!(
-                        "{path}: line {number}: holds rows of `{text}`, but this is `{wanted}`; go on with that one, or choose another place with --out"
-                    ));
-                }
+                Some(wanted) => return Err(rows.foreign(number, text, &wanted)),
                 None => {
                     let taken = rows.take(text);
                     taken.map_err(|why| format!("{}: line {number}: {why}", rows.path.display()))?;
                 }
             }
-            rows.end += length as u64;
+            rows.end += line.len() as u64;
+        }
+        // A file that is not of a sweep may have no whole line at all.
+        if let Some(wanted) = head.last().filter(|wanted| !wanted.as_bytes().starts_with(&line)) {
+            return Err(rows.foreign(number, &String::from_utf8_lossy(&line), wanted));
         }
         rows.file.set_len(rows.end).map_err(|e| format!("{}: {e}", rows.path.display()))?;
         while let Some(missing) = head.pop() {
             rows.write(&missing)?;
         }
         Ok(rows)
+    }
+
+    /// What to say of a file whose line of that number is another one.
+    fn foreign(&self, number: usize, is: &str, wanted: &str) -> String {
+        let (path, is): (_, String) = (self.path.display(), is.chars().take(500).collect());
+        format!(
+            "{path}: line {number}: holds rows of `{is}`, but this is `{wanted}`; go on with that one, or choose another place with --out"
+        )
     }
 
     /// How many walks are done.

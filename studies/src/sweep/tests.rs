@@ -129,6 +129,61 @@ fn rows_of_something_else_are_refused_and_stay() {
     assert!(refused(&order).contains("rows.tsv: line 2: holds rows of"));
 }
 
+/// Regression: a file of somebody else was emptied if it had no whole line.
+#[test]
+fn a_file_without_a_whole_line_is_cut_only_if_it_begins_like_rows() {
+    let (dir, config) = (dir("foreign"), config::root(None));
+    let order = SweepOrder::load(&config, &sweep(&dir, TEXT), "program").unwrap();
+    let path = dir.join(rows::NAME);
+    let head = format!("# {}\nwalk\tscene", order.identity());
+    let other = head.replace("walk", "run");
+    for (begins, of_a_sweep) in
+        [("", true), (&head[..9], true), (&head[..], true), ("my notes", false), (&other[..], false)]
+    {
+        fs::write(&path, begins).unwrap();
+        let opened = open(&order, &dir).map(|_| ());
+        assert_eq!(opened.is_ok(), of_a_sweep, "{begins}: {opened:?}");
+        if let Err(why) = opened {
+            assert!(why.contains("choose another place with --out"), "{why}");
+            assert_eq!(fs::read_to_string(&path).unwrap(), begins);
+        }
+    }
+}
+
+/// Regression: a last row that was cut inside of a number was taken with that number.
+#[test]
+fn a_last_row_without_its_end_is_missing() {
+    let (dir, config) = (dir("end"), config::root(None));
+    let order = SweepOrder::load(&config, &sweep(&dir, TEXT), "program").unwrap();
+    let mut lines = Vec::new();
+    piece(&order, 0..24, order.identity(), &mut lines).unwrap();
+    for cut in [1, 4] {
+        let (out, mut given_lines) = (dir.join(cut.to_string()), &lines[..lines.len() - cut]);
+        let done = collect(&order, &out, (&mut given_lines, &mut Vec::new()), &given(&config));
+        let why = done.map(|_| ()).unwrap_err().to_string();
+        assert!(why.starts_with("1 of 24 walks are missing"), "{why}");
+    }
+}
+
+/// Regression: walks counted as survived of which the simulation itself says that they are not to be trusted.
+#[test]
+fn a_walk_that_is_not_to_be_trusted_is_not_survived() {
+    let (dir, config) = (dir("doubts"), config::root(None));
+    // Two steps in a cycle are too few for the feet of type 3.
+    let text =
+        "about = \"a\"\nscenes = [\"DIR/c.toml\"]\n[[number]]\nkey = \"scene.substeps\"\nvalues = [2, 10]\n";
+    let scene = SCENE.replace("depth = 1", "depth = 3\nforce_step = true").replace("euler", "semi_implicit");
+    fs::write(dir.join("c.toml"), scene.replace("0.02", "0.1")).unwrap();
+    let order = SweepOrder::load(&config, &sweep(&dir, text), "program").unwrap();
+    let sheet = run(&order, &dir.join("out"), 1, &given(&config)).unwrap().json();
+    let (row, rows) = (&sheet["rows"][0], fs::read_to_string(dir.join("out").join(rows::NAME)).unwrap());
+    assert_eq!((&row["survived"], &row["how"]["not to be trusted"]), (&1.into(), &1.into()), "{row}");
+    let rows: Vec<Vec<&str>> = rows.lines().skip(1).map(|line| line.split('\t').collect()).collect();
+    assert_eq!(rows[0][4..7], ["survived", "ended_by", "doubts"]);
+    assert!(rows[1][4..6] == ["false", "done"] && rows[1][6].contains("too long"), "{rows:?}");
+    assert_eq!(rows[2][4..7], ["true", "done", ""]);
+}
+
 #[test]
 fn missing_rows_are_counted() {
     let (dir, config) = (dir("missing"), config::root(None));
@@ -161,6 +216,9 @@ fn what_is_wrong_is_refused_before_anything_is_walked() {
         (format!("{head}[survived]\ndistance = [0.0, 1.0]\n"), "the nearest is `distance_m`"),
         (format!("{head}[map]\nacross = \"scene.a\"\nup = \"scene.b\"\n"), "`scene.a` is not the key of a"),
         (head.replace("a.toml", "c.toml"), "c.toml"),
+        (head.replace("]", ", \"DIR/./a.toml\"]"), "a.toml` are the same file"),
+        (number("scene.push.0.force.+1", "values = [1.0]"), "`+1` is no component; there are 3"),
+        (number("scene.push.0.force.1", "values = [60, 60.0]"), "60 is there twice"),
     ] {
         let error = SweepOrder::load(&config, &sweep(&dir, &text), "program").map(|_| ()).unwrap_err();
         assert!(error.to_string().contains(why), "{error}, not {why}");

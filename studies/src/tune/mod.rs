@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use ::drives::CascadePi;
 use config::Robot;
 pub use gait::TuneGait;
-use multibody::{Data, Model};
+use multibody::Data;
 
 use crate::joint_bench::{Course, ServoBench, ShaftState};
 use crate::sheet::{Column, fixed, plain};
@@ -172,8 +172,7 @@ const NOTHING: f64 = 1e-4;
 
 /// \[kg m^2\] Inertia of the limb about a joint, with all else held in `pose`.
 fn limb(robot: &Robot, joint: usize, pose: &[f64]) -> Result<f64, Error> {
-    let names: Vec<&str> = robot.joints.iter().map(|j| j.name.as_str()).collect();
-    let model = Model::from_urdf_locked(&robot.urdf, &robot.torso, &names, &[])?;
+    let model = robot.model()?;
     let mut q = model.neutral();
     q[7..].copy_from_slice(pose);
     Ok(model.mass_matrix(&mut Data::new(&model), &q)[(6 + joint, 6 + joint)])

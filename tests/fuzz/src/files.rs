@@ -22,6 +22,7 @@ pub(crate) fn mcap(bytes: &[u8]) {
         let again = repair(&path).expect("a repaired log is a log");
         assert_eq!(again.found, None, "once is enough");
     }
+    let _ = fs::remove_file(own_directory().join("log.mcap.damaged"));
 }
 
 pub(crate) fn mcap_seeds() -> Vec<Vec<u8>> {

@@ -63,7 +63,7 @@ async fn connection(broker: &Broker, mut script: &[u8]) {
         may: if rights & 1 == 0 { 0 } else { u32::MAX >> 24 },
         reads: rights & 2 == 0,
         only_stops: rights & 0x1c == 0x1c,
-        rate: 100.0,
+        rate: 100,
         keys: broker.keys.clone(),
     };
     let (client, server) = tokio::io::duplex(1 << 20);

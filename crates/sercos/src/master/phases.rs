@@ -195,7 +195,7 @@ impl Master {
     pub(super) fn run(&mut self) {
         self.look();
         let absent = self.nodes.iter().filter(|n| n.status.is_none()).count();
-        // Who is not there because of a cable, or of lost telegrams, has not fallen.
+        // Slaves that are absent because of a cable, or of lost telegrams, have not fallen back.
         let passed = self.shape() == self.wanted_shape() || absent == self.nodes.len() && self.has_some();
         self.absent = if absent > 0 && passed { self.absent + 1 } else { 0 };
         for i in 0..self.nodes.len() {

@@ -4,7 +4,7 @@ import { h, mark, say } from "../dom.js";
 import { hands, label, velocity } from "../joystick.js";
 
 const EVERY_MS = 40; // looks at the gamepad
-const STILL_MS = 500; // a page that stood still for so long has lost the lease
+const STILL_MS = 500; // a page that stood still for so long may have lost the lease
 
 /** Rules of the gamepad, and its part of the walk panel. */
 export class Joystick {
@@ -42,22 +42,29 @@ export class Joystick {
     });
     hub.on("connection", ({ state }) => state !== "open" && this.#lapse());
     hub.on("event", ({ name }) => name === "LeaseLost" && this.#lapse());
+    hub.on("halt", () => this.#lapse());
+    hub.on("pulse", () => this.#look());
     document.addEventListener("visibilitychange", () => document.visibilityState !== "visible" && this.#leave());
     window.addEventListener("pagehide", () => this.#leave());
     setInterval(() => this.#look(), EVERY_MS);
     this.#look();
   }
 
-  /** Nothing moves by what is held now; the robot stops by itself, or by who stopped her. */
+  /** Nothing moves by what is held now, and what it moved comes to a stand: the lease may be held still, or again. */
   #lapse() {
-    this.#spent = true;
-    this.#steers = false;
+    if (this.#unhand()) this.#walk.giveUp();
+  }
+
+  /** The hands steer no more until the button was released; whether they did. */
+  #unhand() {
+    const steered = this.#steers;
+    [this.#spent, this.#steers] = [true, false];
+    return steered;
   }
 
   /** As a release: nobody sees the robot any more, or the gamepad is gone. */
   #leave() {
-    if (this.#steers) this.#walk.stop();
-    this.#lapse();
+    if (this.#unhand()) this.#walk.stop();
     this.#before = {};
   }
 

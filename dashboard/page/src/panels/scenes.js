@@ -78,9 +78,9 @@ export class Scenes {
   }
 }
 
-/** Choice in place of what the scene says: {element, select}. */
+/** Choice in place of what the scene says, all of it in view: a list that opens would keep the space bar. {element, select}. */
 function choice(label, options) {
   const id = newId("choice");
-  const select = h("select", { id }, h("option", { value: "" }, "the scene's"), options.map(([value, text]) => h("option", { value }, text)));
+  const select = h("select", { id, size: options.length + 1 }, h("option", { value: "", selected: true }, "the scene's"), options.map(([value, text]) => h("option", { value }, text)));
   return { element: h("div", { class: "field" }, h("label", { for: id }, label), select), select };
 }

@@ -117,7 +117,7 @@ export class Tune {
     const row = this.#rows.get(name);
     if (!row) return;
     row.value = value;
-    // Who is typing is not interrupted.
+    // Typing is not interrupted.
     if (document.activeElement !== row.input || Number(row.input.value) === value) row.input.value = exact(value);
     this.#mark(row);
     this.#filter();

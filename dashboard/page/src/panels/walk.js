@@ -20,6 +20,7 @@ export class Walk {
   #timer = 0;
   #sent = 0;
   #spot = 0; // [s] a step on the spot
+  #order = 0; // count of what a step on the spot must not undo: velocities, stops, halts
 
   constructor(desk, hub) {
     this.#desk = desk;
@@ -29,7 +30,7 @@ export class Walk {
         h("button", { type: "button", class: "halt", onclick: () => this.stop() }, "Stop walking")),
       rows, this.#answer.element);
     hub.on("hello", (hello) => this.#fit(hello));
-    // Who no longer steers does not move her: sliders that still showed a speed would be wrong.
+    // Without the lease this page moves nothing: sliders that still showed a speed would be wrong.
     let mine = false;
     hub.on("lease", (lease) => {
       if (mine && !lease.mine) this.#rest();
@@ -38,6 +39,7 @@ export class Walk {
     hub.on("connection", ({ state }) => {
       if (state === "lost") this.#rest();
     });
+    hub.on("halt", () => this.#rest());
     // The planner counts the silence of who steers by its own clock, and may stop her before the broker takes the lease.
     hub.on("event", ({ name, text, time }) => {
       if (name !== "LeaseLost" || !mine) return;
@@ -71,11 +73,12 @@ export class Walk {
     this.#soon();
   }
 
-  /** Walks in place. */
+  /** Walks in place, unless something else came before the step was accepted. */
   async onTheSpot() {
     this.#rest();
+    const order = this.#order;
     const { accepted } = await this.#desk.command("walk/step", { length: 0, side: 0, turn: 0, duration: this.#spot }, this.#answer);
-    if (accepted) await this.#desk.command("walk/start", {}, this.#answer);
+    if (accepted && order === this.#order) await this.#desk.command("walk/start", {}, this.#answer);
   }
 
   /** Takes the walking pose. */
@@ -88,6 +91,12 @@ export class Walk {
     return this.#desk.lease({ take: true, over: false }, this.#answer);
   }
 
+  /** Gives the lease back: that stops a walk of this page, and nobody else's. */
+  giveUp() {
+    this.#rest();
+    return this.#desk.lease({ give: true });
+  }
+
   /** Says why nothing is sent. */
   tell(text) {
     this.#answer.tell({ accepted: false, text }, "gamepad", this.#desk.time);
@@ -95,6 +104,7 @@ export class Walk {
 
   /** Sliders to zero without a command. */
   #rest() {
+    this.#order++;
     clearTimeout(this.#timer);
     for (const slider of Object.values(this.#sliders)) {
       slider.input.value = "0";
@@ -154,6 +164,7 @@ export class Walk {
   }
 
   #send(answer) {
+    this.#order++;
     this.#sent = performance.now();
     const values = {};
     for (const { name, input } of Object.values(this.#sliders)) values[name] = Number(input.value);

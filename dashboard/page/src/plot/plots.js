@@ -1,6 +1,7 @@
 // Plots: panes over one window of time, the subscription of their fields, and what is kept between visits.
 
-import { h, newId, say } from "../dom.js";
+import { h, mark, newId, say } from "../dom.js";
+import { recall, remember } from "../store.js";
 import { Pane } from "./pane.js";
 import { Rings } from "./rings.js";
 
@@ -150,26 +151,28 @@ export class Plots {
   }
 
   #remember() {
-    localStorage.setItem(KEPT, JSON.stringify({ panes: this.#panes.map(({ fields }) => fields), window: this.#window, rate: this.#rate }));
+    remember("localStorage", KEPT, JSON.stringify({ panes: this.#panes.map(({ fields }) => fields), window: this.#window, rate: this.#rate }));
   }
 
   /** What was looked at on the last visit; a text that is none of ours is forgotten. */
   #recall() {
     try {
-      const { panes, window: seconds, rate } = JSON.parse(localStorage.getItem(KEPT) ?? "{}");
+      const { panes, window: seconds, rate } = JSON.parse(recall("localStorage", KEPT) ?? "{}");
       if (WINDOWS.includes(seconds)) this.#window = seconds;
       if (RATES.includes(rate)) this.#rate = rate;
       if (Array.isArray(panes) && panes.length && panes.every((p) => Array.isArray(p))) this.#kept = panes;
     } catch {
-      localStorage.removeItem(KEPT);
+      // The next change writes over it.
     }
   }
 }
 
-/** Choice of one of some numbers. */
+/** Choice of one of some numbers, a button each: a list that opens would keep the space bar from the emergency stop. */
 function choice(label, values, now, words, chosen) {
   const id = newId("choice");
-  const select = h("select", { id }, values.map((v) => h("option", { value: v, selected: v === now }, words(v))));
-  select.addEventListener("change", () => chosen(Number(select.value)));
-  return h("span", { class: "choice" }, h("label", { for: id }, label), select);
+  const buttons = values.map((v) => h("button", { type: "button", class: "toggle", "aria-pressed": String(v === now), onclick: () => {
+    for (const [i, button] of buttons.entries()) mark(button, "aria-pressed", String(values[i] === v));
+    chosen(v);
+  } }, words(v)));
+  return h("span", { class: "choice", role: "group", "aria-labelledby": id }, h("span", { id }, label), buttons);
 }

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::parameters::forward;
 use super::robustness::Trials;
 use crate::Error;
-use crate::undisturbed::{ended, walk_on};
+use crate::undisturbed::{doubted, ended, walk_on};
 use crate::way::Way;
 
 /// \[s\] The gait is periodic by then ...
@@ -18,7 +18,7 @@ pub(super) const SETTLED: f64 = 10.0;
 pub(super) const SPAN: f64 = 10.0;
 /// \[1\] By how much a walk may be slower or faster than it was told.
 const AS_TOLD: f64 = 0.05;
-/// Cost of a walk that was none: a fall, or not as told. The sooner it ends, the more.
+/// Cost of a walk that was none: a fall, not as told, or not to be trusted. The sooner it ends, the more.
 pub(super) const NO_WALK: f64 = 1e6;
 
 /// A term: name, unit, meaning.
@@ -90,7 +90,7 @@ pub(super) fn walk(given: &Setup, sum: &[WeightedTerm], trials: &Trials) -> Resu
     let cycles = ((SETTLED + SPAN) / dt).round() as u64;
     for tick in 0..cycles {
         let (time, c) = (tick as f64 * dt, chain.step());
-        if ended(c) {
+        if ended(c) || doubted(c) {
             return Ok(WalkCost::none(time));
         }
         if time > SETTLED {
@@ -103,7 +103,7 @@ pub(super) fn walk(given: &Setup, sum: &[WeightedTerm], trials: &Trials) -> Resu
     if (way.gone[0] - told).abs() > AS_TOLD * told.abs() + 0.02 {
         return Ok(WalkCost::none(SETTLED + SPAN));
     }
-    // What takes walks of its own. Who does not walk at one of their speeds on level ground does not walk, either.
+    // What takes walks of its own. A gait that does not walk at one of their speeds on level ground has no cost, either.
     let asked = |term: usize| sum.iter().any(|t| t.term == term);
     let share = |term: usize| if asked(term) { trials.share(term, given) } else { Ok(f64::NAN) };
     let (Ok(ground), Ok(pushes)) = (share(GROUND), share(PUSHES)) else {

@@ -1,5 +1,7 @@
 //! Tuned walks of Johnnie.
 
+use config::method::{Integrator, Method};
+
 use super::*;
 use crate::figures_of_thesis::Thesis;
 
@@ -100,6 +102,18 @@ fn a_fall_is_no_walk() {
     let none = Trials { speeds: Vec::new(), places: 1, pushes: 1, seed: 1 };
     let walk = cost::walk(&setup, &["inclination".parse().unwrap()], &none).unwrap();
     assert!(!walk.walked() && walk.terms[0].is_nan() && walk.cost > cost::NO_WALK, "{walk:?}");
+}
+
+/// Regression: a walk of a simulation that is not to be trusted cost as little as any other.
+#[test]
+fn a_walk_that_is_not_to_be_trusted_is_none() {
+    let mut setup = Setup::load(&config::root(None), "walk_2kmh").unwrap();
+    // Too few steps in a cycle for the feet of type 3; the robot walks as told all the same.
+    setup.scene.choose(Method { depth: 3, integrator: Integrator::SemiImplicit, substeps: 2 });
+    setup.scene.force_step = true; // it is refused otherwise
+    let none = Trials { speeds: Vec::new(), places: 1, pushes: 1, seed: 1 };
+    let walk = cost::walk(&setup, &["inclination".parse().unwrap()], &none).unwrap();
+    assert!(!walk.walked(), "{walk:?}");
 }
 
 #[test]
