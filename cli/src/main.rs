@@ -398,10 +398,9 @@ fn daemon(task: GangwerkTask) -> Result<ExitCode, Box<dyn Error>> {
         GangwerkTask::Planner(p) => planner::daemon::main(&p.run, commands(Process::Planner))?,
         GangwerkTask::Controller(p) => controller::daemon::main(&p.run, commands(Process::Controller))?,
         GangwerkTask::Lowlevel(p) => {
+            let done = lowlevel::daemon::main(&p.run, commands(Process::Lowlevel))?;
             // Asked to end before the scene was done: no success, unless it is the supervisor who asked.
-            if !lowlevel::daemon::main(&p.run, commands(Process::Lowlevel))? {
-                return Ok(cli::exit::Exit::Interrupted.into());
-            }
+            return Ok(if done { ExitCode::SUCCESS } else { cli::exit::Exit::Interrupted.into() });
         }
         _ => {}
     }

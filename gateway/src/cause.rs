@@ -19,7 +19,7 @@ pub enum Cause {
     Order,
     /// More than the gateway takes.
     Rate,
-    /// She was stopped, or taken over, by somebody else; a velocity of zero comes first.
+    /// She was stopped, or taken over, by somebody else, and it moves her or her head; a velocity of zero comes first.
     Held,
     /// Robot or broker refused it, or is not there.
     Robot,

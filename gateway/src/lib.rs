@@ -44,7 +44,7 @@ use link::Link;
 use observer::Observer;
 use sight::Sight;
 pub use steering::SILENCE;
-use steering::Steering;
+use steering::{Passage, Steering};
 use trigger::{Frames, Odometry, Trigger, flag};
 
 /// Between two looks for a robot, and between two lines about refusals \[ns\].
@@ -140,8 +140,10 @@ pub fn run(options: &Options, stop: &Stop, say: Say) -> Result<(), String> {
     let period = (1e9 / options.rate) as u64;
     let mut due = now();
     while !stop.asked() {
-        gateway.receive(due);
+        gateway.wait(due);
+        // Somebody's stop is heard before what has come after it.
         gateway.look();
+        gateway.receive();
         if now() >= due {
             gateway.trigger();
             // Cycles that a busy machine missed are not caught up on.
@@ -152,16 +154,21 @@ pub fn run(options: &Options, stop: &Stop, say: Say) -> Result<(), String> {
 }
 
 impl Gateway<'_> {
-    /// Takes datagrams that have come, waiting for the first one, but not beyond the next trigger.
-    fn receive(&mut self, due: u64) {
-        let wait = due.saturating_sub(now()).clamp(1000, LOOK);
+    /// Waits for a datagram, but not beyond the next trigger, and leaves it where it is.
+    fn wait(&self, due: u64) {
+        let wait = Duration::from_nanos(due.saturating_sub(now()).clamp(1000, LOOK));
+        if self.socket.set_nonblocking(false).is_ok() && self.socket.set_read_timeout(Some(wait)).is_ok() {
+            let _ = self.socket.peek_from(&mut [0]);
+        }
+    }
+
+    /// Takes datagrams that have come.
+    fn receive(&mut self) {
+        if self.socket.set_nonblocking(true).is_err() {
+            return;
+        }
         let mut bytes = [0; LONGEST];
-        for n in 0..MOST {
-            // Only the first one is waited for.
-            let waits = n == 0 && self.socket.set_read_timeout(Some(Duration::from_nanos(wait))).is_ok();
-            if self.socket.set_nonblocking(!waits).is_err() {
-                return;
-            }
+        for _ in 0..MOST {
             match self.socket.recv_from(&mut bytes) {
                 Ok((length, from)) => self.take(&bytes[..length], from),
                 Err(e) if e.kind() == ErrorKind::Interrupted => {}
@@ -171,7 +178,7 @@ impl Gateway<'_> {
     }
 
     fn take(&mut self, bytes: &[u8], from: SocketAddr) {
-        if from.ip() != self.options.to.ip() || !owner::is_trusted(from, self.listen) {
+        if from.ip() != self.options.to.ip() || !owner::is_trusted(from) {
             return self.gate.count(Cause::Sender);
         }
         if let Ok(command) = self.gate.admit(bytes, from, now()) {
@@ -187,8 +194,10 @@ impl Gateway<'_> {
         });
         match given {
             None => self.gate.count(Cause::Robot),
-            Some(Ok(true)) => {}
-            Some(Ok(false)) => self.gate.count(Cause::Held),
+            // Counted when it is answered.
+            Some(Ok(Passage::Send)) => {}
+            Some(Ok(Passage::Needless)) => self.gate.accepted += 1,
+            Some(Ok(Passage::Held)) => self.gate.count(Cause::Held),
             Some(Err(why)) => {
                 self.gate.count(Cause::Robot);
                 self.lose(&why);
@@ -204,9 +213,8 @@ impl Gateway<'_> {
         }
         if let Some(Robot { link: Some(link), steering, .. }) = &mut self.robot {
             let say = self.say;
-            match link.look(steering, now(), &mut |line| say(&line)) {
-                Ok(refused) => (0..refused).for_each(|_| self.gate.count(Cause::Robot)),
-                Err(why) => self.lose(&why),
+            if let Err(why) = link.look(steering, &mut self.gate, now(), &mut |line| say(&line)) {
+                self.lose(&why);
             }
         }
         if now() >= self.next_line && self.told != self.gate.refused {
@@ -221,6 +229,7 @@ impl Gateway<'_> {
         let supervisor = ipc::supervisor(dir);
         if self.robot.as_ref().is_some_and(|robot| supervisor != Some(robot.supervisor)) {
             // Its ports go before the next run makes others in their place.
+            self.give_up_answers();
             self.robot = None;
         }
         let line = match &mut self.robot {
@@ -250,11 +259,18 @@ impl Gateway<'_> {
     fn lose(&mut self, why: &str) {
         let say = self.say;
         say(why);
+        self.give_up_answers();
         if let Some(robot) = &mut self.robot {
             robot.link = None;
             robot.steering.disconnected(&mut |line| say(&line));
         }
         self.said.clear();
+    }
+
+    /// What was not answered is counted as refused by the robot: nobody answers it any more.
+    fn give_up_answers(&mut self) {
+        let unanswered = self.robot.as_ref().map_or(0, |robot| robot.steering.unanswered());
+        (0..unanswered).for_each(|_| self.gate.count(Cause::Robot));
     }
 
     /// Refusals since the last time, by cause.

@@ -10,18 +10,20 @@ const TABLES: [&str; 2] = ["/proc/net/udp", "/proc/net/udp6"];
 const ADDRESS: usize = 1;
 const USER: usize = 7;
 
-/// True if what came from there is root's, or his whose socket `own` is. Of another machine's address nothing is known: true.
+/// True if what came from there is root's or of this process's own user. Of another machine's address nothing is known: true.
 ///
 /// An address is somebody's while his socket is open; of several sockets with one address each has to be trusted.
-pub fn is_trusted(from: SocketAddr, own: SocketAddr) -> bool {
-    if !is_here(from) {
-        return true;
-    }
-    let tables = TABLES.map(|table| fs::read_to_string(table).unwrap_or_default());
-    let users = |at| tables.iter().flat_map(move |table| users_of(table, at)).collect::<Vec<_>>();
-    let (senders, mine) = (users(from), users(own));
-    !senders.is_empty()
-        && senders.iter().all(|user| *user == Some(0) || user.is_some() && mine.contains(user))
+pub fn is_trusted(from: SocketAddr) -> bool {
+    let tables = || TABLES.map(|table| fs::read_to_string(table).unwrap_or_default());
+    !is_here(from) || are_of(&tables(), from, rustix::process::geteuid().as_raw())
+}
+
+/// True if the sockets of these tables that send from there are root's or this user's, and there are any.
+///
+/// Who we are is not asked of the tables: anybody's socket for all addresses of the other family may stand there as ours does.
+fn are_of(tables: &[impl AsRef<str>], from: SocketAddr, user: u32) -> bool {
+    let users: Vec<_> = tables.iter().flat_map(|table| users_of(table.as_ref(), from)).collect();
+    !users.is_empty() && users.iter().all(|of| *of == Some(0) || *of == Some(user))
 }
 
 /// True of an address of this machine, on whatever interface: a socket can be bound to those, and to no other.
@@ -85,6 +87,28 @@ mod tests {
         assert_eq!(users("127.0.0.1:0"), []);
     }
 
+    /// Another user walked her, who had a socket for all IPv6 addresses at the gateway's port: he counted as the gateway's user.
+    #[cfg(target_endian = "little")]
+    #[test]
+    fn a_socket_at_the_gateways_port_makes_nobody_its_user() {
+        let head = "sl local_address rem_address st queues tm->when retrnsmt uid timeout inode";
+        let line = |address: &str, user: u32| {
+            format!("{head}\n 1: {address} 00000000:0000 07 0:0 00:0 0 {user} 0 21487 2 0 0\n")
+        };
+        let (all, gateway) = ("0".repeat(32), "0100007F:B860");
+        let tables = |from: &str, user: u32| {
+            [line(gateway, 1000), line(&format!("{all}:B860"), 1001), line(from, user)]
+        };
+        let sender = "127.0.0.1:47201".parse().unwrap();
+        for (user, trusted) in [(1001, false), (1000, true), (0, true)] {
+            assert_eq!(are_of(&tables("0100007F:B861", user), sender, 1000), trusted, "{user}");
+        }
+        // One more of his own at the sender's port: which of them sent, nobody knows.
+        let tables = [line("0100007F:B861", 1000), line(&format!("{all}:B861"), 1001)];
+        assert!(!are_of(&tables, sender, 1000));
+        assert!(!are_of(&[""], sender, 1000), "nobody's");
+    }
+
     /// Address of an interface that leads to other machines, if there is one. Nothing is sent.
     fn outward() -> Option<IpAddr> {
         let socket = UdpSocket::bind("0.0.0.0:0").ok()?;
@@ -97,13 +121,13 @@ mod tests {
     fn a_socket_is_trusted_while_it_is_open() {
         let loopback = ["127.0.0.1", "::1"].map(|host| host.parse().unwrap());
         for host in loopback.into_iter().chain(outward()) {
-            let [from, own] = [0; 2].map(|_| UdpSocket::bind((host, 0)).unwrap());
-            let [at, by] = [&from, &own].map(|socket| socket.local_addr().unwrap());
-            assert!(is_trusted(at, by), "{at}");
+            let from = UdpSocket::bind((host, 0)).unwrap();
+            let at = from.local_addr().unwrap();
+            assert!(is_trusted(at), "{at}");
             drop(from);
-            assert!(!is_trusted(at, by), "nobody's");
+            assert!(!is_trusted(at), "nobody's");
             for other in ["203.0.113.1:1", "[2001:db8::1]:1"] {
-                assert!(is_trusted(other.parse().unwrap(), by), "another machine's");
+                assert!(is_trusted(other.parse().unwrap()), "another machine's");
             }
         }
     }

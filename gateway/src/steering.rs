@@ -28,6 +28,16 @@ pub(crate) enum Passage {
     Held,
 }
 
+/// What a hold leaves to do at the broker, one after the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Parting {
+    /// The lease is given back, so that nothing of ours keeps it.
+    Lease,
+    /// She is stopped: a velocity of ours may have come to the robot behind somebody else's stop, and this stop comes behind that
+    /// velocity, on the same connection. The lease goes when it is answered.
+    Stop,
+}
+
 /// State of the steering.
 #[derive(Default)]
 pub(crate) struct Steering {
@@ -35,8 +45,11 @@ pub(crate) struct Steering {
     mine: bool,
     /// Time of the last velocity that moves her \[ns\]; none: she need not walk.
     walks: Option<u64>,
+    /// Time of the last command that took the lease, if it was free \[ns\]; none: given back since, or somebody else's.
+    took: Option<u64>,
     /// Why no velocity is passed on until one of zero comes.
     held: Option<String>,
+    parting: Option<Parting>,
     /// Commands that are not answered yet.
     awaited: Awaited<Command>,
 }
@@ -61,7 +74,7 @@ impl Steering {
     pub(crate) fn admit(&mut self, command: &Command, now: u64) -> Passage {
         match command {
             Command::Velocity(_) if !command.is_unbounded() => self.admit_stop(),
-            Command::Velocity(_) if self.is_held() => Passage::Held,
+            _ if self.is_held() && command.needs_lease() => Passage::Held,
             Command::Velocity(_) => {
                 self.walks = Some(now);
                 Passage::Send
@@ -81,20 +94,36 @@ impl Steering {
 
     /// A command went to the broker with this number.
     pub(crate) fn sent(&mut self, sequence: u64, command: &Command, now: u64) {
+        if command.needs_lease() {
+            self.took = Some(now);
+        }
         self.awaited.insert(sequence, *command, now);
     }
 
-    /// Takes an answer; true: it is a refusal.
-    pub(crate) fn answered(&mut self, answer: Answer, say: &mut dyn FnMut(String)) -> bool {
-        let Some(command) = self.awaited.take(&answer) else { return false };
-        let (code, name) = (answer.code, command.name());
-        let Err(why) = answer.accepted() else { return false };
-        if matches!(command, Command::Velocity(_)) && NOT_YOURS.contains(&code) {
-            self.hold(format!("{name} refused: {why}"), say);
-        } else {
-            say(format!("{name} refused: {why}"));
+    /// Takes an answer; whether it accepts a command of the vision system, if it is one to such.
+    pub(crate) fn answered(&mut self, answer: Answer, now: u64, say: &mut dyn FnMut(String)) -> Option<bool> {
+        let command = self.awaited.take(&answer)?;
+        if command == Command::Stop {
+            // That of a hold, which may be over by now.
+            self.parting = self.parting.max(self.is_held().then_some(Parting::Lease));
+            return None;
         }
-        true
+        let (code, name) = (answer.code, command.name());
+        let refused = answer.accepted().err();
+        if let Some(why) = &refused {
+            let line = format!("{name} refused: {why}");
+            if matches!(command, Command::Velocity(_)) && NOT_YOURS.contains(&code) {
+                self.hold(line, self.steered(now).then_some(Parting::Lease), say);
+            } else {
+                say(line);
+            }
+        }
+        Some(refused.is_none())
+    }
+
+    /// Number of commands of the vision system that are not answered yet.
+    pub(crate) fn unanswered(&self) -> usize {
+        self.awaited.iter().filter(|command| **command != Command::Stop).count()
     }
 
     /// Looks whether an answer is overdue.
@@ -108,9 +137,34 @@ impl Steering {
     /// The command lease has changed hands.
     pub(crate) fn held_by(&mut self, holder: &str, say: &mut dyn FnMut(String)) {
         self.mine = is_own(holder, NAME);
-        if !self.mine && !holder.is_empty() && self.walks() {
-            self.hold(format!("{holder} steers"), say);
+        if self.mine || holder.is_empty() {
+            return;
         }
+        // The broker refuses what comes of ours now, and a stop would be one of somebody else's walk.
+        (self.took, self.parting) = (None, None);
+        if self.walks() {
+            self.hold(format!("{holder} steers"), None, say);
+        }
+    }
+
+    /// Somebody else has stopped her, by this command.
+    pub(crate) fn stopped(&mut self, by: &Command, now: u64, say: &mut dyn FnMut(String)) {
+        let parting = self.steered(now).then_some(Parting::Stop);
+        self.hold(format!("stopped by somebody else ({})", by.name()), parting, say);
+    }
+
+    /// True: the lease is ours, or what takes it may still be on its way to the robot.
+    fn steered(&self, now: u64) -> bool {
+        self.mine || self.took.is_some_and(|at| now.saturating_sub(at) < SECOND)
+    }
+
+    /// What a hold leaves to do at the broker, once.
+    pub(crate) fn part(&mut self) -> Option<Parting> {
+        let parting = self.parting.take();
+        if parting == Some(Parting::Lease) {
+            (self.mine, self.took) = (false, None);
+        }
+        parting
     }
 
     /// True once if the vision system has been silent for so long that she is to stand.
@@ -119,8 +173,9 @@ impl Steering {
     }
 
     /// From now on the vision system does not steer, until it has shown that it knows.
-    pub(crate) fn hold(&mut self, why: String, say: &mut dyn FnMut(String)) {
+    fn hold(&mut self, why: String, parting: Option<Parting>, say: &mut dyn FnMut(String)) {
         self.walks = None;
+        self.parting = self.parting.max(parting);
         if self.held.as_ref() != Some(&why) {
             say(format!("{why}: velocities are refused until one of zero comes"));
         }
@@ -129,8 +184,8 @@ impl Steering {
 
     /// The connection to the broker is over, and with it the lease. Nobody knows who stops her until there is another one.
     pub(crate) fn disconnected(&mut self, say: &mut dyn FnMut(String)) {
-        (self.mine, self.awaited) = (false, Awaited::default());
-        self.hold("nobody's stop is heard without the broker".into(), say);
+        *self = Self { held: self.held.take(), ..Self::default() };
+        self.hold("nobody's stop is heard without the broker".into(), None, say);
     }
 }
 
@@ -142,6 +197,7 @@ mod tests {
 
     const WALK: Command = Command::Velocity(VelocityCommand { forward: 0.3, left: 0.0, turn: 0.0 });
     const ZERO: Command = Command::Velocity(VelocityCommand { forward: 0.0, left: 0.0, turn: 0.0 });
+    const LOOK: Command = Command::Fixate(FixateCommand { point: [1.0, 0.0, 1.0] });
 
     fn own() -> String {
         format!("{NAME} (pid {})", std::process::id())
@@ -166,7 +222,7 @@ mod tests {
         let mut steering = Steering::default();
         assert_eq!(give(&mut steering, WALK, 1), Passage::Send);
         steering.held_by(&own(), &mut |_| {});
-        steering.hold("stopped by somebody else (walk/stop)".into(), &mut |_| {});
+        steering.stopped(&Command::Stop, 1000, &mut |_| {});
         assert_eq!(give(&mut steering, WALK, 2), Passage::Held);
         steering.disconnected(&mut |_| {});
         let overdue = steering.check_answers(u64::MAX).is_err();
@@ -193,22 +249,21 @@ mod tests {
     /// The lease is told some milliseconds after the velocity that takes it: a zero within them was accepted and thrown away.
     #[test]
     fn a_zero_stops_what_is_still_on_its_way() {
-        let look = Command::Fixate(FixateCommand { point: [1.0, 0.0, 1.0] });
-        for command in [WALK, look] {
+        for command in [WALK, LOOK] {
             let mut steering = Steering::default();
             assert_eq!(give(&mut steering, command, 1), Passage::Send);
             assert_eq!(give(&mut steering, ZERO, 2), Passage::Send, "{command:?}");
             assert!(!steering.walks());
             // Answered, and the lease told: it is still ours.
-            steering.answered(accepted(1), &mut |_| {});
-            steering.answered(accepted(2), &mut |_| {});
+            steering.answered(accepted(1), 1000, &mut |_| {});
+            steering.answered(accepted(2), 1000, &mut |_| {});
             steering.held_by(&own(), &mut |_| {});
             assert_eq!(give(&mut steering, ZERO, 3), Passage::Send);
         }
         // Accepted, and the lease not told yet.
         let mut steering = Steering::default();
         give(&mut steering, WALK, 1);
-        steering.answered(accepted(1), &mut |_| {});
+        steering.answered(accepted(1), 1000, &mut |_| {});
         assert_eq!(give(&mut steering, ZERO, 2), Passage::Send);
     }
 
@@ -221,11 +276,61 @@ mod tests {
         assert_eq!(give(&mut steering, ZERO, 2), Passage::Needless);
         // Taken over, and so held; the zero frees it and goes nowhere.
         give(&mut steering, WALK, 2);
-        steering.answered(accepted(2), &mut |_| {});
+        steering.answered(accepted(2), 1000, &mut |_| {});
         steering.held_by("somebody (pid 1)", &mut |_| {});
         assert_eq!(give(&mut steering, WALK, 3), Passage::Held);
         assert_eq!(give(&mut steering, ZERO, 3), Passage::Needless);
         assert!(!steering.is_held());
+    }
+
+    /// A velocity came to the robot behind a person's stop, before that was heard here, and boxes kept the lease: she walked on.
+    #[test]
+    fn a_hold_stops_what_came_behind_somebody_elses_stop_and_gives_the_lease_back() {
+        for told in [true, false] {
+            let mut steering = Steering::default();
+            give(&mut steering, WALK, 1);
+            if told {
+                steering.held_by(&own(), &mut |_| {});
+            }
+            steering.stopped(&Command::Stop, 1000 + SECOND - 1, &mut |_| {});
+            assert_eq!((steering.part(), steering.part()), (Some(Parting::Stop), None), "{told}");
+            steering.sent(2, &Command::Stop, 1000 + SECOND);
+            assert_eq!(steering.unanswered(), 1, "the walk alone is the vision system's");
+            assert_eq!(steering.answered(accepted(2), 1000 + SECOND, &mut |_| {}), None);
+            assert_eq!((steering.part(), steering.has_lease()), (Some(Parting::Lease), false), "{told}");
+            // Heard again, and nothing is left to do; a look would take the lease, a box takes none.
+            steering.stopped(&Command::EmergencyStop, 1001 + SECOND, &mut |_| {});
+            assert_eq!(steering.part(), None, "{told}");
+            assert_eq!(give(&mut steering, LOOK, 3), Passage::Held);
+            assert_eq!(give(&mut steering, Command::Gone(GoneCommand { id: 1 }), 3), Passage::Send);
+        }
+    }
+
+    #[test]
+    fn a_hold_stops_no_walk_of_somebody_else() {
+        // A second after the last velocity its lease is over; and who has taken her over has the walk in his hands.
+        let mut steering = Steering::default();
+        steering.stopped(&Command::Stop, 1000, &mut |_| {});
+        assert_eq!(steering.part(), None, "nothing was sent");
+        give(&mut steering, ZERO, 1);
+        give(&mut steering, WALK, 1);
+        steering.stopped(&Command::Stop, 1000 + SECOND, &mut |_| {});
+        assert_eq!(steering.part(), None, "long ago");
+        give(&mut steering, ZERO, 2);
+        give(&mut steering, WALK, 3);
+        steering.stopped(&Command::Stop, 1000, &mut |_| {});
+        steering.held_by("somebody (pid 1)", &mut |_| {});
+        assert_eq!(steering.part(), None, "taken over since");
+        // The vision system has seen the stop and walks on before ours is answered.
+        let mut steering = Steering::default();
+        give(&mut steering, WALK, 1);
+        steering.stopped(&Command::Stop, 1000, &mut |_| {});
+        assert_eq!(steering.part(), Some(Parting::Stop));
+        steering.sent(2, &Command::Stop, 1000);
+        give(&mut steering, ZERO, 3);
+        give(&mut steering, WALK, 4);
+        steering.answered(accepted(2), 1000, &mut |_| {});
+        assert_eq!(steering.part(), None);
     }
 
     #[test]
@@ -235,8 +340,10 @@ mod tests {
             give(&mut steering, ZERO, 1);
             give(&mut steering, WALK, 2);
             let answer = Answer { sequence: 2, code, text: "no".into() };
-            assert!(steering.answered(answer, &mut |_| {}));
+            assert_eq!(steering.answered(answer, 1000, &mut |_| {}), Some(false));
             assert_eq!(steering.is_held(), holds, "{code}");
+            // Boxes went on renewing the lease of a walk that was refused.
+            assert_eq!(steering.part(), holds.then_some(Parting::Lease), "{code}");
         }
         give(&mut steering, ZERO, 3);
         give(&mut steering, WALK, 4);

@@ -302,6 +302,10 @@ impl<'a> Desk<'a> {
             match news {
                 News::Answer(answer) => self.answered(answer)?,
                 News::Command(by @ (Command::Stop | Command::End | Command::EmergencyStop)) => {
+                    // A velocity of the hands may have come to her behind that stop: this one comes behind it.
+                    if robot.pilot.steers() {
+                        robot.send(&Command::Stop)?;
+                    }
                     self.lapse(&format!("stopped by somebody else ({})", by.name()));
                 }
                 News::Lease(_, holder) => self.held_by(&holder),

@@ -88,7 +88,6 @@ pub fn run(options: &Options, stop: &Stop, say: fn(&str)) -> Result<End, String>
     let refused =
         |e| format!("cannot listen on {listen}: {e}; another address: --listen, and --to of the gateway");
     let socket = UdpSocket::bind(listen).map_err(refused)?;
-    let here = socket.local_addr().map_err(refused)?;
     socket.set_read_timeout(Some(Duration::from_nanos(LOOK))).map_err(refused)?;
     let mut cameras = Cameras::open(&options.dir, options.seed)?;
     let (mut pilot, mut line) = (Pilot::new(options.speeds), Line::new(std::process::id().into()));
@@ -98,7 +97,7 @@ pub fn run(options: &Options, stop: &Stop, say: fn(&str)) -> Result<End, String>
     // A trigger is when the cameras look; its answer goes back some time later.
     while !stop.asked() && options.time.is_none_or(|time| now() - begin < time) {
         if let Ok((length, from)) = socket.recv_from(&mut bytes)
-            && owner::is_trusted(from, here)
+            && owner::is_trusted(from)
             && let Ok(trigger) = Trigger::decode(&bytes[..length])
         {
             (heard, told) = (now(), false);

@@ -173,8 +173,7 @@ impl Exploration {
 
 fn row((depth, network, seed): (u8, NetworkKind, u64), explored: &Explored) -> Row {
     let way_m = explored.way.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum();
-    let touched =
-        explored.touched.as_ref().map(|(object, link, time)| format!("{object}: {link}, {time:.1} s"));
+    let touched = explored.touched.as_ref().map(|t| format!("{}: {}, {:.1} s", t.object, t.link, t.time));
     let [accepted, refused, not_walked] = explored.datagrams;
     Row {
         seed,

@@ -26,8 +26,8 @@ pub(super) fn ways(explored: &[(&Row, &(Room, Explored))]) -> Figure {
             chart.area("", rectangle.corners().to_vec(), GREY);
         }
         chart.line("", explored.way.clone(), BLUE);
-        if let (Some(_), Some(last)) = (&explored.touched, explored.way.last()) {
-            chart.dots("touched", vec![*last], 6.0, VERMILION);
+        if let Some(touch) = &explored.touched {
+            chart.dots("touched", vec![touch.at], 6.0, VERMILION);
         }
         figure = figure.with(chart);
     }

@@ -51,8 +51,7 @@ pub(super) struct Explored {
     pub(super) end: WalkEnd,
     /// \[s\]
     pub(super) time: f64,
-    /// Object and link that touched first, and when \[s\].
-    pub(super) touched: Option<(String, String, f64)>,
+    pub(super) touched: Option<Touch>,
     /// \[1\] Share of the floor that the robot got to.
     pub(super) share: f64,
     /// \[m\] @world Way of the torso.
@@ -61,6 +60,16 @@ pub(super) struct Explored {
     pub(super) stood: bool,
     /// Datagrams accepted and refused, and velocities that the planner refused.
     pub(super) datagrams: [u64; 3],
+}
+
+/// What touched first.
+pub(super) struct Touch {
+    pub(super) object: String,
+    pub(super) link: String,
+    /// \[s\]
+    pub(super) time: f64,
+    /// \[m\] @world Place of the torso.
+    pub(super) at: [f64; 2],
 }
 
 /// Robot and vision system, with a network between them.
@@ -110,9 +119,10 @@ pub(super) fn explore(case: &Case<'_>) -> Result<Explored, Error> {
             looked = time;
             let truth: &SimState = &c.sim_state;
             world.place_at(truth.time, &truth.object_delay);
-            touched =
-                touched.or_else(|| outline.touched(truth, &world).map(|(object, link)| (object, link, time)));
             let at = [truth.position[0], truth.position[1]];
+            touched = touched.or_else(|| {
+                outline.touched(truth, &world).map(|(object, link)| Touch { object, link, time, at })
+            });
             if way.last().is_none_or(|last| (last[0] - at[0]).hypot(last[1] - at[1]) > DRAWN) {
                 floor.visit(at);
                 way.push(at);
@@ -172,16 +182,13 @@ impl Session {
         }
         // The gateway's part, as `gateway::link` has it between processes.
         for datagram in self.answers.arrived(time) {
-            match self.gate.admit(&datagram, SocketAddr::from(ADDRESS), stamp) {
-                Ok(command @ Command::Velocity(VelocityCommand { forward, left, turn })) => {
-                    self.walks = ([forward, left, turn] != [0.0; 3]).then_some(time);
-                    self.chain.command(&command);
-                }
-                Ok(command) => {
-                    self.chain.command(&self.sight.map_or(command, |sight| sight.command(&command)));
-                }
-                Err(_) => {}
+            let admitted = self.gate.admit(&datagram, SocketAddr::from(ADDRESS), stamp);
+            let Ok(command) = admitted else { continue };
+            self.gate.accepted += 1;
+            if let Command::Velocity(VelocityCommand { forward, left, turn }) = command {
+                self.walks = ([forward, left, turn] != [0.0; 3]).then_some(time);
             }
+            self.chain.command(&self.sight.map_or(command, |sight| sight.command(&command)));
         }
         if self.walks.is_some_and(|last| time - last > gateway::SILENCE as f64 * 1e-9) {
             self.walks = None;

@@ -111,6 +111,21 @@ fn points_are_looked_at_where_the_trigger_has_them() {
     assert!(apart > 0.03, "{apart} m: nothing to be put right");
 }
 
+/// The dot was where she stood in the end.
+#[test]
+fn a_touch_is_drawn_where_it_was() {
+    let (object, link) = ("box".into(), "arm".into());
+    let touched = Some(session::Touch { object, link, time: 1.0, at: [1.0, 0.0] });
+    let way = vec![[0.0; 2], [1.0, 0.0], [2.0, 0.0]];
+    let (end, datagrams) = (WalkEnd::Done, [0; 3]);
+    let explored = Explored { end, time: 3.0, touched, share: 0.5, way, stood: true, datagrams };
+    let pair = (Room::draw(1, 0, 0, 1.0), explored);
+    let sheet_row = row((1, NetworkKind::Sound, 1), &pair.1);
+    assert_eq!(sheet_row.touched, "box: arm, 1.0 s");
+    let drawn = format!("{:?}", picture::ways(&[(&sheet_row, &pair)]));
+    assert!(drawn.contains("[[1.0, 0.0]]"), "{drawn}");
+}
+
 #[test]
 fn a_bad_network_is_as_bad_as_it_says() {
     let sent = 20_000_u64;
