@@ -20,7 +20,7 @@ impl Setup {
         middle_of_soles(&self.robot, &self.robot.poses[&self.scene.start_pose])
     }
 
-    /// The triangles of each known object.
+    /// The triangles of each known object that is not under the ground, where nobody meets it.
     ///
     /// # Errors
     /// A mesh cannot be read, or the robot's data do not fit together.
@@ -31,7 +31,10 @@ impl Setup {
             let mesh = object.shape.mesh()?;
             let pose = Pose::new(object.pose.position, object.pose.rotation);
             let place = |v: Vector3<f64>| <[f64; 3]>::from(pose.rotation * v + pose.position - begin);
-            obstacles.push(mesh.faces().map(|corners| corners.map(place)).collect());
+            let triangles: Vec<Triangle> = mesh.faces().map(|corners| corners.map(place)).collect();
+            if triangles.iter().flatten().any(|corner| corner[2] > 0.0) {
+                obstacles.push(triangles);
+            }
         }
         Ok(obstacles)
     }

@@ -344,7 +344,7 @@ fn a_urdf_that_is_not_the_rows_is_refused() {
     );
     let fixed = archie.spoiled("archie.urdf", "type=\"revolute\"", "type=\"fixed\"");
     assert!(
-        fixed.starts_with("joint `right_hip_rotation` is in the joint order but not in the URDF"),
+        fixed.contains("archie.urdf: joint `right_hip_rotation` is in the joint order but not in the URDF"),
         "{fixed}"
     );
     let misspelt = archie.spoiled("robot.toml", "[leg.right]", "[leg.rihgt]");

@@ -82,14 +82,10 @@ impl KnownObstacles {
         known
     }
 
-    /// Adds one obstacle, triangles \[m\] @I_0. Those with a number that is not finite are left out, and so is an obstacle that
-    /// lies under the ground.
+    /// Adds one obstacle, triangles \[m\] @I_0. Those with a number that is not finite are left out.
     pub fn add(&mut self, triangles: impl IntoIterator<Item = [Point; 3]>) {
         let finite = |t: &[Point; 3]| t.iter().flatten().all(|x| x.is_finite());
         let triangles: Vec<_> = triangles.into_iter().filter(finite).collect();
-        if triangles.iter().flatten().all(|corner| corner[2] <= 0.0) {
-            return;
-        }
         let disc = Disc::around(&triangles);
         self.obstacles.push((triangles, disc));
     }
@@ -243,15 +239,6 @@ mod tests {
         let turned = PlanarPose::new(2.0, 0.0, std::f64::consts::FRAC_PI_4);
         let e = diamond().extents(turned, [-9.0, 9.0]).next().unwrap();
         assert!((e.end - e.begin - 1.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn what_lies_under_the_ground_is_in_nobodys_way() {
-        let mut obstacles = KnownObstacles::default();
-        obstacles.add([[[1.0, -1.0, -0.3], [1.0, 1.0, -0.3], [1.5, 0.0, 0.0]]]);
-        assert!(obstacles.is_empty());
-        obstacles.add([[[1.0, -1.0, -0.3], [1.0, 1.0, -0.3], [1.5, 0.0, 0.01]]]);
-        assert_eq!(obstacles.extents(PlanarPose::default(), [-1.0, 1.0]).count(), 1);
     }
 
     #[test]

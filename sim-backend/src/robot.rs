@@ -59,8 +59,8 @@ impl SimBackend {
                 format!("scene `{}`: no model has been chosen for depth = \"auto\" yet", scene.name).into()
             );
         }
-        step_limit::check(robot, scene)?;
         sample_grid::check(robot, scene)?;
+        step_limit::check(robot, scene)?;
         stiff::check(scene)?;
         // The body first: the crane hooks in where its centre of gravity is, and the sensors know what hangs on them.
         let mut body = SimulatedBody::new(robot, scene)?;

@@ -456,17 +456,16 @@ fn a_gateway_whose_triggers_cannot_be_sent_says_so() {
 /// Another user of this machine, who knows all that there is to know.
 #[test]
 fn another_user_of_the_machine_moves_nothing() {
+    use std::io::Write;
     use std::os::unix::process::CommandExt;
     const SEND: &str = r"
 import socket, sys
 port = int(sys.argv[1])
 try:  # also the gateway's port of the other family, which anybody may take
-    other = socket.socket(socket.AF_INET6, socket.SOCK_DGRAM); other.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
-    other.bind(('::', port))
+    other = socket.socket(socket.AF_INET6, socket.SOCK_DGRAM); other.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1); other.bind(('::', port))
 except OSError: pass  # no IPv6 here
 s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.bind(('127.0.0.1', 0))
-s.sendto(bytes.fromhex(sys.argv[2]), ('127.0.0.1', port))
-sys.stdin.read()";
+for line in sys.stdin: s.sendto(bytes.fromhex(line), ('127.0.0.1', port))";
     let root = std::fs::metadata("/proc/self").is_ok_and(|m| std::os::unix::fs::MetadataExt::uid(&m) == 0);
     if !root {
         return harness::left_out("another user: only root can be somebody else");
@@ -476,10 +475,8 @@ sys.stdin.read()";
     let mut robot = Robot::standing_in(&site, &PACED);
     let (mut eyes, mut running) = Eyes::and_gateway(&site);
     for (user, moves) in [(65534, false), (0, true)] {
-        eyes.trigger();
-        let hex: String = eyes.answer(velocity(0.25)).iter().map(|b| format!("{b:02x}")).collect();
         let mut other = std::process::Command::new("python3")
-            .args(["-c", SEND, &eyes.gateway.port().to_string(), &hex])
+            .args(["-c", SEND, &eyes.gateway.port().to_string()])
             .stdin(std::process::Stdio::piped())
             .uid(user)
             .gid(user)
@@ -488,11 +485,14 @@ sys.stdin.read()";
             .expect("python3 is there");
         let count = |seen: &Seen| [seen.accepted, seen.refused[Cause::Sender as usize]];
         let before = count(&eyes.seen);
+        // Sent until it counts: on a busy machine some come too late.
         while count(&eyes.trigger()) == before {
+            let hex: String = eyes.answer(velocity(0.25)).iter().map(|b| format!("{b:02x}")).collect();
+            writeln!(other.stdin.as_ref().unwrap(), "{hex}").unwrap();
             assert!(other.try_wait().unwrap().is_none() && running.is_alive(), "{}", running.out());
         }
         let [accepted, refused] = count(&eyes.seen);
-        assert_eq!([accepted - before[0] == 1, refused - before[1] == 1], [moves, !moves], "user {user}");
+        assert_eq!([accepted > before[0], refused > before[1]], [moves, !moves], "user {user}");
         drop(other.stdin.take());
         other.wait().unwrap();
     }

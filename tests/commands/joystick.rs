@@ -233,8 +233,9 @@ fn a_gamepad_walks_her_while_its_button_is_held() {
     pad.stick(dice.between(0.3, 1.0), 0.0);
     says(&mut stick, "release the dead-man button, and hold it again", 3);
     robot.stays();
-    // Killed.
+    // Killed. Just after a standstill a press does not count.
     pad.hold(false);
+    doze(SETTLE);
     pad.hold(true);
     robot.walks();
     doze(dice.between(0.02, 0.3));

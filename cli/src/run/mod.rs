@@ -180,7 +180,8 @@ pub fn run(order: &RunOptions, stop: Stop, console: &Console) -> Result<RunOutco
 /// The end of a run removes what it put into its directory: no place for the operator's configuration.
 fn refuse_config_inside(config: &Path, dir: &Path) -> Result<(), String> {
     let inside = match (config.canonicalize(), dir.canonicalize()) {
-        (Ok(config), Ok(dir)) => config.starts_with(dir),
+        // A link is refused for itself.
+        (Ok(config), Ok(real)) => !dir.is_symlink() && config.starts_with(real),
         _ => false, // a directory that is still to be made holds nothing
     };
     let (config, dir) = (config.display(), dir.display());
