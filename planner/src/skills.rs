@@ -311,8 +311,8 @@ impl Skill {
 
 /// The fewest steps from `previous` \[m\] to the end of a way of `r` \[m\], each at most as long as it may be: no longer
 /// than those of the cruise, no more than a change away from the one before, and the last one short enough to stop.
-/// Scaled to end exactly there. Without an end in sight, those of the cruise, from which the way is long enough to slow down. At
-/// most `most_steps` are prescribed.
+/// Scaled to end exactly there. Without an end in sight, or where scaled ones would slow down too much, as long as lets her slow
+/// down by one change after the other. At most `most_steps` are prescribed.
 fn lengths(r: f64, previous: f64, way: &SkillCourse, (first, most_steps): (f64, usize), script: &mut Script) {
     let most = way.cruise.length.abs();
     let step = |i: usize, n: usize| {
@@ -321,22 +321,28 @@ fn lengths(r: f64, previous: f64, way: &SkillCourse, (first, most_steps): (f64, 
         most.min(up).min(down)
     };
     let sum = |n: usize| (1..=n).map(|i| step(i, n)).sum::<f64>();
-    // Scaled steps may be more than a change shorter than the one before: then there is nothing for it but to slow down.
+    // Scaled steps may be more than a change shorter than the one before.
     let gentle = |n: usize| previous - r / sum(n) * step(1, n) <= way.change + NOTHING;
-    let end = (1..=LOOK).find(|&n| sum(n) >= r).filter(|&n| gentle(n));
-    script.complete = end.is_some_and(|n| n <= most_steps);
-    if let Some(n) = end {
+    if let Some(n) = (1..=LOOK).find(|&n| sum(n) >= r).filter(|&n| gentle(n)) {
+        script.complete = n <= most_steps;
         let scale = r / sum(n);
         (1..=if script.complete { n } else { HEAD }).for_each(|i| script.push(scale * step(i, n)));
         return;
     }
-    // Steps l, l - c, ... down to nothing make a way of l^2 / 2c + l / 2.
-    let (c, mut left) = (way.change, r);
-    for i in 1..=HEAD {
-        let slowing_down = (0.25 * c * c + 2.0 * c * left).sqrt() - 0.5 * c;
-        let length = most.min(previous + i as f64 * c).min(slowing_down);
+
+    // Braking steps l, l - c, ... are m + 1, and the last one is shorter than c: l = left / (m + 1) + m c / 2.
+    let c = way.change;
+    let braking = |left: f64| {
+        let m = (((1.0 + 8.0 * left / c).sqrt() - 1.0) / 2.0).floor();
+        (left / (m + 1.0) + 0.5 * m * c, m as usize + 1)
+    };
+    let (length, n) = braking(r);
+    script.complete = n <= most_steps && length <= most.min(previous + c);
+    let (mut left, mut before) = (r, previous);
+    for _ in 0..if script.complete { n } else { HEAD } {
+        let length = most.min(before + c).min(braking(left).0);
         script.push(length);
-        left -= length;
+        (left, before) = (left - length, length);
     }
 }
 
@@ -381,7 +387,7 @@ mod tests {
         for k in 1..60 {
             let (r, change) = (0.2 * k as f64, 0.005 + 1e-3 * (k % 7) as f64);
             let all = walk(r, 0.4, change, change);
-            assert!((all.iter().sum::<f64>() - r).abs() < 1e-9);
+            assert!((all.iter().sum::<f64>() - r).abs() < NOTHING);
             let ends = [0.0].into_iter().chain(all.iter().copied()).chain([0.0]).collect::<Vec<_>>();
             assert!(ends.windows(2).all(|p| (p[1] - p[0]).abs() <= change + 2.0 * NOTHING), "{all:?}");
         }
