@@ -31,7 +31,7 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Option<ExitCode> {
     behind_estop(arguments.skip(1)).map(run)
 }
 
-/// What follows `estop`; none: it was not called. The option of all commands, `--config`, may stand before it.
+/// Arguments behind `estop`; none: it was not called. The option of all commands, `--config`, may stand before it.
 fn behind_estop(mut arguments: impl Iterator<Item = OsString>) -> Option<impl Iterator<Item = OsString>> {
     loop {
         match arguments.next()?.as_bytes() {
@@ -73,7 +73,7 @@ fn is_off(stopped: &Stopped) -> bool {
     matches!(stopped.outcome, StopOutcome::Off { .. })
 }
 
-/// What the command line asks for.
+/// Wish of the command line.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct StopWish {
     help: bool,

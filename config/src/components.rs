@@ -79,7 +79,7 @@ pub enum ContactModel {
 /// Changes that a scene makes to the components of its type.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ComponentChanges {
-    /// How joints move: by targets or by motors.
+    /// Motion of the joints: by targets or by motors.
     pub joints: Option<JointModel>,
     /// Elastic gears: all of those that have a spring, none, or the drives of these names.
     pub elastic: Option<Selection>,

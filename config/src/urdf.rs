@@ -30,6 +30,7 @@ pub(crate) fn compare(robot: &Robot, path: &Path, urdf_path: &Path) -> Result<()
     comparison.joints();
     if comparison.links() {
         comparison.feet();
+        comparison.supports();
         comparison.limbs();
     }
     let problems = comparison.problems;
@@ -91,10 +92,8 @@ impl Comparison<'_> {
         std::iter::successors(moved_by, |&joint| self.model.parent_joint(joint)).collect()
     }
 
-    /// Sensor, contact elements and toe joint of each foot belong to its leg alone, and its support is the contact points'.
+    /// Sensor, contact elements and toe joint of each foot belong to its leg alone.
     fn feet(&mut self) {
-        let mut data = Data::new(self.model);
-        self.model.forward_kinematics(&mut data, &self.model.neutral());
         let chains = [RIGHT, LEFT].map(|foot| self.chain(&self.robot.feet[foot].link));
         for foot in [RIGHT, LEFT] {
             let (side, of) = (SIDES[foot], &self.robot.feet[foot]);
@@ -112,8 +111,23 @@ impl Comparison<'_> {
             let named = [("link".to_owned(), &of.link), ("sensor_link".to_owned(), &of.sensor_link)];
             let strange = named.into_iter().chain(elements).find(|(_, link)| !in_leg(link));
             let turned = of.toe.filter(|toe| own.first() != Some(toe));
+            if let Some((key, link)) = strange {
+                self.note(format!("{side}.{key}"), format!("`{link}` is no part of this leg alone"));
+            }
+            if let Some(toe) = turned {
+                let (name, link) = (&self.robot.joints[toe].name, &of.link);
+                let text =
+                    format!("joint `{name}` is not the one that moves `{link}`, which carries the sole");
+                self.note(format!("{side}.toe"), text);
+            }
+        }
+    }
 
-            // Outline of the contact points in the sole frame, toes straight.
+    /// The support of each foot lies within the outline of its contact points, in the sole frame, toes straight.
+    fn supports(&mut self) {
+        let mut data = Data::new(self.model);
+        self.model.forward_kinematics(&mut data, &self.model.neutral());
+        for (side, of) in SIDES.into_iter().zip(&self.robot.feet) {
             let place = |link: &str, at: [f64; 3]| self.model.frame(link, at).ok();
             let sole = place(&of.link, of.sole).map(|sole| self.model.frame_pose(&data, &sole));
             let points = of.points.iter().filter_map(|(link, at)| {
@@ -125,16 +139,6 @@ impl Comparison<'_> {
                     [back.min(p.x), front.max(p.x), right.min(p.y), left.max(p.y)]
                 });
 
-            if let Some((key, link)) = strange {
-                self.note(format!("{side}.{key}"), format!("`{link}` is no part of this leg alone"));
-            }
-            if let Some(toe) = turned {
-                let (name, link) = (&self.robot.joints[toe].name, &of.link);
-                self.note(
-                    format!("{side}.toe"),
-                    format!("joint `{name}` is not the one that moves `{link}`, which carries the sole"),
-                );
-            }
             for (key, [low, high], [from, to]) in [
                 ("support_x", [of.support[0], of.support[1]], [outline[0], outline[1]]),
                 ("support_y", [of.support[2], of.support[3]], [outline[2], outline[3]]),

@@ -57,7 +57,7 @@ impl InclinationTrim {
         let off = estimate.zmp - estimate.com.xy();
         let (s, c) = estimate.angles.z.sin_cos();
         let [forward, left] = [c * off.x + s * off.y, c * off.y - s * off.x];
-        // A larger offset is a push, no sensor that is mounted askew.
+        // A larger offset is a push, not a sensor mounted askew.
         let believed = |off: f64| if off.abs() < BELIEVED { off } else { 0.0 };
         let height = estimate.com.z - estimate.feet[0][2].min(estimate.feet[1][2]);
         // Roll brings the centre of gravity to the right, pitch to the front.

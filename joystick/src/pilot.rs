@@ -248,7 +248,7 @@ mod tests {
             assert_eq!(pilot.hands(hands(true, 0.5), &[], 2 * SECOND, 2 * SECOND), [], "held since then");
             assert_eq!(pilot.hands(hands(false, 0.5), &[], 2 * SECOND, 2 * SECOND), []);
             assert_eq!(pilot.hands(hands(true, 0.5), &[], 3 * SECOND, 3 * SECOND), [Deed::Take, walk(0.47)]);
-            assert!(pilot.stood(4 * SECOND), "walked by who stood still");
+            assert!(pilot.stood(4 * SECOND), "hands that steered before the standstill");
             assert_eq!(pilot.hands(hands(true, 0.4), &[], 5 * SECOND, 5 * SECOND), []);
         }
     }

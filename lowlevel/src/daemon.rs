@@ -22,7 +22,7 @@ use std::time::Duration;
 /// Share of a period after which the joint loop no longer waits for the targets of the same cycle.
 const ANSWER: (u64, u64) = (7, 10);
 
-/// Runs the joint loop until the scene is over or somebody asks to end; whether the scene is over.
+/// Runs the joint loop until the scene is over or somebody asks to end. Returns true if the scene is over.
 ///
 /// # Errors
 /// The process cannot start, or, in lockstep, a peer fell silent.

@@ -278,12 +278,14 @@ impl Skill {
         let r = way.left(from);
         let sign = way.cruise.length.signum();
         let previous = if starting { (first - way.change).max(0.0) } else { from.previous.length * sign };
+        // Along the way lengths count forward, whichever way she walks.
         let mut script = Script::NONE;
         script.complete = true;
         if r * sign > NOTHING {
             lengths(r * sign, previous, way, (first, MOST - usize::from(over.is_some())), &mut script);
             script.lengths[..script.len].iter_mut().for_each(|l| *l *= sign);
         }
+        // Behind the last foothold of the way comes the step over the edge.
         if let Some(over) = over {
             script.wall = if r > -NOTHING { r.max(0.0) } else { f64::INFINITY };
             if r > -NOTHING && script.complete {

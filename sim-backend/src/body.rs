@@ -152,6 +152,7 @@ impl SimulatedBody {
         if !contact.converged {
             events.push(EventCode::ContactNotConverged, Detail::Count(contact.sweeps.into()));
         }
+        // An object that would run into the robot waits; those that come and go by the scene's schedule are no news.
         for event in self.plant.advance(time) {
             match *event {
                 environment::ObjectEvent::Refused(i) => {

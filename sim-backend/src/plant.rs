@@ -199,7 +199,8 @@ impl Plant {
         }
     }
 
-    /// The controllers with a clock of their own measure and compute, if the beginning of a step is one of their instants. Steps are whole fractions of their periods, and cycles whole multiples.
+    /// The controllers with a clock of their own measure and compute, if the beginning of a step is one of their instants. Steps
+    /// are whole fractions of their periods, and cycles whole multiples.
     pub fn tick(&mut self, step: Substep, x: &[f64], drives: &[JointCubic], inputs: &PlantInputs) {
         let Joints::Driven(train) = &self.joints else { return };
         if train.is_due(step) {

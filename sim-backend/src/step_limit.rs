@@ -170,6 +170,7 @@ fn explicit_limit(plant: &mut Plant, of: LimitOf, pose: &[f64]) -> Result<StepLi
         ("standing, joints in motion", moving(standing)),
         ("in the air, joints in motion", moving(hanging)),
     ];
+    // Slow modes are the robot's fall, which no step makes stable.
     let mut least = StepLimit { step: f64::INFINITY, regime: "" };
     for (regime, x) in regimes {
         let mut values = eigenvalues(&x, |x, dx| plant.rate(0.0, x, &drives, &PlantInputs::POWERED, dx))?;
@@ -216,16 +217,22 @@ fn resting(pose: &[f64]) -> Vec<JointCubic> {
     pose.iter().map(|&q| JointCubic::resting(q)).collect()
 }
 
+/// Limit that the step of a scene is beyond, unless the scene forces it.
+///
+/// # Errors
+/// As of [`step_limit`].
+pub fn exceeded(robot: &Robot, scene: &Scene) -> Result<Option<StepLimit>> {
+    let step = scene.cycle / f64::from(scene.substeps);
+    let limit = if scene.force_step { None } else { step_limit_of_scene(robot, scene)? };
+    Ok(limit.filter(|limit| step > limit.step))
+}
+
 /// Refuses a step of a scene that is longer than the stable one.
 ///
 /// # Errors
 /// It is, and the scene does not force it; or as of [`step_limit`].
 pub(crate) fn check(robot: &Robot, scene: &Scene) -> Result<()> {
-    let Some(limit) = step_limit_of_scene(robot, scene)? else { return Ok(()) };
-    let step = scene.cycle / f64::from(scene.substeps);
-    if step <= limit.step || scene.force_step {
-        return Ok(());
-    }
+    let Some(limit) = exceeded(robot, scene)? else { return Ok(()) };
     let name = Integrator::WORDS[scene.integrator as usize];
     let enough = (scene.cycle / limit.step).ceil();
     let advice = if enough <= 1000.0 { format!("substeps = {enough} or more, or ") } else { String::new() };
@@ -238,7 +245,7 @@ pub(crate) fn check(robot: &Robot, scene: &Scene) -> Result<()> {
          ({}{soles}); take {advice}{other}force_step = true to see what happens",
         scene.name,
         scene.substeps,
-        1e3 * step,
+        1e3 * scene.cycle / f64::from(scene.substeps),
         in_ms(limit.step),
         limit.regime
     )

@@ -55,6 +55,7 @@ impl Study for Servo {
         let count = 2 * PERIODS.len() * STEPS.len();
         let mut walks = Vec::new();
         let mut chart = Chart::new(SCENE, "times real time [1]", "hips, knees, motor side [mrad]");
+        // A line for each period and law, a point for each step.
         for (period, color) in PERIODS {
             for integral in [true, false] {
                 let mut points = Vec::new();

@@ -113,8 +113,8 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// Off. `missed` own cycles without a new heartbeat of the joint loop are too many; one late cycle since the last sign
-    /// of life is not counted. The supply's relay falls after `quiet` cycles without a toggle. Both at least 1.
+    /// Off. `missed` own cycles without a new heartbeat of the joint loop are too many; one late cycle since the last
+    /// heartbeat is not counted. The supply's relay falls after `quiet` cycles without a toggle. Both at least 1.
     pub fn new(missed: u32, quiet: u32) -> Self {
         Self {
             limit: u64::from(missed.max(1)),

@@ -119,7 +119,7 @@ impl System {
     }
 }
 
-/// What only a test asks a client for.
+/// Reading of a client that only tests need.
 pub(crate) trait Receive {
     /// The next command of the domains subscribed to; other news are passed over.
     fn receive(&mut self, timeout: Duration) -> Result<Option<Command>, String>;

@@ -34,7 +34,7 @@ use config::method::Method;
 use config::tolerance::Output;
 use config::{Robot, Scene, Setup};
 use serde::Serialize;
-use sim_backend::step_limit::step_limit_of_scene;
+use sim_backend::step_limit;
 
 use self::trial::MethodTrial;
 
@@ -201,9 +201,7 @@ pub fn choose(setup: &Setup, trying: impl FnMut(&str)) -> Result<Choice, Box<dyn
 fn is_too_long(setup: &Setup, method: Method) -> Result<bool, Box<dyn Error>> {
     let mut scene = setup.scene.clone();
     scene.choose(method);
-    let limit = step_limit_of_scene(&setup.robot, &scene)?;
-    let step = scene.cycle / f64::from(scene.substeps);
-    Ok(!scene.force_step && limit.is_some_and(|limit| step > limit.step))
+    Ok(step_limit::exceeded(&setup.robot, &scene)?.is_some())
 }
 
 /// What one method is estimated to be off by on a scene whose depth is "auto".

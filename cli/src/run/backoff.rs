@@ -1,7 +1,7 @@
 //! Back-off of restarts: soon, then later and later, and not for ever. Pure: time is an argument.
 //!
-//! A process that died too often in a row is left dead, and so is one that died so often that its topics have no slot for another writer
-//! ([`ipc::writers`]): each that is killed takes its place with it.
+//! A process that died too often in a row is left dead, and so is one that died so often that its topics have no slot for
+//! another writer ([`ipc::writers`]): each that is killed takes its place with it.
 
 use realtime::clock::SECOND;
 

@@ -109,8 +109,8 @@ struct Supervisor {
 }
 
 impl Supervisor {
-    /// Starts the processes one after the other, in the order of `start_order`; each has built everything before the next begins. A longer wait for
-    /// peers, `peer_timeout`, is a longer wait for their start, too.
+    /// Starts the processes one after the other, in the order of `start_order`; each has built everything before the next begins.
+    /// A longer wait for peers, `peer_timeout`, is a longer wait for their start, too.
     fn start(&mut self, setup: &Setup) -> Result<(), Box<dyn Error>> {
         let patience = START_PATIENCE.max(self.patience);
         for &process in &setup.system.start_order {

@@ -12,7 +12,7 @@ pub(crate) const HEAD: usize = 9;
 /// Shows every record inside of a chunk, which is whole, with its head. That it is damaged may be found after some were shown.
 ///
 /// # Errors
-/// What `see` says, or why the chunk is damaged.
+/// Refusal by `see`, or damage of the chunk.
 pub(crate) fn each_record(
     chunk: &[u8],
     mut see: impl FnMut(u8, &[u8]) -> Result<(), String>,

@@ -52,6 +52,7 @@ impl RecordingError {
 impl fmt::Display for RecordingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            // Files that cannot be used at all.
             Self::Create(path, e) => {
                 write!(
                     f,
@@ -71,6 +72,7 @@ impl fmt::Display for RecordingError {
             }
             Self::Read(path, e) => write!(f, "{}: cannot read the log: {e}", path.display()),
             Self::Write(e) => write!(f, "the log can no longer be written: {e}; is the disk full?"),
+            // Files with something else in them.
             Self::NotALog(path, why) => {
                 write!(
                     f,
@@ -92,6 +94,7 @@ impl fmt::Display for RecordingError {
                  that wrote it ({software})",
                 path.display()
             ),
+            // Damage.
             Self::Damaged(path, message, why) => {
                 write!(f, "{}: damaged after message {message}: {why}", path.display())
             }

@@ -2,7 +2,7 @@
 
 use mcap::records::op;
 
-/// What is wrong with a record whose strings do not [fit].
+/// Fault of a record whose strings do not [fit].
 pub(crate) const LONG_STRING: &str = "a string is longer than the record that it is in";
 
 /// Whether this is a record that a log is read for.

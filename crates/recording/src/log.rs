@@ -255,6 +255,7 @@ impl Described {
         if !lengths::fit(opcode, data) {
             return Err(lengths::LONG_STRING.into());
         }
+        // Schemas and channels are kept: messages name theirs by number.
         Ok(match mcap::parse_record(opcode, data).map_err(|e| e.to_string())? {
             Entry::Schema { header, data } => {
                 let flow = see(LogContent::Schema(&header, &data));

@@ -19,7 +19,7 @@ pub struct Repaired {
     pub messages: u64,
     /// Reason for its being incomplete, and what is left out of it; none: it was complete, and nothing was done.
     pub found: Option<String>,
-    /// Where a log that was damaged is now, as it was.
+    /// Path of the original, if the log was damaged.
     pub original: Option<PathBuf>,
 }
 
@@ -49,7 +49,7 @@ pub fn repair(path: &Path) -> Result<Repaired, RecordingError> {
     Ok(done)
 }
 
-/// What is whole of a log, as `new`; what is wrong with it, and where it is to go.
+/// Copy of all that is whole of a log, as `new`: its fault, and the place where it is to go.
 fn repaired(path: &Path, new: &Path) -> Result<Repaired, RecordingError> {
     match rewrite(path, new, |_, _| true) {
         Ok((LogEnd::Complete, messages)) => Ok(Repaired { messages, found: None, original: None }),

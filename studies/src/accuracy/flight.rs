@@ -52,6 +52,7 @@ fn motion(
     ];
     let mut charts =
         measures.map(|(what, m)| ErrorChart::new(&format!("{name}.{what}"), title, m).about(about));
+    // Reference, and what the laws conserve.
     let start = body.start.clone();
     let reference = SteppingMethod::RungeKutta4(2e-5).run(&mut body, &start, END).seen.remove(0);
     let (energy, turn) = body.conserved(&start);
@@ -60,6 +61,7 @@ fn motion(
     methods.extend(STEPS.iter().map(|h| SteppingMethod::Own("semi-implicit", *h)));
     methods.extend(STEPS[..8].iter().map(|h| SteppingMethod::RungeKutta4(*h)));
     methods.extend(TOLERANCES.iter().map(|tolerance| SteppingMethod::Bdf(*tolerance)));
+    // Each method's error against both.
     for method in methods {
         let (motion, mut point) = method.measure(&mut body, &start, END);
         (point.scene, point.model) = (name.into(), "bodies".into());
@@ -70,6 +72,7 @@ fn motion(
             chart.add(super::Point { error, ..point.clone() });
         }
     }
+    // The same of other programs.
     for found in given.peers.of(&[("scene", "flight"), ("initial", initial)]) {
         let number = |key: &str| found[key].as_f64().unwrap_or(f64::NAN);
         let turned = found["angular_momentum"].as_array().map(Vec::as_slice).unwrap_or_default();

@@ -237,6 +237,7 @@ impl<'a> Statics<'a> {
         let lever = p.cog - p.pivot;
         let planned = p.torso + p.pivot;
         let feet: Vec<_> = p.corners.iter().map(|c| (c - p.pivot, c + p.torso)).collect();
+        // Work of the force, and of the layers that the corners sink into; gradient and Hessian with it.
         let potential = |rest: &Rest| {
             let (at, slopes, curves) = turned(rest, &lever);
             let mut value = -(pull.dot(&at) + pull.z * rest[0]);
@@ -262,6 +263,7 @@ impl<'a> Statics<'a> {
             }
             (value, gradient, hessian)
         };
+        // Newton's steps (Levenberg's damping): one that leads up is tried shorter.
         let (mut value, mut gradient, mut hessian) = potential(&rest);
         let mut damping = 0.0;
         for _ in 0..ROUNDS {

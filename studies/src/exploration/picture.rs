@@ -21,6 +21,7 @@ pub(super) fn ways(explored: &[(&Row, &(Room, Explored))]) -> Figure {
             row.minutes,
             100.0 * row.share
         );
+        // Room, way, and the place of a touch, after which she walked on.
         let mut chart = Chart::new(&title, "x [m]", "y [m]").equal();
         for rectangle in &room.standing {
             chart.area("", rectangle.corners().to_vec(), GREY);

@@ -45,6 +45,7 @@ fn knee(bench: &Bench) -> Findings {
     let ik = InverseKinematics::new(&robot.joints, &free, 0.0);
     let bent = robot.joint("right_knee_flexion").ok_or("no joint right_knee_flexion")?;
     let model = robot.model()?;
+    // Knee speed by the leg's shortening, that of the inverse kinematics, and whether it damped.
     let mut at = |q: f64| {
         let mut angles = bench.pose().to_vec();
         angles[bent] = q;
@@ -69,6 +70,7 @@ fn knee(bench: &Bench) -> Findings {
         let finding = row("F23", "rad/s", Within(1e-3)).of(regime, [predicted, speed]);
         findings.push(if damped { finding.says("damped without need", false) } else { finding });
     }
+    // Nearly straight: the speed must be far less than asked for.
     let (wanted, speed, damped) = at(1e-4)?;
     let regime = "knee at 1e-4 rad: the speed asked for, over the damped one";
     findings.push(

@@ -58,12 +58,14 @@ fn who_walked_what_does_not_matter() {
     let table = |name: &str| fs::read(dir.join(name).join("table.parquet")).unwrap();
     run(&order, &dir.join("one"), 1, &given(&config)).unwrap();
     run(&order, &dir.join("three"), 3, &given(&config)).unwrap();
+    // As workers would send them.
     let mut lines = Vec::new();
     for walks in [20..24, 0..20] {
         piece(&order, walks, order.identity(), &mut lines).unwrap();
     }
     collect(&order, &dir.join("told"), (&mut lines.as_slice(), &mut Vec::new()), &given(&config)).unwrap();
     let whole = fs::read(dir.join("one").join(rows::NAME)).unwrap();
+    // As a kill leaves them.
     let mut random = crate::random::Random(20261128);
     for k in 0..12 {
         let name = format!("cut{k}");
