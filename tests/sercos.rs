@@ -120,7 +120,12 @@ fn a_cable_pulled_while_walking_changes_nothing() {
     run(&site, &[]).well();
     let shared = hashes(&site);
     let mut walk = site.run("walk", &["--lockstep", "--bus", &ring.bus()]);
-    doze(2.0);
+    let space = walk.space();
+    let mut sensors = space.reader::<Sensors>(&SENSORS).unwrap();
+    while sensors.latest().is_none_or(|s| s.header.tick < 3000) {
+        assert!(walk.is_alive(), "{}", walk.err());
+        doze(0.01);
+    }
     ip(&["link", "set", &ring.far[1], "down"]).unwrap();
     // Each cycle waits a while for what does not come, before the ring is told to be open.
     for _ in 0..1000 {
