@@ -171,9 +171,12 @@ fn hz_and_echo_show_the_sensors_of_a_robot_in_real_time() {
         let ticks = (last.1 - first.1) as f64 / ((last.0 - first.0) as f64 * 1e-9);
         println!("{ticks:.1} ticks/s; {out}");
         let rate: f64 = out.split_whitespace().nth(1).and_then(|word| word.parse().ok()).unwrap();
-        let mean = out.split("by the stamps: mean ").nth(1).and_then(|text| text.split(' ').next()?.parse().ok());
+        let mean =
+            out.split("by the stamps: mean ").nth(1).and_then(|text| text.split(' ').next()?.parse().ok());
         let mean: f64 = mean.unwrap();
-        (0.98..1.02).contains(&(rate / ticks)) && (0.98..1.02).contains(&(mean * 1e-3 * ticks)) && out.contains(", std ")
+        (0.98..1.02).contains(&(rate / ticks))
+            && (0.98..1.02).contains(&(mean * 1e-3 * ticks))
+            && out.contains(", std ")
     };
     assert!((0..8).any(|_| fits()), "none of eight rates is that of the bus");
     let said = site.topic(&["echo", "sensors", "--once"]).well();

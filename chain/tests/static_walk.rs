@@ -112,6 +112,7 @@ fn a_fall_is_named() {
 /// Thesis 6.2: with the torso above the foot he tips over to the swing foot, from 1 cm further out he stands. The sole's
 /// width is fitted to that on type 3; types 1 and 2 tip in the same millimetres.
 #[test]
+#[ignore = "long"]
 fn least_shift_of_the_torso() {
     for depth in [1, 2, 3] {
         let stands = |shift: f64| walk(&setup(depth, 2, |p| p.shift = shift)).0 < 0.1;

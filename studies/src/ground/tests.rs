@@ -172,6 +172,7 @@ fn most_steps_down_are_walked() {
 
 /// The same of slopes, and as the name says: most.
 #[test]
+#[ignore = "long"]
 fn most_slopes_are_walked() {
     let setup = Setup::load(&config::root(None), "walk_1kmh").unwrap();
     let walked = walked(&setup, GroundKind::Slope, 5.0);
@@ -180,6 +181,7 @@ fn most_slopes_are_walked() {
 
 /// Where steps do not react, a foot that lands on its heel gets over boards that a flat one does not.
 #[test]
+#[ignore = "long"]
 fn heels_get_over_boards() {
     let heels = Setup::load(&config::root(None), "heel_strike").unwrap();
     let mut flat = heels.clone();

@@ -4,14 +4,13 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
 
-use realtime::clock::now;
+use realtime::clock::{now, sleep_until};
 use realtime::{ThreadSchedule, prepare_side_thread};
 
 /// Above the priority of every process of a robot.
 const PRIORITY: u8 = 95;
-const PERIOD: Duration = Duration::from_millis(1);
+const PERIOD_NS: u64 = 1_000_000;
 
 /// On each core a thread that nothing but the machine can hold up, until this is dropped.
 pub struct Stalls {
@@ -31,9 +30,9 @@ impl Stalls {
                 // Without the right to it, it is an ordinary thread, and other work counts as a stall.
                 let _granted = prepare_side_thread(&ThreadSchedule { priority: PRIORITY, core: Some(core) });
                 while !over.load(Relaxed) {
-                    let begun = now();
-                    thread::sleep(PERIOD);
-                    longest.fetch_max((now() - begun).saturating_sub(PERIOD.as_nanos() as u64), Relaxed);
+                    let wakes = now() + PERIOD_NS;
+                    sleep_until(wakes);
+                    longest.fetch_max(now().saturating_sub(wakes), Relaxed);
                 }
             })
         });

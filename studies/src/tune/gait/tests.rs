@@ -63,6 +63,7 @@ fn a_step_is_as_long_as_its_speed_says() {
 /// Ground and pushes cost what is not survived, and are held against others in the table and in the file; a scene that walks nowhere
 /// has none.
 #[test]
+#[ignore = "long"]
 fn ground_and_pushes_cost_what_is_not_survived() {
     let root = config::root(None);
     let mut study = TuneGait {
