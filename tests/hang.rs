@@ -22,12 +22,21 @@ time = 0.2
 topic = \"walk/stand\"
 ";
 
-fn start(scene: &str, more: &[&str]) -> (Site, Running, Space) {
+/// A robot that has come to this simulated time \[s\] of a scene.
+fn start(scene: &str, more: &[&str], time: f64) -> (Site, Running, Space) {
     let site = Site::patient(EXE);
     site.scene("hang", 1000.0, scene);
     let mut run = site.run("hang", more);
     let space = run.space();
+    until(&mut run, &space, time);
     (site, run, space)
+}
+
+/// Ends with this exit code, and has said these words.
+#[track_caller]
+fn ends(run: Running, code: i32, words: &str) {
+    let said = run.end();
+    assert!(said.code == Some(code) && said.err.contains(words), "{code}, {words}: {said:#?}");
 }
 
 #[track_caller]
@@ -64,8 +73,7 @@ fn a_hung_process_is_named_and_ends_the_run() {
     for process in
         [Process::Lowlevel, Process::Planner, Process::Controller, Process::SimBackend, Process::Watchdog]
     {
-        let (_site, mut run, space) = start(WAIT, &["--no-log"]);
-        until(&mut run, &space, 1.0);
+        let (_site, run, space) = start(WAIT, &["--no-log"], 1.0);
         drop(space);
         let begun = clock::now();
         run.signal(process, Signal::STOP);
@@ -91,16 +99,13 @@ fn in_lockstep_the_one_for_whom_all_wait_is_named() {
     until(&mut run, &space, 1.0);
     drop(space);
     run.signal(Process::Planner, Signal::STOP);
-    let said = run.end();
-    assert_eq!(said.code, Some(1), "{said:#?}");
-    assert!(said.err.contains("planner hung during the run: no record of it for 1.0 s"), "{}", said.err);
+    ends(run, 1, "planner hung during the run: no record of it for 1.0 s");
 }
 
 #[test]
 fn broker_and_logger_are_started_again_while_the_robot_goes_on() {
     let _turn = turn();
-    let (site, mut run, space) = start(WAIT, &[]);
-    until(&mut run, &space, 1.0);
+    let (site, mut run, space) = start(WAIT, &[], 1.0);
     let before = run.pid(Process::Broker);
     run.kill(Process::Broker);
     run.signal(Process::Logger, Signal::STOP); // hangs: killed, and started again
@@ -160,8 +165,7 @@ fn a_program_that_was_removed_starts_its_broker_again() {
 #[test]
 fn a_broker_that_cannot_be_started_now_is_started_later() {
     let _turn = turn();
-    let (site, mut run, space) = start(WAIT, &["--no-log"]);
-    until(&mut run, &space, 1.0);
+    let (site, mut run, _space) = start(WAIT, &["--no-log"], 1.0);
     let supervisor = Pid::from_raw(run.id() as i32);
     let few = Rlimit { current: Some(16), ..getrlimit(Resource::Nofile) };
     let enough = prlimit(supervisor, Resource::Nofile, few).unwrap();
@@ -206,33 +210,27 @@ impl Drop for Tracer {
 #[test]
 fn a_process_that_cannot_be_killed_holds_nobody_up() {
     let _turn = turn();
-    let (_site, mut run, space) = start(WAIT, &[]);
-    until(&mut run, &space, 1.0);
+    let (_site, mut run, space) = start(WAIT, &[], 1.0);
     drop(space);
     let Some(_tracer) = Tracer::of(run.pid(Process::Logger)) else { return };
     run.signal(Process::Logger, Signal::STOP);
     wait_until_said(&mut run, "logger hung during the run");
     run.interrupt();
-    let said = run.end();
-    assert_eq!(said.code, Some(1), "{said:#?}");
-    assert!(said.err.contains("asked to end: the robot stops and stands first"), "{}", said.err);
+    ends(run, 1, "asked to end: the robot stops and stands first");
 }
 
 /// Nor did such a run end.
 #[test]
 fn a_process_that_cannot_be_killed_is_left_behind_at_the_end() {
     let _turn = turn();
-    let (_site, mut run, space) = start(WAIT, &[]);
-    until(&mut run, &space, 1.0);
+    let (_site, run, space) = start(WAIT, &[], 1.0);
     drop(space);
     let Some(_tracer) = Tracer::of(run.pid(Process::Logger)) else { return };
     run.signal(Process::Logger, Signal::STOP);
     run.interrupt();
     doze(0.2);
     run.interrupt();
-    let said = run.end();
-    assert_eq!(said.code, Some(1), "{said:#?}");
-    assert!(said.err.contains("logger was killed and is not gone: it is left behind"), "{}", said.err);
+    ends(run, 1, "logger was killed and is not gone: it is left behind");
 }
 
 /// Ctrl-C was not heard before the robot was there: a logger that waited for its disk was given 20 s.
@@ -245,17 +243,14 @@ fn ctrl_c_ends_a_run_that_is_still_starting() {
     let mut run = site.run("hang", &[]);
     wait_for(&mut run, "the logger", || site.run_dir().join("logger.lock").exists());
     run.interrupt();
-    let said = run.end();
-    assert_eq!(said.code, Some(130), "{said:#?}");
-    assert!(said.err.contains("asked to end while starting"), "{}", said.err);
+    ends(run, 130, "asked to end while starting");
 }
 
 /// A logger that had no time for a second lost most of it: the run is told so, and says so.
 #[test]
 fn missing_records_are_told_at_the_end() {
     let _turn = turn();
-    let (site, mut run, space) = start(WAIT, &[]);
-    until(&mut run, &space, 1.0);
+    let (site, run, space) = start(WAIT, &[], 1.0);
     drop(space);
     run.pause(Process::Logger, 1.0);
     site.topic(&["pub", "system/end"]).well();
@@ -267,8 +262,7 @@ fn missing_records_are_told_at_the_end() {
 #[test]
 fn ctrl_c_without_a_broker_ends_in_a_stand() {
     let _turn = turn();
-    let (_site, mut run, space) = start(WALK, &["--no-log"]);
-    until(&mut run, &space, 5.0);
+    let (_site, mut run, space) = start(WALK, &["--no-log"], 5.0);
     run.signal(Process::Broker, Signal::STOP);
     run.interrupt();
     let (mut state, mut power): (Reader<ControllerState>, Reader<Power>) =
@@ -288,16 +282,13 @@ fn ctrl_c_without_a_broker_ends_in_a_stand() {
 #[test]
 fn a_second_ctrl_c_is_an_emergency_stop() {
     let _turn = turn();
-    let (_site, mut run, space) = start(WALK, &["--no-log"]);
-    until(&mut run, &space, 4.0);
+    let (_site, run, space) = start(WALK, &["--no-log"], 4.0);
     drop(space);
     run.signal(Process::Broker, Signal::STOP);
     run.interrupt();
     doze(0.2);
     run.interrupt();
-    let said = run.end();
-    assert_eq!(said.code, Some(130), "{said:#?}");
-    assert!(said.err.contains("power off at tick"), "{}", said.err);
+    ends(run, 130, "power off at tick");
 }
 
 /// A paused terminal held up the end, `| head` aborted the supervisor.
@@ -357,8 +348,7 @@ fn a_file_saved_during_the_start_reaches_all_processes_or_none() {
 #[test]
 fn observers_that_are_killed_leave_room_for_others() {
     let _turn = turn();
-    let (site, mut run, space) = start(WAIT, &["--no-log"]);
-    until(&mut run, &space, 0.5);
+    let (site, run, space) = start(WAIT, &["--no-log"], 0.5);
     let many = std::env::var("GANGWERK_OBSERVERS").ok().and_then(|n| n.parse().ok()).unwrap_or(150);
     let before = site.shared_memory().len();
     let dir = site.run_dir();

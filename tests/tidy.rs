@@ -242,8 +242,10 @@ fn nothing_unfinished_is_in_the_code() {
     // Put together here, so that this file does not hold them.
     let forbidden =
         ["#[ign!ore", "db!g!(", "tod!o!(", "unimple!mented!("].map(|word| word.replacen('!', "", 1));
+    // But for tests that LONG=1 runs.
+    let long = format!("{} = \"long\"]", forbidden[0]);
     for path in files(&[".rs"]) {
-        let code = code(&path);
+        let code = code(&path).replace(&long, "");
         for word in &forbidden {
             assert!(!code.contains(word.as_str()), "{} holds {word}", path.display());
         }

@@ -22,12 +22,12 @@ use crate::admission::Admission;
 use crate::description::RobotFiles;
 use crate::door::{self, Door};
 use crate::foxglove::{self, Lobby, ViewerDoor, ViewerNotice, Watcher};
-use crate::guests::Outbox;
 use crate::observer::{Notice, Observer};
 use crate::operator::{answer, watch_lease};
 use crate::replay::{Player, Recorded, side_by_side};
-use crate::socket::Hall;
+use crate::socket::Sockets;
 use crate::starter::{StartOptions, Starter, StarterCall};
+use crate::subscribers::Outbox;
 
 /// Address unless another one is asked for.
 pub const ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 8720);
@@ -77,7 +77,7 @@ pub struct Addresses {
 /// The address is taken or not on the loopback interface, the run directory is not private, or there is no such scene to start.
 pub fn serve(options: &Options, stop: &Stop, ready: impl FnOnce(&Addresses)) -> Result<(), String> {
     options.start.as_ref().map_or(Ok(()), StartOptions::check)?;
-    let house = House::open(options)?;
+    let server = Server::open(options)?;
     // Threads that wait, each for its own.
     let (observer, notices) = channel();
     let (stops, requests) = channel();
@@ -90,8 +90,8 @@ pub fn serve(options: &Options, stop: &Stop, ready: impl FnOnce(&Addresses)) -> 
     let own = dir.clone();
     spawn("stop", move || answer_stops(&own, &requests))?;
     let starter = options.start.as_ref().map(|start| Starter::open(&dir, start, observer.clone()));
-    let hall = Hall::new(Some(dir), observer, stops, starter.transpose()?);
-    house.serve(hall, robot_files, watching, stop, ready)
+    let sockets = Sockets::new(Some(dir), observer, stops, starter.transpose()?);
+    server.serve(sockets, robot_files, watching, stop, ready)
 }
 
 /// Serves a log, and perhaps another one beside it, until `stop`: no robot, no broker, no emergency stop.
@@ -110,13 +110,13 @@ pub fn serve_recording(
     let films = side_by_side(log, other)?;
     let files = films.first().map(|film| film.files.clone()).unwrap_or_default();
     let (_files, robot_files) = watch::channel(files);
-    let house = House::open(options)?;
+    let server = Server::open(options)?;
     let watching = spawn("player", move || Player::new(films, notices).run())?;
-    house.serve(Hall::new(None, player, stops, None), robot_files, watching, stop, ready)
+    server.serve(Sockets::new(None, player, stops, None), robot_files, watching, stop, ready)
 }
 
 /// Server with its addresses, before anybody comes.
-struct House {
+struct Server {
     runtime: Runtime,
     listener: TcpListener,
     admission: Admission,
@@ -126,7 +126,7 @@ struct House {
     addresses: Addresses,
 }
 
-impl House {
+impl Server {
     /// Takes the addresses, and leaves them in the run directory.
     fn open(options: &Options) -> Result<Self, String> {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
@@ -149,26 +149,26 @@ impl House {
     /// Serves the pages that come, until `stop` or the end of the thread that has something for them.
     fn serve(
         self,
-        hall: Hall,
+        sockets: Sockets,
         files: watch::Receiver<RobotFiles>,
         watching: JoinHandle<()>,
         stop: &Stop,
         ready: impl FnOnce(&Addresses),
     ) -> Result<(), String> {
         let Self { runtime, listener, admission, second, dir, addresses } = self;
-        let hall = Arc::new(hall);
+        let sockets = Arc::new(sockets);
         // Doors, and the threads behind them.
         let (watcher, notices) = channel();
         let mut threads = vec![watching];
-        let mut doors = vec![(listener, door::router(Door { admission, hall: hall.clone(), files }))];
+        let mut doors = vec![(listener, door::router(Door { admission, sockets: sockets.clone(), files }))];
         if let Some((listener, admission)) = second {
             let own = dir.clone();
             threads.push(spawn("foxglove", move || Watcher::new(own, notices).run())?);
-            let lobby = Lobby::new(hall.clone(), watcher.clone());
+            let lobby = Lobby::new(sockets.clone(), watcher.clone());
             doors.push((listener, foxglove::door::router(ViewerDoor { admission, lobby })));
         }
         ready(&addresses);
-        let beats = hall.beats.clone();
+        let beats = sockets.beats.clone();
         runtime.block_on(async {
             tokio::spawn(async move { beats.keep().await });
             for (listener, router) in doors {
@@ -178,7 +178,7 @@ impl House {
                 tokio::time::sleep(LOOK).await;
             }
             // The run that was started here ends first: pages see its robot come to a stand, and can cut its supply.
-            if let Some(starter) = &hall.starter {
+            if let Some(starter) = &sockets.starter {
                 stop.taken();
                 starter.call(StarterCall::Leave);
                 while !starter.is_finished() {
@@ -191,7 +191,7 @@ impl House {
         });
         // Doors and open sockets go with the runtime, and with them the operators and their leases.
         drop(runtime);
-        let _ = (hall.observer.send(Notice::End), watcher.send(ViewerNotice::End));
+        let _ = (sockets.observer.send(Notice::End), watcher.send(ViewerNotice::End));
         let ended: Vec<_> = threads.into_iter().map(JoinHandle::join).collect();
         withdraw(&dir, &addresses);
         let failed = ended.iter().any(Result::is_err);

@@ -25,7 +25,7 @@ use crate::description::RobotFiles;
 use crate::impatient::Impatient;
 use crate::page;
 use crate::requests::LONGEST;
-use crate::socket::{self, Hall, MOST_SOCKETS, PATIENCE};
+use crate::socket::{self, MOST_SOCKETS, PATIENCE, Sockets};
 
 /// Connections at once that have not become sockets.
 const MOST_CONNECTIONS: usize = 128;
@@ -50,8 +50,8 @@ const HEADERS: [(HeaderName, &str); 5] = [
 pub struct Door {
     /// Who comes in.
     pub admission: Admission,
-    /// Hall of the sockets.
-    pub hall: Arc<Hall>,
+    /// Shared state of the sockets.
+    pub sockets: Arc<Sockets>,
     /// Files of the running robot.
     pub files: watch::Receiver<RobotFiles>,
 }
@@ -161,18 +161,18 @@ async fn enter(
         Err(rejection) => return rejection.into_response(),
     };
     // A place is kept until the socket ends.
-    let Ok(place) = door.hall.places.clone().try_acquire_owned() else {
+    let Ok(place) = door.sockets.places.clone().try_acquire_owned() else {
         let text = format!("{MOST_SOCKETS} pages are open; close one\n");
         return (StatusCode::SERVICE_UNAVAILABLE, text).into_response();
     };
-    let hall = door.hall.clone();
+    let sockets = door.sockets.clone();
     upgrade
         .max_message_size(LONGEST)
         .max_frame_size(LONGEST)
         .read_buffer_size(2 * LONGEST)
         .write_buffer_size(0)
         .max_write_buffer_size(WRITE_BUFFER)
-        .on_upgrade(move |socket| socket::serve(socket, hall, place))
+        .on_upgrade(move |socket| socket::serve(socket, sockets, place))
 }
 
 #[cfg(test)]

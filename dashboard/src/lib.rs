@@ -7,8 +7,8 @@
 //! | [`arrival`] | how long what a socket says may have waited in a server that stood still |
 //! | [`observer`] | thread that reads the topics of the robot and gives every page its frames; waits for the next robot |
 //! | [`replay`] | the same out of a log in place of a robot |
-//! | [`description`], [`picture`], [`state`], [`belief`], [`plotting`], [`health`] | what a page is told: once, at 60 Hz, as samples, about processes |
-//! | [`guests`] | pages that are there, and what each of them has lost |
+//! | [`description`], [`picture`], [`state`], [`estimate`], [`plotting`], [`health`] | what a page is told: once, at 60 Hz, as samples, about processes |
+//! | [`subscribers`] | pages that are there, and what each of them has lost |
 //! | [`operator`] | one client of the broker per page or viewer that commands |
 //! | [`catalogue`], `top_view`, [`starter`] | scenes, pictures of them, and runs of them that a page starts and ends; only where `--start` allows it |
 //! | [`foxglove`] | second door, for Foxglove and Lichtblick |
@@ -21,14 +21,13 @@
 
 pub mod admission;
 pub mod arrival;
-pub mod belief;
 pub mod book;
 pub mod catalogue;
 pub mod daemon;
 pub mod description;
 pub mod door;
+pub mod estimate;
 pub mod foxglove;
-pub mod guests;
 pub mod health;
 mod impatient;
 pub mod observer;
@@ -41,6 +40,7 @@ pub mod requests;
 pub mod socket;
 pub mod starter;
 pub mod state;
+pub mod subscribers;
 mod top_view;
 
 pub use daemon::{Addresses, Options, serve, serve_recording};

@@ -20,12 +20,12 @@ use serde_json::json;
 use tokio::sync::watch;
 
 use crate::description::{RobotFiles, hello, model};
-use crate::guests::{FrameKind, Guest, Outbox};
 use crate::health::Health;
 use crate::operator;
 use crate::picture::{NewestRecords, Picture, parameter_message};
 use crate::plotting::{Plot, PlotField, Taps, catalogue};
 use crate::requests::RecordingRequest;
+use crate::subscribers::{FrameKind, Outbox, Subscriber};
 
 /// Between two looks while pages are there, and while none is \[ns\].
 const LOOK: u64 = SECOND / 60;
@@ -65,7 +65,7 @@ pub struct Observer {
     dir: PathBuf,
     notices: Receiver<Notice>,
     files: watch::Sender<RobotFiles>,
-    guests: Vec<Guest<Plot>>,
+    subscribers: Vec<Subscriber<Plot>>,
     session: Option<Session>,
     /// Runs seen so far.
     runs: u64,
@@ -85,13 +85,13 @@ impl Observer {
     /// Of the robot in `dir`; its files are given to `files`.
     pub fn new(dir: PathBuf, notices: Receiver<Notice>, files: watch::Sender<RobotFiles>) -> Self {
         let (why, broker) = (String::new(), Err("the broker has not answered yet".into()));
-        let (guests, link) = (Vec::new(), Utf8Bytes::default());
+        let (subscribers, link) = (Vec::new(), Utf8Bytes::default());
         let holder = String::new();
         Self {
             dir,
             notices,
             files,
-            guests,
+            subscribers,
             session: None,
             runs: 0,
             why,
@@ -114,7 +114,7 @@ impl Observer {
                 Ok(notice) => self.hear(notice),
                 Err(RecvTimeoutError::Timeout) => {
                     self.look();
-                    let pause = if self.guests.is_empty() { IDLE } else { LOOK };
+                    let pause = if self.subscribers.is_empty() { IDLE } else { LOOK };
                     // Cycles that a busy machine missed are not caught up on.
                     next = (next + pause).max(now());
                 }
@@ -126,36 +126,38 @@ impl Observer {
         match notice {
             // A new page gets the complete state: one that comes again asks for nothing.
             Notice::Arrived(number, outbox) => {
-                let mut guest = Guest::new(number, outbox);
+                let mut subscriber = Subscriber::new(number, outbox);
                 if let Some(session) = &self.session {
-                    session.greet(&mut guest);
+                    session.greet(&mut subscriber);
                 }
-                guest.text(&self.link_message());
-                guest.text(&lease_message(&self.holder, number));
+                subscriber.text(&self.link_message());
+                subscriber.text(&lease_message(&self.holder, number));
                 let started = [&self.scenes, &self.run].into_iter().filter(|text| !text.is_empty());
-                started.for_each(|text| guest.text(text));
-                self.guests.push(guest);
+                started.for_each(|text| subscriber.text(text));
+                self.subscribers.push(subscriber);
             }
             Notice::Left(number) => {
-                self.guests.retain(|guest| guest.number != number);
+                self.subscribers.retain(|subscriber| subscriber.number != number);
                 self.follow_plots();
             }
             Notice::Plot(number, fields, rate) => self.plot(number, fields, rate),
             Notice::Lease(holder) => {
                 self.holder = holder;
                 let holder = &self.holder;
-                self.guests.iter_mut().for_each(|guest| guest.text(&lease_message(holder, guest.number)));
+                self.subscribers
+                    .iter_mut()
+                    .for_each(|subscriber| subscriber.text(&lease_message(holder, subscriber.number)));
             }
             Notice::Broker(state) => {
                 self.broker = state;
                 self.tell_link();
             }
             Notice::Scenes(text) => {
-                self.guests.iter_mut().for_each(|guest| guest.text(&text));
+                self.subscribers.iter_mut().for_each(|subscriber| subscriber.text(&text));
                 self.scenes = text;
             }
             Notice::Run(text) => {
-                self.guests.iter_mut().for_each(|guest| guest.text(&text));
+                self.subscribers.iter_mut().for_each(|subscriber| subscriber.text(&text));
                 self.run = text;
             }
             // A running robot is only seen as it is now.
@@ -170,11 +172,11 @@ impl Observer {
             self.search();
         }
         if let Some(session) = &mut self.session {
-            session.show(&mut self.guests, now);
+            session.show(&mut self.subscribers, now);
         }
-        let before = self.guests.len();
-        self.guests.retain(|guest| !guest.is_gone());
-        if self.guests.len() < before {
+        let before = self.subscribers.len();
+        self.subscribers.retain(|subscriber| !subscriber.is_gone());
+        if self.subscribers.len() < before {
             self.follow_plots();
         }
     }
@@ -186,7 +188,7 @@ impl Observer {
             // Its ports go before the next run makes others in their place.
             self.session = None;
             self.files.send_replace(RobotFiles::default());
-            self.guests.iter_mut().for_each(|guest| guest.plot = Plot::default());
+            self.subscribers.iter_mut().for_each(|subscriber| subscriber.plot = Plot::default());
         }
         if self.session.is_none() {
             let number = self.runs + 1;
@@ -195,7 +197,7 @@ impl Observer {
                     self.runs = number;
                     self.why.clear();
                     self.files.send_replace(files);
-                    self.guests.iter_mut().for_each(|guest| session.greet(guest));
+                    self.subscribers.iter_mut().for_each(|subscriber| session.greet(subscriber));
                     self.session = Some(session);
                 }
                 Err(why) => self.why = why.to_string(),
@@ -217,41 +219,44 @@ impl Observer {
     fn tell_link(&mut self) {
         let link = self.link_message();
         if link != self.link {
-            self.guests.iter_mut().for_each(|guest| guest.text(&link));
+            self.subscribers.iter_mut().for_each(|subscriber| subscriber.text(&link));
             self.link = link;
         }
     }
 
     fn plot(&mut self, number: u64, fields: Vec<String>, rate: f64) {
-        let Some(guest) = self.guests.iter_mut().find(|guest| guest.number == number) else { return };
+        let Some(subscriber) = self.subscribers.iter_mut().find(|subscriber| subscriber.number == number)
+        else {
+            return;
+        };
         let answer = match &self.session {
             None => json!({"type": "plotting", "fields": [], "rate": 0.0, "why": "no robot runs"}),
             Some(session) => match Plot::new(fields, rate, session.cycle, &session.fields) {
                 Ok(plot) => {
                     let rate = plot.rate(session.cycle);
                     let answer = json!({"type": "plotting", "fields": plot.fields, "rate": rate});
-                    guest.plot = plot;
+                    subscriber.plot = plot;
                     answer
                 }
                 // What it plotted before goes on.
                 Err(why) => {
-                    let (fields, rate) = (&guest.plot.fields, guest.plot.rate(session.cycle));
+                    let (fields, rate) = (&subscriber.plot.fields, subscriber.plot.rate(session.cycle));
                     json!({"type": "plotting", "fields": fields, "rate": rate, "why": why})
                 }
             },
         };
         let refused = answer.get("why").is_some();
-        guest.text(&answer.to_string().into());
+        subscriber.text(&answer.to_string().into());
         self.follow_plots();
-        let guest = self.guests.iter_mut().find(|guest| guest.number == number);
-        if let (Some(session), Some(guest), false) = (&self.session, guest, refused) {
-            session.taps.begin(&mut guest.plot);
+        let subscriber = self.subscribers.iter_mut().find(|subscriber| subscriber.number == number);
+        if let (Some(session), Some(subscriber), false) = (&self.session, subscriber, refused) {
+            session.taps.begin(&mut subscriber.plot);
         }
     }
 
     fn follow_plots(&mut self) {
         let Some(session) = &mut self.session else { return };
-        let plots = self.guests.iter().map(|guest| &guest.plot);
+        let plots = self.subscribers.iter().map(|subscriber| &subscriber.plot);
         if let Err(e) = session.taps.follow(&session.space, plots) {
             tracing::warn!("a topic cannot be plotted: {e}");
         }
@@ -334,19 +339,19 @@ impl Session {
     }
 
     /// Everything a page needs that has just come.
-    fn greet(&self, guest: &mut Guest<Plot>) {
-        guest.text(&self.hello);
-        self.changed.iter().for_each(|(name, value)| guest.text(&parameter_message(name, *value)));
-        self.remembered.iter().for_each(|event| guest.text(event));
+    fn greet(&self, subscriber: &mut Subscriber<Plot>) {
+        subscriber.text(&self.hello);
+        self.changed.iter().for_each(|(name, value)| subscriber.text(&parameter_message(name, *value)));
+        self.remembered.iter().for_each(|event| subscriber.text(event));
     }
 
     /// One look: events and parameters that are new, state, samples, and from time to time processes.
-    fn show(&mut self, guests: &mut [Guest<Plot>], now: u64) {
+    fn show(&mut self, subscribers: &mut [Subscriber<Plot>], now: u64) {
         while let Some(plan) = self.plans.follow() {
-            self.picture.believer.keep(plan);
+            self.picture.estimator.keep(plan);
         }
         for event in self.new_events() {
-            guests.iter_mut().for_each(|guest| guest.text(&event));
+            subscribers.iter_mut().for_each(|subscriber| subscriber.text(&event));
             if self.remembered.len() == REMEMBERED {
                 self.remembered.pop_front();
             }
@@ -354,29 +359,31 @@ impl Session {
         }
         for (name, value) in self.parameters.changed() {
             let message = parameter_message(&name, value);
-            guests.iter_mut().for_each(|guest| guest.text(&message));
+            subscribers.iter_mut().for_each(|subscriber| subscriber.text(&message));
             self.changed.insert(name, value);
         }
-        if guests.is_empty() {
+        if subscribers.is_empty() {
             return;
         }
         if let Some((tick, frame)) = self.state(now) {
-            guests.iter_mut().for_each(|guest| guest.frame(FrameKind::State, tick, &frame, now));
+            subscribers
+                .iter_mut()
+                .for_each(|subscriber| subscriber.frame(FrameKind::State, tick, &frame, now));
         }
         // Samples at half the rate: a frame then holds some rows.
         self.odd = !self.odd;
         if self.odd {
             self.taps.look();
-            for guest in guests.iter_mut() {
-                if let Some((tick, frame)) = self.taps.samples(&mut guest.plot, self.cycle) {
-                    guest.frame(FrameKind::Samples, tick, &frame, now);
+            for subscriber in subscribers.iter_mut() {
+                if let Some((tick, frame)) = self.taps.samples(&mut subscriber.plot, self.cycle) {
+                    subscriber.frame(FrameKind::Samples, tick, &frame, now);
                 }
             }
         }
         if now >= self.next_health {
             self.next_health = now + HEALTH;
             let told = self.health.tell(&self.dir, self.shown.0, now, self.cycle).to_string().into();
-            guests.iter_mut().for_each(|guest| guest.text(&told));
+            subscribers.iter_mut().for_each(|subscriber| subscriber.text(&told));
         }
     }
 

@@ -14,9 +14,9 @@ use realtime::clock::now;
 use serde_json::json;
 
 use crate::arrival::too_old;
-use crate::guests::Outbox;
 use crate::observer::Notice;
 use crate::requests::Order;
+use crate::subscribers::Outbox;
 
 /// Between two looks for an answer that is awaited, and for news otherwise.
 const AWAIT: Duration = Duration::from_millis(2);

@@ -8,7 +8,7 @@ use environment::{Pose, Schedule};
 use messages::{ControllerState, Event, EventCode, Power, Process, Sensors, SimState, Words};
 use serde_json::{Value, json};
 
-use crate::belief::Believer;
+use crate::estimate::PoseEstimator;
 use crate::state::{self, LayoutEntry, Moment};
 
 /// The newest records at one instant; none: not written yet, or by nobody.
@@ -31,7 +31,7 @@ pub struct Picture {
     /// Layout of its frames.
     pub layout: Vec<LayoutEntry>,
     /// Estimate of the robot's pose; keeps the plans that it is given.
-    pub believer: Believer,
+    pub estimator: PoseEstimator,
     weight: f64,
     objects: Vec<Schedule>,
     words: Words,
@@ -46,7 +46,7 @@ impl Picture {
         Ok(Self {
             cycle: setup.scene.cycle,
             layout: state::layout(setup.robot.joints.len(), setup.scene.objects.len()),
-            believer: Believer::new(setup, simulated)?,
+            estimator: PoseEstimator::new(setup, simulated)?,
             weight: setup.robot.weight(),
             objects: setup.scene.objects.iter().map(schedule).collect(),
             words: words(setup),
@@ -56,16 +56,16 @@ impl Picture {
     /// Content of the state frame.
     pub fn frame(&mut self, newest: NewestRecords<'_>) -> Vec<u8> {
         let NewestRecords { sensors, controller, power, sim } = newest;
-        let belief = controller.map(|controller| self.believer.see(sensors, controller));
+        let estimate = controller.map(|controller| self.estimator.see(sensors, controller));
         let moment = Moment {
             cycle: self.cycle,
             weight: self.weight,
             sensors,
             controller,
-            belief: belief.as_ref(),
+            estimate: estimate.as_ref(),
             power,
             sim,
-            pushed_at: sim.map(|sim| self.believer.pushed_at(&state::truth(sim))),
+            pushed_at: sim.map(|sim| self.estimator.pushed_at(&state::truth(sim))),
             objects: &self.objects,
         };
         state::frame(&moment, &self.layout)

@@ -17,11 +17,11 @@ use tokio::time::timeout;
 use tungstenite::error::CapacityError;
 
 use crate::arrival::{Arrivals, Beats, too_old};
-use crate::guests::Outbox;
 use crate::observer::Notice;
 use crate::operator::{self, Answers, Operator, answer};
 use crate::requests::{Order, PageRequest, RunTask};
 use crate::starter::{NO_STARTER, Starter, StarterCall};
+use crate::subscribers::Outbox;
 
 /// Sockets at once.
 pub const MOST_SOCKETS: usize = 64;
@@ -35,9 +35,9 @@ pub(crate) const PATIENCE: Duration = Duration::from_secs(2);
 /// Answer to everything that would move a robot.
 pub const RECORDING: &str = "this is a recording: there is no robot to command";
 
-/// Hall: what all sockets share.
+/// Shared state of all sockets.
 #[derive(Debug)]
-pub struct Hall {
+pub struct Sockets {
     /// Run directory; none: what is shown is a recording, and nothing can be commanded.
     pub dir: Option<PathBuf>,
     /// Way to the observer.
@@ -56,7 +56,7 @@ pub struct Hall {
     pages: AtomicU64,
 }
 
-impl Hall {
+impl Sockets {
     /// Of a server to which no page has come yet.
     pub fn new(
         dir: Option<PathBuf>,
@@ -88,15 +88,16 @@ impl Hall {
 pub(crate) type Commanding = (Operator, OwnedSemaphorePermit);
 
 /// Serves a page until one of both ends goes. Its place is free again then.
-pub async fn serve(socket: WebSocket, hall: Arc<Hall>, _place: OwnedSemaphorePermit) {
-    let number = hall.pages.fetch_add(1, Relaxed) + 1;
+pub async fn serve(socket: WebSocket, sockets: Arc<Sockets>, _place: OwnedSemaphorePermit) {
+    let number = sockets.pages.fetch_add(1, Relaxed) + 1;
     let (outbox, fed) = Outbox::new();
-    if hall.observer.send(Notice::Arrived(number, outbox.clone())).is_err() {
+    if sockets.observer.send(Notice::Arrived(number, outbox.clone())).is_err() {
         return;
     }
     let (sink, stream) = socket.split();
-    let mut page = Page { number, outbox: outbox.clone(), operator: None, hall: hall.clone(), since: 0 };
-    let left = || _ = hall.observer.send(Notice::Left(number));
+    let mut page =
+        Page { number, outbox: outbox.clone(), operator: None, sockets: sockets.clone(), since: 0 };
+    let left = || _ = sockets.observer.send(Notice::Left(number));
     // With the page goes its operator, and the command lease.
     converse(sink, fed, &outbox, async move { page.listen(stream).await }, left).await;
 }
@@ -166,7 +167,7 @@ struct Page {
     number: u64,
     outbox: Outbox,
     operator: Option<Commanding>,
-    hall: Arc<Hall>,
+    sockets: Arc<Sockets>,
     /// Time since when the message that is taken may have waited \[ns\].
     since: u64,
 }
@@ -175,7 +176,7 @@ impl Page {
     /// Takes the page's messages until it goes, or is to go for a reason.
     async fn listen(&mut self, stream: SplitStream<WebSocket>) -> Closing {
         let mut budget = Budget::new();
-        let mut arrivals = Arrivals::new(stream, self.hall.beats.clone());
+        let mut arrivals = Arrivals::new(stream, self.sockets.beats.clone());
         loop {
             // How old it may be goes with whatever comes of it.
             let (message, since) = arrivals.next().await?;
@@ -204,17 +205,17 @@ impl Page {
     fn take(&mut self, request: PageRequest) -> Option<()> {
         match request {
             PageRequest::Plot(fields, rate) => {
-                self.hall.observer.send(Notice::Plot(self.number, fields, rate)).ok()
+                self.sockets.observer.send(Notice::Plot(self.number, fields, rate)).ok()
             }
             PageRequest::Recording(what) => {
-                self.hall.observer.send(Notice::Recording(self.number, what)).ok()
+                self.sockets.observer.send(Notice::Recording(self.number, what)).ok()
             }
-            PageRequest::EmergencyStop(id) if self.hall.dir.is_none() => {
+            PageRequest::EmergencyStop(id) if self.sockets.dir.is_none() => {
                 answer(&self.outbox, id, &Err(RECORDING.into()));
                 Some(())
             }
             PageRequest::Run(id, task) => self.run(id, task),
-            PageRequest::EmergencyStop(id) => self.hall.stops.send((id, self.outbox.clone())).ok(),
+            PageRequest::EmergencyStop(id) => self.sockets.stops.send((id, self.outbox.clone())).ok(),
             PageRequest::Order(order) => {
                 self.order(order);
                 Some(())
@@ -226,13 +227,13 @@ impl Page {
     fn run(&self, id: u64, task: Result<RunTask, String>) -> Option<()> {
         // She walks by a start, too; an end only brings her to rest.
         let old = if matches!(task, Ok(RunTask::Start(_))) { too_old(self.since) } else { None };
-        let refused = match (&self.hall.starter, task) {
+        let refused = match (&self.sockets.starter, task) {
             (Some(starter), Ok(task)) => match old {
                 None => return starter.call(StarterCall::Page(id, self.outbox.clone(), task)),
                 Some(why) => why,
             },
             (Some(_), Err(why)) => why,
-            (None, _) if self.hall.dir.is_none() => RECORDING.into(),
+            (None, _) if self.sockets.dir.is_none() => RECORDING.into(),
             (None, _) => NO_STARTER.into(),
         };
         answer(&self.outbox, id, &Err(refused));
@@ -246,7 +247,7 @@ impl Page {
         if self.operator.is_none() {
             let outbox = self.outbox.clone();
             let answers: Answers = Box::new(move |id, result| answer(&outbox, id, result));
-            match self.hall.operator(operator::name(self.number), answers) {
+            match self.sockets.operator(operator::name(self.number), answers) {
                 Ok(operator) => self.operator = Some(operator),
                 Err(why) => return answer(&self.outbox, id, &Err(why)),
             }

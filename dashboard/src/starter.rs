@@ -22,10 +22,10 @@ use realtime::clock::{SECOND, now};
 use serde_json::json;
 
 use crate::catalogue::Catalogue;
-use crate::guests::Outbox;
 use crate::observer::Notice;
 use crate::operator::answer;
 use crate::requests::{RunTask, StartOrder};
+use crate::subscribers::Outbox;
 
 /// Between two looks at the run.
 const LOOK: Duration = Duration::from_millis(100);

@@ -5,7 +5,7 @@ use messages::{ControllerState, Power, Sensors, SimState};
 use nalgebra::UnitQuaternion;
 use recording::RecordedPose;
 
-use crate::belief::{Belief, PATH_POINTS, STEPS};
+use crate::estimate::{Estimate, PATH_POINTS, STEPS};
 
 /// The newest records at one instant; none: not written yet, or by nobody.
 pub struct Moment<'a> {
@@ -18,7 +18,7 @@ pub struct Moment<'a> {
     /// Of the stabilizer.
     pub controller: Option<&'a ControllerState>,
     /// Estimate that follows from both.
-    pub belief: Option<&'a Belief>,
+    pub estimate: Option<&'a Estimate>,
     /// Motor supply.
     pub power: Option<&'a Power>,
     /// Truth about a simulated robot.
@@ -46,24 +46,24 @@ type Entry = (&'static str, Count, &'static str, fn(&Moment<'_>, usize) -> Optio
 #[rustfmt::skip]
 const ENTRIES: &[Entry] = &[
     ("time", These(1), "s", |m, _| Some(m.sensors.header.tick as f64 * m.cycle)),
-    ("torso", These(7), "m, 1", |m, i| Some(pose(&m.belief?.torso?, i))),
+    ("torso", These(7), "m, 1", |m, i| Some(pose(&m.estimate?.torso?, i))),
     ("torso_truth", These(7), "m, 1", |m, i| Some(pose(&truth(m.sim?), i))),
     ("joint_angle", Joints, "rad", |m, i| Some(m.sensors.joint_angle[i])),
     ("joint_truth", Joints, "rad", |m, i| Some(m.sim?.joint_angle[i])),
     ("wrench", These(12), "N, N m", |m, i| { let w = &m.sensors.foot_wrench[i / 6]; Some(if i % 6 < 3 { w.force[i % 6] } else { w.moment[i % 6 - 3] }) }),
-    ("load", These(2), "1", |m, i| Some(m.belief?.force[i][2] / m.weight)),
-    ("force", These(6), "N", |m, i| Some(m.belief?.force[i / 3][i % 3])),
-    ("zmp", These(3), "m", |m, i| Some(m.belief?.on_ground(m.controller?.zmp)[i])),
-    ("zmp_planned", These(3), "m", |m, i| Some(m.belief?.on_ground(m.controller?.zmp_desired)[i])),
-    ("capture_point", These(3), "m", |m, i| Some(m.belief?.on_ground(m.controller?.dcm)[i])),
-    ("com", These(3), "m", |m, i| Some(m.belief?.place(m.controller?.com)[i])),
-    ("com_planned", These(3), "m", |m, i| Some(m.belief?.place(m.controller?.com_desired)[i])),
+    ("load", These(2), "1", |m, i| Some(m.estimate?.force[i][2] / m.weight)),
+    ("force", These(6), "N", |m, i| Some(m.estimate?.force[i / 3][i % 3])),
+    ("zmp", These(3), "m", |m, i| Some(m.estimate?.on_ground(m.controller?.zmp)[i])),
+    ("zmp_planned", These(3), "m", |m, i| Some(m.estimate?.on_ground(m.controller?.zmp_desired)[i])),
+    ("capture_point", These(3), "m", |m, i| Some(m.estimate?.on_ground(m.controller?.dcm)[i])),
+    ("com", These(3), "m", |m, i| Some(m.estimate?.place(m.controller?.com)[i])),
+    ("com_planned", These(3), "m", |m, i| Some(m.estimate?.place(m.controller?.com_desired)[i])),
     ("com_truth", These(3), "m", |m, i| Some(m.sim?.com[i])),
-    ("com_velocity", These(3), "m/s", |m, i| Some(m.belief?.turn(m.controller?.com_velocity)[i])),
-    ("soles", These(8), "m, rad", |m, i| Some(sole(m.belief?, &m.controller?.feet[i / 4], i % 4))),
-    ("soles_planned", These(8), "m, rad", |m, i| Some(sole(m.belief?, &m.controller?.feet_desired[i / 4], i % 4))),
-    ("steps", These(5 * STEPS), "1, m, rad", |m, i| Some(m.belief?.steps[i / 5][i % 5])),
-    ("com_path", These(3 * PATH_POINTS), "m", |m, i| Some(m.belief?.path[i / 3][i % 3])),
+    ("com_velocity", These(3), "m/s", |m, i| Some(m.estimate?.turn(m.controller?.com_velocity)[i])),
+    ("soles", These(8), "m, rad", |m, i| Some(sole(m.estimate?, &m.controller?.feet[i / 4], i % 4))),
+    ("soles_planned", These(8), "m, rad", |m, i| Some(sole(m.estimate?, &m.controller?.feet_desired[i / 4], i % 4))),
+    ("steps", These(5 * STEPS), "1, m, rad", |m, i| Some(m.estimate?.steps[i / 5][i % 5])),
+    ("com_path", These(3 * PATH_POINTS), "m", |m, i| Some(m.estimate?.path[i / 3][i % 3])),
     ("push", These(6), "N, m", |m, i| if i < 3 { Some(m.sim?.push[i]) } else { Some(m.pushed_at?[i - 3]) }),
     ("rope", These(1), "N", |m, _| Some(m.sim?.rope)),
     ("objects", Objects(8), "1, m, 1", |m, i| object(m, i / 8, i % 8)),
@@ -127,8 +127,8 @@ pub fn truth(sim: &SimState) -> RecordedPose {
 }
 
 /// A number of a sole frame of the planning frame, in the world.
-fn sole(belief: &Belief, &[x, y, z, heading]: &[f64; 4], i: usize) -> f64 {
-    if i < 3 { belief.place([x, y, z])[i] } else { heading + belief.planning.heading() }
+fn sole(estimate: &Estimate, &[x, y, z, heading]: &[f64; 4], i: usize) -> f64 {
+    if i < 3 { estimate.place([x, y, z])[i] } else { heading + estimate.planning.heading() }
 }
 
 /// Presence and pose of an object at the time of the simulation.
@@ -169,7 +169,7 @@ mod tests {
             weight: 600.0,
             sensors: &sensors,
             controller: None,
-            belief: None,
+            estimate: None,
             power: None,
             sim: Some(&sim),
             pushed_at: None,

@@ -15,10 +15,10 @@ use crate::foxglove::replies::StatusLevel;
 use crate::foxglove::requests::{ENCODING, OwnChannel, VELOCITY, ViewerRequest, published, velocity};
 use crate::foxglove::viewer::Setting;
 use crate::foxglove::watcher::ViewerNotice;
-use crate::guests::Outbox;
 use crate::operator::Answers;
 use crate::requests::Order;
-use crate::socket::{Budget, Closing, Commanding, Hall, converse, shortened, unreadable};
+use crate::socket::{Budget, Closing, Commanding, Sockets, converse, shortened, unreadable};
+use crate::subscribers::Outbox;
 
 /// Viewers at once.
 pub const MOST_VIEWERS: usize = 16;
@@ -30,7 +30,7 @@ const MOST_OWN: usize = 16;
 /// Common state of the sockets of viewers.
 #[derive(Debug)]
 pub struct Lobby {
-    hall: Arc<Hall>,
+    sockets: Arc<Sockets>,
     watcher: Sender<ViewerNotice>,
     /// Places for viewers.
     pub places: Arc<Semaphore>,
@@ -40,9 +40,9 @@ pub struct Lobby {
 
 impl Lobby {
     /// Of a server to which no viewer has come yet.
-    pub fn new(hall: Arc<Hall>, watcher: Sender<ViewerNotice>) -> Self {
+    pub fn new(sockets: Arc<Sockets>, watcher: Sender<ViewerNotice>) -> Self {
         let places = Arc::new(Semaphore::new(MOST_VIEWERS));
-        Self { hall, watcher, places, viewers: AtomicU64::new(0) }
+        Self { sockets, watcher, places, viewers: AtomicU64::new(0) }
     }
 }
 
@@ -58,7 +58,7 @@ pub async fn serve(socket: WebSocket, lobby: &Lobby, may_command: bool, _place: 
     let mut client = ViewerSocket {
         number,
         may_command,
-        hall: lobby.hall.clone(),
+        sockets: lobby.sockets.clone(),
         watcher: watcher.clone(),
         channels: BTreeMap::new(),
         operator: None,
@@ -74,7 +74,7 @@ pub async fn serve(socket: WebSocket, lobby: &Lobby, may_command: bool, _place: 
 struct ViewerSocket {
     number: u64,
     may_command: bool,
-    hall: Arc<Hall>,
+    sockets: Arc<Sockets>,
     watcher: Sender<ViewerNotice>,
     /// Channels of its own, by number: all of them for walking commands.
     channels: BTreeMap<u32, OwnChannel>,
@@ -89,7 +89,7 @@ impl ViewerSocket {
     /// Takes the viewer's messages until it goes, or is to go for a reason.
     async fn listen(&mut self, stream: SplitStream<WebSocket>) -> Closing {
         let mut budget = Budget::new();
-        let mut arrivals = Arrivals::new(stream, self.hall.beats.clone());
+        let mut arrivals = Arrivals::new(stream, self.sockets.beats.clone());
         loop {
             // How old it may be goes with whatever comes of it.
             let (message, since) = arrivals.next().await?;
@@ -189,7 +189,7 @@ impl ViewerSocket {
                 // A watcher that is gone needs no answers.
                 let _ = watcher.send(ViewerNotice::Answered(viewer, order, result.clone()));
             });
-            match self.hall.operator(format!("Foxglove viewer {viewer}"), answers) {
+            match self.sockets.operator(format!("Foxglove viewer {viewer}"), answers) {
                 Ok(operator) => self.operator = Some(operator),
                 Err(why) => return self.tell(ViewerNotice::Answered(viewer, number, Err(why))),
             }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use axum::extract::ws::Utf8Bytes;
 
 use crate::foxglove::replies::{self, StatusLevel};
-use crate::guests::{Guest, Outbox};
+use crate::subscribers::{Outbox, Subscriber};
 
 /// Message at its time, for all viewers.
 #[derive(Clone, Debug)]
@@ -34,7 +34,7 @@ pub struct Setting {
 /// A viewer.
 #[derive(Debug)]
 pub struct Viewer {
-    guest: Guest<()>,
+    subscriber: Subscriber<()>,
     /// Number of the subscription, by channel.
     subscriptions: BTreeMap<usize, u32>,
     /// \[ns\] Time that it was told last.
@@ -48,17 +48,23 @@ impl Viewer {
     /// A viewer that has just come.
     pub fn new(number: u64, outbox: Outbox) -> Self {
         let (subscriptions, follows) = (BTreeMap::new(), BTreeSet::new());
-        Self { guest: Guest::new(number, outbox), subscriptions, told: 0, follows, settings: Vec::new() }
+        Self {
+            subscriber: Subscriber::new(number, outbox),
+            subscriptions,
+            told: 0,
+            follows,
+            settings: Vec::new(),
+        }
     }
 
     /// Its number.
     pub fn number(&self) -> u64 {
-        self.guest.number
+        self.subscriber.number
     }
 
     /// True if its connection ends.
     pub fn is_gone(&self) -> bool {
-        self.guest.is_gone()
+        self.subscriber.is_gone()
     }
 
     /// Channels that it has subscribed to.
@@ -68,7 +74,7 @@ impl Viewer {
 
     /// A text for it.
     pub fn text(&mut self, text: impl Into<Utf8Bytes>) {
-        self.guest.text(&text.into());
+        self.subscriber.text(&text.into());
     }
 
     /// A sentence for whoever sits in front of it.
@@ -107,10 +113,10 @@ impl Viewer {
     pub fn show(&mut self, message: &TimedMessage, now: u64) {
         let Some(&subscription) = self.subscriptions.get(&message.channel) else { return };
         // A viewer takes the last time that it was told for the one of its messages; a time that goes back makes it begin anew.
-        if message.time > self.told && self.guest.bytes(replies::time(message.time), now) {
+        if message.time > self.told && self.subscriber.bytes(replies::time(message.time), now) {
             self.told = message.time;
         }
-        self.guest.bytes(replies::message(subscription, message.time, &message.payload), now);
+        self.subscriber.bytes(replies::message(subscription, message.time, &message.payload), now);
     }
 
     /// Another run begins, whose time may be an earlier one.

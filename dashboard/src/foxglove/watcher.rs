@@ -22,7 +22,7 @@ use recording::{Composer, LogChannel, LogTime};
 use crate::foxglove::replies::{StatusLevel, advertise, parameter_values, server_info};
 use crate::foxglove::requests::ViewerRequest;
 use crate::foxglove::viewer::{Setting, TimedMessage, Viewer};
-use crate::guests::Outbox;
+use crate::subscribers::Outbox;
 
 /// Between two looks while viewers are there, and while none is \[ns\].
 const LOOK: u64 = SECOND / 60;

@@ -139,13 +139,13 @@ impl Film {
         let controller = log.newest::<ControllerState>(&CONTROLLER_STATE, tick, |_| true)?;
         let power = log.newest::<Power>(&POWER, tick, |_| true)?;
         let sim = log.newest::<SimState>(&SIM_STATE, tick, |_| true)?;
-        let believer = &mut self.picture.believer;
-        believer.forget();
+        let estimator = &mut self.picture.estimator;
+        estimator.forget();
         // The plan that the stabilizer followed, which may be some seconds old.
         if let Some(state) = &controller
             && let Some(plan) = log.newest::<Plan>(&PLAN, tick, |plan| plan.id == state.plan_id)?
         {
-            believer.keep(&plan);
+            estimator.keep(&plan);
         }
         let newest = NewestRecords {
             sensors: &sensors,

@@ -17,10 +17,10 @@ use realtime::clock::{SECOND, now};
 use recording::RecordingError;
 use serde_json::{Value, json};
 
-use crate::guests::{FrameKind, Guest};
 use crate::observer::Notice;
 use crate::plotting::Plot;
 use crate::requests::RecordingRequest;
+use crate::subscribers::{FrameKind, Subscriber};
 
 pub use film::{Film, Recorded};
 use window::Window;
@@ -72,7 +72,7 @@ pub fn side_by_side(log: Recorded, other: Option<Recorded>) -> Result<Vec<Film>,
 pub struct Player {
     films: Vec<Film>,
     notices: Receiver<Notice>,
-    guests: Vec<Guest<Desk>>,
+    subscribers: Vec<Subscriber<Desk>>,
     hello: Utf8Bytes,
     /// Events of the first log so far, as they are told, and its next chunk.
     events: Vec<Value>,
@@ -89,7 +89,7 @@ impl Player {
         let mut player = Self {
             films,
             notices,
-            guests: Vec::new(),
+            subscribers: Vec::new(),
             hello: Utf8Bytes::default(),
             events: Vec::new(),
             told: 0,
@@ -135,47 +135,55 @@ impl Player {
                 Ok(true) => self.complain(String::new()),
                 Ok(false) => {}
             }
-            self.guests.retain(|guest| !guest.is_gone());
+            self.subscribers.retain(|subscriber| !subscriber.is_gone());
         }
     }
 
     /// Time to wait for a notice: none with work left.
     fn pause(&self) -> Duration {
-        let pause = |guest: &Guest<Desk>| {
-            let desk = &guest.plot;
+        let pause = |subscriber: &Subscriber<Desk>| {
+            let desk = &subscriber.plot;
             let windows = desk.asked.iter().any(Option::is_some) || desk.windows.iter().any(Option::is_some);
             match windows {
                 _ if desk.seek.is_some() => Duration::ZERO,
-                true if guest.has_room() => Duration::ZERO,
+                true if subscriber.has_room() => Duration::ZERO,
                 true => FULL,
                 false => IDLE,
             }
         };
-        let least = self.guests.iter().map(pause).min().unwrap_or(IDLE);
+        let least = self.subscribers.iter().map(pause).min().unwrap_or(IDLE);
         if self.has_events_left() { Duration::ZERO } else { least }
     }
 
     fn has_events_left(&self) -> bool {
-        !self.guests.is_empty() && self.searched < self.films[0].chunks() && self.events.len() < MOST_EVENTS
+        !self.subscribers.is_empty()
+            && self.searched < self.films[0].chunks()
+            && self.events.len() < MOST_EVENTS
     }
 
     fn hear(&mut self, notice: Notice) {
         match notice {
             Notice::Arrived(number, outbox) => {
-                let mut guest = Guest::new(number, outbox);
-                guest.text(&self.hello);
-                guest.text(&link_message(&self.why));
-                guest.text(&json!({"type": "lease", "holder": "", "mine": false}).to_string().into());
-                self.events[..self.told].chunks(AT_ONCE).for_each(|some| guest.text(&events_message(some)));
-                self.guests.push(guest);
+                let mut subscriber = Subscriber::new(number, outbox);
+                subscriber.text(&self.hello);
+                subscriber.text(&link_message(&self.why));
+                subscriber.text(&json!({"type": "lease", "holder": "", "mine": false}).to_string().into());
+                self.events[..self.told]
+                    .chunks(AT_ONCE)
+                    .for_each(|some| subscriber.text(&events_message(some)));
+                self.subscribers.push(subscriber);
             }
-            Notice::Left(number) => self.guests.retain(|guest| guest.number != number),
+            Notice::Left(number) => self.subscribers.retain(|subscriber| subscriber.number != number),
             Notice::Plot(number, fields, rate) => self.plot(number, fields, rate),
             Notice::Recording(number, what) => {
-                let Some(guest) = self.guests.iter_mut().find(|guest| guest.number == number) else { return };
+                let Some(subscriber) =
+                    self.subscribers.iter_mut().find(|subscriber| subscriber.number == number)
+                else {
+                    return;
+                };
                 match what {
-                    RecordingRequest::Seek(time, other) => guest.plot.seek = Some((time, other)),
-                    RecordingRequest::Window(log, stretch) => guest.plot.asked[log] = Some(stretch),
+                    RecordingRequest::Seek(time, other) => subscriber.plot.seek = Some((time, other)),
+                    RecordingRequest::Window(log, stretch) => subscriber.plot.asked[log] = Some(stretch),
                 }
             }
             Notice::Lease(_) | Notice::Broker(_) | Notice::Scenes(_) | Notice::Run(_) | Notice::End => {}
@@ -184,7 +192,10 @@ impl Player {
 
     /// Takes the fields of a page; samples come when it asks for a stretch.
     fn plot(&mut self, number: u64, fields: Vec<String>, rate: f64) {
-        let Some(guest) = self.guests.iter_mut().find(|guest| guest.number == number) else { return };
+        let Some(subscriber) = self.subscribers.iter_mut().find(|subscriber| subscriber.number == number)
+        else {
+            return;
+        };
         let cycle = self.films[0].cycle();
         let known = |film: &Film| -> Vec<String> {
             let has = |name: &&String| film.fields.iter().any(|field| field.name == **name);
@@ -192,17 +203,17 @@ impl Player {
         };
         let answer = match Plot::new(fields.clone(), rate, cycle, &self.films[0].fields) {
             Ok(plot) => {
-                (guest.plot.fields, guest.plot.rate) = (plot.fields.clone(), rate);
+                (subscriber.plot.fields, subscriber.plot.rate) = (plot.fields.clone(), rate);
                 // What was asked for before is of other columns.
-                (guest.plot.asked, guest.plot.windows) = ([None; 2], [None, None]);
+                (subscriber.plot.asked, subscriber.plot.windows) = ([None; 2], [None, None]);
                 let other = self.films.get(1).map_or(Vec::new(), known);
                 json!({"type": "plotting", "fields": fields, "rate": plot.rate(cycle), "other": other})
             }
             Err(why) => {
-                json!({"type": "plotting", "fields": guest.plot.fields, "rate": guest.plot.rate, "why": why})
+                json!({"type": "plotting", "fields": subscriber.plot.fields, "rate": subscriber.plot.rate, "why": why})
             }
         };
-        guest.text(&answer.to_string().into());
+        subscriber.text(&answer.to_string().into());
     }
 
     /// One round of requests: instants first, then a chunk of each stretch, then some of the events. True if an instant was shown.
@@ -210,14 +221,14 @@ impl Player {
         let now = now();
         let (mut result, mut shown) = (Ok(()), false);
         // A log that is damaged in one place is shown in the others: one error is told at the end.
-        for guest in &mut self.guests {
-            if let Some((time, other)) = guest.plot.seek.take() {
+        for subscriber in &mut self.subscribers {
+            if let Some((time, other)) = subscriber.plot.seek.take() {
                 let instants = [(FrameKind::State, Some(time)), (FrameKind::OtherState, other)];
                 for ((kind, time), film) in instants.into_iter().zip(&mut self.films) {
                     let Some(time) = time else { continue };
                     match film.frame(film.tick(time)) {
                         Ok(Some((tick, frame))) => {
-                            guest.frame(kind, tick, &frame, now);
+                            subscriber.frame(kind, tick, &frame, now);
                             shown = true;
                         }
                         Ok(None) => {}
@@ -226,7 +237,7 @@ impl Player {
                 }
             }
             for log in 0..self.films.len() {
-                result = result.and(advance(&mut self.films[log], guest, log, now));
+                result = result.and(advance(&mut self.films[log], subscriber, log, now));
             }
         }
         // Events come in the order of the log, and are told in messages of a thousand.
@@ -241,7 +252,7 @@ impl Player {
             if fresh >= AT_ONCE || fresh > 0 && !self.has_events_left() {
                 for some in self.events[self.told..].chunks(AT_ONCE) {
                     let message = events_message(some);
-                    self.guests.iter_mut().for_each(|guest| guest.text(&message));
+                    self.subscribers.iter_mut().for_each(|subscriber| subscriber.text(&message));
                 }
                 self.told = self.events.len();
             }
@@ -264,7 +275,7 @@ impl Player {
             let mut recorded = self.recording();
             recorded["type"] = "recorded".into();
             let message: Utf8Bytes = recorded.to_string().into();
-            self.guests.iter_mut().for_each(|guest| guest.text(&message));
+            self.subscribers.iter_mut().for_each(|subscriber| subscriber.text(&message));
         }
         Ok(())
     }
@@ -272,15 +283,20 @@ impl Player {
     fn complain(&mut self, why: String) {
         if why != self.why {
             let message = link_message(&why);
-            self.guests.iter_mut().for_each(|guest| guest.text(&message));
+            self.subscribers.iter_mut().for_each(|subscriber| subscriber.text(&message));
             self.why = why;
         }
     }
 }
 
 /// One chunk of the stretch that a page waits for; the newest request takes the place of older ones.
-fn advance(film: &mut Film, guest: &mut Guest<Desk>, log: usize, now: u64) -> Result<(), RecordingError> {
-    let desk = &mut guest.plot;
+fn advance(
+    film: &mut Film,
+    subscriber: &mut Subscriber<Desk>,
+    log: usize,
+    now: u64,
+) -> Result<(), RecordingError> {
+    let desk = &mut subscriber.plot;
     if let Some(stretch) = desk.asked[log].take() {
         let has = |name: &&String| film.fields.iter().any(|field| field.name == **name);
         let fields: Vec<String> = desk.fields.iter().filter(has).cloned().collect();
@@ -288,23 +304,23 @@ fn advance(film: &mut Film, guest: &mut Guest<Desk>, log: usize, now: u64) -> Re
     }
     let Some(mut window) = desk.windows[log].take() else { return Ok(()) };
     // A page that has not read what it was sent waits, and nobody else.
-    if !guest.has_room() {
-        guest.plot.windows[log] = Some(window);
+    if !subscriber.has_room() {
+        subscriber.plot.windows[log] = Some(window);
         return Ok(());
     }
     match window.step(film) {
         Ok(frame) => {
             if let Some((tick, frame)) = frame {
                 let kind = if log == 0 { FrameKind::Samples } else { FrameKind::OtherSamples };
-                guest.frame(kind, tick, &frame, now);
+                subscriber.frame(kind, tick, &frame, now);
             }
-            guest.plot.windows[log] = Some(window);
+            subscriber.plot.windows[log] = Some(window);
             Ok(())
         }
         Err(why) => {
             let ([from, to], rows) = (window.asked, window.rows);
             let done = json!({"type": "window", "log": log, "from": from, "to": to, "rows": rows});
-            guest.text(&done.to_string().into());
+            subscriber.text(&done.to_string().into());
             why.map_or(Ok(()), Err)
         }
     }

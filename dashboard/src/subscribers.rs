@@ -91,7 +91,7 @@ impl Outbox {
 
 /// A page as the observer sees it.
 #[derive(Debug)]
-pub struct Guest<P> {
+pub struct Subscriber<P> {
     /// Number of the page.
     pub number: u64,
     outbox: Outbox,
@@ -102,7 +102,7 @@ pub struct Guest<P> {
     pub plot: P,
 }
 
-impl<P: Default> Guest<P> {
+impl<P: Default> Subscriber<P> {
     /// A page that has just come.
     pub fn new(number: u64, outbox: Outbox) -> Self {
         Self { number, outbox, losing: None, gone: false, plot: P::default() }
@@ -142,7 +142,7 @@ impl<P: Default> Guest<P> {
     }
 }
 
-impl<P> Drop for Guest<P> {
+impl<P> Drop for Subscriber<P> {
     fn drop(&mut self) {
         // Kept for a socket that does not listen yet.
         self.outbox.end.notify_one();
@@ -157,26 +157,26 @@ mod tests {
     #[test]
     fn who_does_not_read_loses_frames_and_then_its_connection() {
         let (outbox, mut fed) = Outbox::new();
-        let mut guest: Guest<()> = Guest::new(1, outbox);
+        let mut subscriber: Subscriber<()> = Subscriber::new(1, outbox);
         for _ in 0..ROOM - FOR_TEXT + 3 {
-            guest.frame(FrameKind::State, 7, &[9], 1000);
+            subscriber.frame(FrameKind::State, 7, &[9], 1000);
         }
-        assert!(!guest.is_gone(), "it may be slow for a while");
-        guest.frame(FrameKind::State, 7, &[9], 1000 + PATIENCE);
-        assert!(!guest.is_gone());
+        assert!(!subscriber.is_gone(), "it may be slow for a while");
+        subscriber.frame(FrameKind::State, 7, &[9], 1000 + PATIENCE);
+        assert!(!subscriber.is_gone());
         let Ok(Message::Binary(first)) = fed.try_recv() else { panic!("a frame") };
         assert_eq!(first[..], [1, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0, 0, 0, 0, 0, 9]);
         while fed.try_recv().is_ok() {}
-        guest.frame(FrameKind::Samples, 8, &[], 1001 + PATIENCE);
+        subscriber.frame(FrameKind::Samples, 8, &[], 1001 + PATIENCE);
         let Ok(Message::Binary(next)) = fed.try_recv() else { panic!("a frame") };
         assert_eq!((next[0], next[4]), (2, 4), "kind, and frames lost until now");
         for now in [0, PATIENCE, PATIENCE + 1] {
-            (0..ROOM).for_each(|_| guest.frame(FrameKind::State, 9, &[], 5000 + now));
+            (0..ROOM).for_each(|_| subscriber.frame(FrameKind::State, 9, &[], 5000 + now));
         }
-        assert!(guest.is_gone());
+        assert!(subscriber.is_gone());
         // Texts are never left out.
         let (outbox, _fed) = Outbox::new();
-        let mut full: Guest<()> = Guest::new(2, outbox);
+        let mut full: Subscriber<()> = Subscriber::new(2, outbox);
         (0..ROOM).for_each(|_| full.text(&"news".into()));
         assert!(!full.is_gone() || ROOM == 0);
         full.text(&"one too many".into());
@@ -186,9 +186,9 @@ mod tests {
     #[test]
     fn a_page_that_is_closed_is_gone() {
         let (outbox, fed) = Outbox::new();
-        let guest: Guest<()> = Guest::new(1, outbox);
-        assert!(!guest.is_gone());
+        let subscriber: Subscriber<()> = Subscriber::new(1, outbox);
+        assert!(!subscriber.is_gone());
         drop(fed);
-        assert!(guest.is_gone());
+        assert!(subscriber.is_gone());
     }
 }

@@ -16,7 +16,7 @@ pub const PATH_POINTS: usize = 24;
 pub const STEPS: usize = 8;
 
 /// Kinematics of the robot, and where its odometry began.
-pub struct Believer {
+pub struct PoseEstimator {
     model: Model,
     data: Data,
     q: Vec<f64>,
@@ -33,7 +33,7 @@ pub struct Believer {
 
 /// Estimate at one instant; world frame. NaN: not known.
 #[derive(Clone, Debug)]
-pub struct Belief {
+pub struct Estimate {
     /// world_from_torso; none before the stabilizer knows it.
     pub torso: Option<RecordedPose>,
     /// world_from_planning
@@ -48,7 +48,7 @@ pub struct Belief {
     pub path: [[f64; 3]; PATH_POINTS],
 }
 
-impl Believer {
+impl PoseEstimator {
     /// Of this robot; `simulated`: in the world in which the scene puts it.
     ///
     /// # Errors
@@ -85,7 +85,7 @@ impl Believer {
     }
 
     /// Estimate from sensors, stabilizer and the plan that it follows.
-    pub fn see(&mut self, sensors: &Sensors, state: &ControllerState) -> Belief {
+    pub fn see(&mut self, sensors: &Sensors, state: &ControllerState) -> Estimate {
         // Poses of sole and sensors in the torso frame: the torso is put at the origin.
         let n = self.q.len() - 7;
         self.q[7..].copy_from_slice(&sensors.joint_angle[..n]);
@@ -108,7 +108,7 @@ impl Believer {
             })
         };
         let force = [force(0), force(1)];
-        let mut belief = Belief {
+        let mut estimate = Estimate {
             torso,
             planning,
             ground: 0.0,
@@ -117,13 +117,13 @@ impl Believer {
             path: [[f64::NAN; 3]; PATH_POINTS],
         };
         if let Some(plan) = plan {
-            belief.plan(plan, state);
+            estimate.plan(plan, state);
         }
-        belief
+        estimate
     }
 }
 
-impl Belief {
+impl Estimate {
     /// Plan from now on.
     fn plan(&mut self, plan: &Plan, state: &ControllerState) {
         let (now, end) = (state.plan_time, plan.end());
