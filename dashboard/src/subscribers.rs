@@ -1,4 +1,5 @@
-//! The pages that are there, each with a queue of its own: who does not read loses frames, and nobody waits for it.
+//! Subscribers: pages and viewers that are there, each with a queue of its own; one that does not read loses frames, and nobody
+//! waits for it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -89,7 +90,7 @@ impl Outbox {
     }
 }
 
-/// A page as the observer sees it.
+/// A page or viewer as the thread that serves it sees it.
 #[derive(Debug)]
 pub struct Subscriber<P> {
     /// Number of the page.

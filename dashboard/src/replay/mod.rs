@@ -164,6 +164,7 @@ impl Player {
     fn hear(&mut self, notice: Notice) {
         match notice {
             Notice::Arrived(number, outbox) => {
+                // The same words as of a running robot, of which nobody can take the lease; then the events found so far.
                 let mut subscriber = Subscriber::new(number, outbox);
                 subscriber.text(&self.hello);
                 subscriber.text(&link_message(&self.why));
@@ -186,6 +187,7 @@ impl Player {
                     RecordingRequest::Window(log, stretch) => subscriber.plot.asked[log] = Some(stretch),
                 }
             }
+            // News of a running robot.
             Notice::Lease(_) | Notice::Broker(_) | Notice::Scenes(_) | Notice::Run(_) | Notice::End => {}
         }
     }

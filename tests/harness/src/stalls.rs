@@ -1,5 +1,5 @@
-//! How long the machine itself stands still, whatever runs on it: what a test in real time blames neither on robots nor on
-//! what it does to them.
+//! Stalls of the machine itself, whatever runs on it: a test in real time blames them neither on robots nor on what it does to
+//! them.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
